@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "gaitd/abi/backend.h"
+#include "gaitd/abi/types.h"
+#include "gaitd/walking/commands.h"
+
+namespace gaitd::daemon {
+
+// What a client or a scenario asks of the control thread. Plain data: it crosses a wait-free ring.
+enum class CommandType : std::uint8_t {
+  kArm,
+  kDisarm,
+  kEstop,
+  kReset,      // clears a latched fault
+  kMode,
+  kWalk,
+  kFootsteps,
+  kPause,
+  kResume,
+  kStop,       // finish the current step, close the feet, stand
+  kAbort,      // drop the footsteps ahead, put the foot down, stand
+  kSetParameter,
+  kPush,       // simulation only
+  kSimReset,   // simulation only: back to the start pose
+};
+
+struct Command {
+  CommandType type = CommandType::kStop;
+  std::uint64_t request = 0;  // echoed in the reply
+  int mode = GAITD_MODE_STAND;
+  walking::WalkCommand walk;
+  bool replace = false;
+  // A footstep with swing_duration, transfer_duration or swing_height 0 takes the parameter of the
+  // gait. contact_polygon and landing_region as in the footstep struct.
+  int footstep_count = 0;
+  std::array<GaitdFootstep, walking::kMaxFootstepsPerCommand> footsteps;
+  GaitdDisturbance push;
+  int parameter_index = -1;  // into the table of all live parameters
+  double parameter_value = 0.0;
+};
+
+// The answer, made by the control thread at the tick that took the command.
+struct CommandReply {
+  std::uint64_t request = 0;
+  bool accepted = false;
+  std::int64_t tick = 0;
+  std::array<char, 256> message{};  // why it was refused: what, where, expected, got, what to do
+};
+
+}  // namespace gaitd::daemon
