@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #ifndef GAITD_QP_SRC_KERNELS_H_
 #define GAITD_QP_SRC_KERNELS_H_
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gaitd/qp/kkt.h"
 
 #include <algorithm>
@@ -69,8 +70,7 @@ KktResiduals KktJudge::evaluate(const Problem& problem, const Point& point) {
   for (int j = 0; j < n; ++j) {
     const double* h = problem.H.column(j);
     const int below = n - j - 1;
-    s[j] += h[j] * x[j] +
-            kernels::axpy_dot(below, x[j], h + j + 1, s + j + 1, x + j + 1);
+    s[j] += h[j] * x[j] + kernels::axpy_dot(below, x[j], h + j + 1, s + j + 1, x + j + 1);
   }
   const double quadratic = kernels::dot(n, x, s);
   const double linear = kernels::dot(n, problem.g.data(), x);

@@ -221,6 +221,8 @@ typedef struct GaitdFootstep {
   double swing_height;       /* m, above the higher of lift-off and touchdown */
   int32_t polygon_count;     /* 0: whole sole */
   int32_t region_count;      /* 0: anywhere */
+  int32_t closing;           /* brings the feet side by side; not counted as a step */
+  int32_t reserved;
   double contact_polygon[GAITD_MAX_FOOT_POINTS][2];   /* m, sole frame, counter-clockwise */
   double landing_region[GAITD_MAX_REGION_POINTS][3];  /* m, W, convex, counter-clockwise */
 } GaitdFootstep;
@@ -246,6 +248,8 @@ typedef struct GaitdGaitState {
   int32_t plan_revision;   /* changes whenever footsteps, phase or timing changed */
   int32_t next_side;       /* foot that swings now or next; GAITD_BOTH when none */
   int32_t transfer_final;  /* this transfer ends in standing */
+  int32_t trailing_side;   /* transfer: foot that the load leaves; GAITD_BOTH from standing */
+  int32_t reserved;
   double omega;            /* 1/s, natural frequency of the ICP */
   double time_in_phase;    /* s */
   double phase_duration;   /* s, as planned; infinite standing is 0 */
@@ -347,6 +351,8 @@ typedef struct GaitdObjectives {
   double rho_weight;
   double rho_rate_weight;
   double acceleration_weight;   /* of every generalised acceleration */
+  double posture_acceleration[GAITD_MAX_JOINTS]; /* joint tasks, diagonal; feedback included */
+  double posture_weight[GAITD_MAX_JOINTS];       /* 0: no task for this joint */
   double privileged_acceleration[GAITD_MAX_JOINTS];
   double privileged_weight[GAITD_MAX_JOINTS]; /* 0: no privileged acceleration of this joint */
   double joint_stiffness[GAITD_MAX_JOINTS];   /* N m/rad, passed on to the drives */

@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #ifndef GAITD_QP_KKT_H_
 #define GAITD_QP_KKT_H_
 
 #include <Eigen/Core>
+#include <limits>
 
 #include "gaitd/qp/problem.h"
 
@@ -19,13 +21,16 @@ struct Point {
   VectorView w;  ///< multipliers of lb ≤ x ≤ ub, length n
 };
 
-/// One figure per optimality condition, each the largest violation over its rows.
+/// One figure per optimality condition, each the largest violation over its rows. Infinite until
+/// computed.
 struct KktNorms {
-  double stationarity = 0.0;       ///< ‖H x + g + Aᵀy + Cᵀz + w‖∞
-  double primal_equality = 0.0;    ///< ‖A x − b‖∞
-  double primal_inequality = 0.0;  ///< largest excess over l, u, lb, ub
-  double dual_sign = 0.0;          ///< largest multiplier that pushes from an infinite bound
-  double complementarity = 0.0;    ///< largest |multiplier · distance to its bound|
+  static constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+  double stationarity = kUnknown;       ///< ‖H x + g + Aᵀy + Cᵀz + w‖∞
+  double primal_equality = kUnknown;    ///< ‖A x − b‖∞
+  double primal_inequality = kUnknown;  ///< largest excess over l, u, lb, ub
+  double dual_sign = kUnknown;          ///< largest multiplier that pushes from an infinite bound
+  double complementarity = kUnknown;    ///< largest |multiplier · distance to its bound|
 
   /// The largest of the five; NaN if one of them is NaN.
   double max() const;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #ifndef GAITD_QP_PROBLEM_H_
 #define GAITD_QP_PROBLEM_H_
 
@@ -102,9 +103,9 @@ struct Problem {
     const auto full_or_empty = [](const VectorView& v, int size) {
       return v.size() == size || v.size() == 0;
     };
-    return n >= 1 && H.rows() == n && H.cols() == n && A.rows() == p &&
-           (p == 0 || A.cols() == n) && (m == 0 || C.cols() == n) && full_or_empty(l, m) &&
-           full_or_empty(u, m) && full_or_empty(lb, n) && full_or_empty(ub, n);
+    return n >= 1 && H.rows() == n && H.cols() == n && A.rows() == p && (p == 0 || A.cols() == n) &&
+           (m == 0 || C.cols() == n) && full_or_empty(l, m) && full_or_empty(u, m) &&
+           full_or_empty(lb, n) && full_or_empty(ub, n);
   }
 };
 

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads a robot description (URDF) into the model that crosses the plugin boundary.
+#ifndef GAITD_DYNAMICS_URDF_H_
+#define GAITD_DYNAMICS_URDF_H_
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "gaitd/abi/types.h"
+
+namespace gaitd::dynamics {
+
+struct UrdfOptions {
+  // Link whose frame becomes the frame of body 0 (the pelvis). It must be the root of the tree or
+  // be fixed to it. Empty: the root.
+  std::string root_link;
+};
+
+// Where a link of the file went. Links on fixed joints are merged into the body that carries them.
+struct UrdfLink {
+  std::string name;
+  int body = 0;
+  Eigen::Vector3d p_BL = Eigen::Vector3d::Zero();            // m, link frame origin in the body
+  Eigen::Quaterniond R_BL = Eigen::Quaterniond::Identity();  // link frame in the body frame
+};
+
+struct UrdfResult {
+  // Meaningful only if ok(). Filled: size, name, total_mass, gravity (9.81 m/s^2), the bodies and
+  // the joints (rotor_inertia 0, damping from <dynamics>). All else is zero: frames, feet, legs and
+  // the nominal posture come from the configuration of the robot.
+  GaitdModel model{};
+  std::vector<UrdfLink> links;      // every link of the file, in the order of the bodies
+  std::vector<std::string> errors;  // everything that is wrong with the file, not only the first
+
+  bool ok() const { return errors.empty(); }
+  const UrdfLink* find_link(const std::string& name) const;  // nullptr if there is none
+};
+
+// Reads the file at `path`. Joints are numbered depth-first from the root, the joints of one link
+// in alphabetical order; body i + 1 is the child of joint i and its frame is the joint frame at
+// position zero. Revolute, continuous (limits +-1e9 rad), prismatic and fixed joints are taken.
+// Never throws on a bad file: every problem becomes a text in `errors` that says where (file and
+// line), what was found, what was expected and what to do. Allocates; not for the real-time path.
+UrdfResult load_urdf(const std::string& path, const UrdfOptions& options = {});
+
+// The same from text; `source` stands for the file name in errors.
+UrdfResult load_urdf_text(const std::string& text, const std::string& source = "<text>",
+                          const UrdfOptions& options = {});
+
+}  // namespace gaitd::dynamics
+
+#endif  // GAITD_DYNAMICS_URDF_H_

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the elements of the file to a tree of bodies: who hangs on whom, and what is merged.
+#include "gaitd/dynamics/urdf.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "gaitd/dynamics/model_check.h"
+#include "urdf_elements.h"
+#include "xml_reader.h"
+
+namespace gaitd::dynamics {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kStandardGravity = 9.81;
+
+void copy_name(const std::string& from, char (&to)[GAITD_NAME_SIZE]) {
+  std::strncpy(to, from.c_str(), GAITD_NAME_SIZE - 1);
+}
+
+void copy_rotation(const Matrix3d& from, double (&to)[4]) {
+  Eigen::Vector4d::Map(to) = Eigen::Quaterniond(from).normalized().coeffs();
+}
+
+// Adds a rigid part to a body; all three quantities of both in the axes of the body.
+struct MergedMass {
+  double mass = 0;
+  Vector3d com = Vector3d::Zero();
+  Matrix3d inertia = Matrix3d::Zero();  // about com
+
+  void add(double part_mass, const Vector3d& part_com, const Matrix3d& part_inertia) {
+    if (part_mass <= 0) return;
+    const double total = mass + part_mass;
+    const Vector3d d = part_com - com;
+    inertia += part_inertia + (mass * part_mass / total) *
+                                  (d.squaredNorm() * Matrix3d::Identity() - d * d.transpose());
+    com += (part_mass / total) * d;
+    mass = total;
+  }
+};
+
+class TreeBuilder {
+ public:
+  TreeBuilder(const UrdfElements& elements, XmlReader* xml, UrdfResult* result)
+      : elements_(elements), xml_(*xml), result_(*result) {}
+
+  void build(const std::string& root_link) {
+    index_links();
+    index_joints();
+    const std::string root = find_root();
+    if (root.empty()) return;
+    report_loops(root);
+    Isometry3d X_BR = Isometry3d::Identity();
+    if (!root_link.empty() && !place_root(root_link, root, &X_BR)) return;
+    walk(root, root_link.empty() ? root : root_link, X_BR);
+    finish_bodies();
+  }
+
+ private:
+  struct Visit {
+    std::string link;
+    int body;  // of the parent link, or of the link itself for the root
+    Isometry3d X_BP;
+    const UrdfJointElement* joint;  // null for the root
+  };
+
+  void index_links() {
+    for (const UrdfLinkElement& link : elements_.links) {
+      if (link.name.empty()) continue;
+      if (!links_.emplace(link.name, &link).second) {
+        xml_.add_error(link.line, "link " + quoted(link.name) + " is there twice (first in line " +
+                                      std::to_string(links_[link.name]->line) + "); rename one");
+      }
+    }
+  }
+
+  void index_joints() {
+    std::map<std::string, int> first_line;
+    for (const UrdfJointElement& joint : elements_.joints) {
+      const std::string owner = "joint " + quoted(joint.name);
+      const auto [at, is_new] = first_line.emplace(joint.name, joint.line);
+      if (!is_new && !joint.name.empty()) {
+        xml_.add_error(joint.line, owner + " is there twice (first in line " +
+                                       std::to_string(at->second) + "); rename one");
+      }
+      if (!known_link(joint, "parent", joint.parent) || !known_link(joint, "child", joint.child)) {
+        continue;
+      }
+      const auto [parent, is_first] = parent_joint_.emplace(joint.child, &joint);
+      if (!is_first) {
+        xml_.add_error(joint.line, "link " + quoted(joint.child) + " has two parents, by joints " +
+                                       quoted(parent->second->name) + " and " + quoted(joint.name) +
+                                       ", expected a tree; open the loop by removing one of them");
+        continue;
+      }
+      children_[joint.parent].push_back(&joint);
+    }
+    for (auto& [link, joints] : children_) {
+      std::sort(joints.begin(), joints.end(),
+                [](const auto* a, const auto* b) { return a->name < b->name; });
+    }
+  }
+
+  bool known_link(const UrdfJointElement& joint, const char* role, const std::string& name) {
+    if (links_.contains(name)) return true;
+    unresolved_ = true;
+    if (!name.empty()) {
+      xml_.add_error(joint.line, "joint " + quoted(joint.name) + ": its " + role + " link " +
+                                     quoted(name) + " does not exist; correct the name");
+    }
+    return false;
+  }
+
+  // The one link without a parent. With joints that name no link, more roots would be a
+  // consequence only, so they are not reported then.
+  std::string find_root() {
+    std::vector<std::string> roots;
+    for (const auto& [name, link] : links_) {
+      if (!parent_joint_.contains(name)) roots.push_back(name);
+    }
+    if (roots.size() == 1) return roots[0];
+    if (roots.empty() && !links_.empty()) report_loops("");
+    if (roots.size() > 1 && !unresolved_) {
+      std::string names;
+      for (const std::string& root : roots) names += (names.empty() ? "" : ", ") + quoted(root);
+      xml_.add_error(0, "has " + std::to_string(roots.size()) + " roots (" + names +
+                            "), expected one; connect them with joints or remove the rest");
+    }
+    return {};
+  }
+
+  // Each closed chain of parents once.
+  void report_loops(const std::string& root) {
+    std::set<std::string> done = {root};
+    for (const UrdfLinkElement& start : elements_.links) {
+      std::vector<std::string> path;
+      std::string at = start.name;
+      while (!done.contains(at)) {
+        done.insert(at);
+        path.push_back(at);
+        const auto joint = parent_joint_.find(at);
+        if (joint == parent_joint_.end()) break;
+        at = joint->second->parent;
+      }
+      const auto first = std::find(path.begin(), path.end(), at);
+      if (first == path.end() || !parent_joint_.contains(at)) continue;
+      std::string names = quoted(at);
+      for (auto it = path.end(); it != first;) names += " -> " + quoted(*--it);
+      xml_.add_error(links_[at]->line,
+                     "links form a loop: " + names + ", expected a tree; remove one of its joints");
+    }
+  }
+
+  // Pose of the root in the frame of `name`, which becomes body 0.
+  bool place_root(const std::string& name, const std::string& root, Isometry3d* X_BR) {
+    if (!links_.contains(name)) {
+      xml_.add_error(0, "root link " + quoted(name) + " does not exist; name a link of the file");
+      return false;
+    }
+    Isometry3d X_RB = Isometry3d::Identity();
+    for (std::string at = name; at != root;) {
+      const UrdfJointElement& joint = *parent_joint_.at(at);
+      if (joint.kind != UrdfJointKind::kFixed) {
+        xml_.add_error(joint.line, "root link " + quoted(name) + " moves against the root " +
+                                       quoted(root) + " by joint " + quoted(joint.name) +
+                                       ", expected the root or a link fixed to it");
+        return false;
+      }
+      X_RB = joint.X_PJ * X_RB;
+      at = joint.parent;
+    }
+    *X_BR = X_RB.inverse();
+    return true;
+  }
+
+  void walk(const std::string& root, const std::string& base_name, const Isometry3d& X_BR) {
+    begin_body(base_name, links_[root]->line, -1);
+    std::vector<Visit> stack = {{root, 0, X_BR, nullptr}};
+    while (!stack.empty()) {
+      const Visit visit = stack.back();
+      stack.pop_back();
+      int body = visit.body;
+      Isometry3d X_BL = visit.X_BP;
+      if (visit.joint != nullptr) {
+        X_BL = visit.X_BP * visit.joint->X_PJ;
+        if (visit.joint->kind != UrdfJointKind::kFixed) {
+          body = add_joint(*visit.joint, visit.body, X_BL);
+          X_BL = Isometry3d::Identity();
+        }
+      }
+      add_link(*links_[visit.link], body, X_BL);
+      const auto& joints = children_[visit.link];
+      for (auto it = joints.rbegin(); it != joints.rend(); ++it) {
+        stack.push_back({(*it)->child, body, X_BL, *it});
+      }
+    }
+  }
+
+  void begin_body(const std::string& name, int line, int parent) {
+    const int index = static_cast<int>(merged_.size());
+    merged_.emplace_back();
+    body_names_.push_back(name);
+    body_lines_.push_back(line);
+    if (index >= GAITD_MAX_BODIES) return;
+    GaitdBody& body = result_.model.bodies[index];
+    copy_name(name, body.name);
+    body.parent = parent;
+    body.joint = index - 1;
+  }
+
+  int add_joint(const UrdfJointElement& from, int parent, const Isometry3d& X_PJ) {
+    const int body = static_cast<int>(merged_.size());
+    begin_body(from.child, links_[from.child]->line, parent);
+    if (body >= GAITD_MAX_BODIES) return body;
+    GaitdJoint& joint = result_.model.joints[body - 1];
+    copy_name(from.name, joint.name);
+    joint.type =
+        from.kind == UrdfJointKind::kPrismatic ? GAITD_JOINT_PRISMATIC : GAITD_JOINT_REVOLUTE;
+    joint.parent_body = parent;
+    joint.child_body = body;
+    Vector3d::Map(joint.origin) = X_PJ.translation();
+    copy_rotation(X_PJ.linear(), joint.orientation);
+    Vector3d::Map(joint.axis) = from.axis;
+    joint.position_min = from.lower;
+    joint.position_max = from.upper;
+    joint.velocity_limit = from.velocity;
+    joint.effort_limit = from.effort;
+    joint.damping = from.damping;
+    return body;
+  }
+
+  void add_link(const UrdfLinkElement& link, int body, const Isometry3d& X_BL) {
+    const Matrix3d R_BL = X_BL.linear();
+    merged_[body].add(link.mass, X_BL * link.com, R_BL * link.inertia * R_BL.transpose());
+    result_.links.push_back(
+        {link.name, body, X_BL.translation(), Eigen::Quaterniond(R_BL).normalized()});
+  }
+
+  void finish_bodies() {
+    GaitdModel& model = result_.model;
+    const int joints = static_cast<int>(merged_.size()) - 1;
+    if (joints > GAITD_MAX_JOINTS) {
+      xml_.add_error(0, "has " + std::to_string(joints) + " moving joints, expected " +
+                            std::to_string(GAITD_MAX_JOINTS) +
+                            " at most; make some of them fixed (fingers, for example)");
+      return;
+    }
+    model.joint_count = joints;
+    model.body_count = joints + 1;
+    for (int i = 0; i <= joints; ++i) finish_body(i);
+  }
+
+  void finish_body(int i) {
+    const MergedMass& merged = merged_[i];
+    GaitdBody& body = result_.model.bodies[i];
+    const std::string owner = "link " + quoted(body_names_[i]);
+    body.mass = merged.mass;
+    Vector3d::Map(body.com) = merged.com;
+    const Matrix3d& m = merged.inertia;
+    const double inertia[6] = {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)};
+    std::copy_n(inertia, 6, body.inertia);
+    result_.model.total_mass += merged.mass;
+    if (merged.mass <= 0) {
+      xml_.add_error(body_lines_[i], owner +
+                                         " moves but has no mass, nor has any link fixed to it; "
+                                         "give it an <inertial> or make its joint fixed");
+      return;
+    }
+    const std::string reason = check_inertia(m, false);
+    if (!reason.empty()) {
+      xml_.add_error(body_lines_[i],
+                     owner + " with all links fixed to it: " + reason + "; correct <inertia>");
+    }
+  }
+
+  const UrdfElements& elements_;
+  XmlReader& xml_;
+  UrdfResult& result_;
+  std::map<std::string, const UrdfLinkElement*> links_;
+  std::map<std::string, const UrdfJointElement*> parent_joint_;  // by child link
+  std::map<std::string, std::vector<const UrdfJointElement*>> children_;
+  std::vector<MergedMass> merged_;
+  std::vector<std::string> body_names_;
+  std::vector<int> body_lines_;
+  bool unresolved_ = false;
+};
+
+}  // namespace
+
+const UrdfLink* UrdfResult::find_link(const std::string& name) const {
+  for (const UrdfLink& link : links) {
+    if (link.name == name) return &link;
+  }
+  return nullptr;
+}
+
+UrdfResult load_urdf_text(const std::string& text, const std::string& source,
+                          const UrdfOptions& options) {
+  UrdfResult result;
+  result.model.size = sizeof(GaitdModel);
+  result.model.gravity = kStandardGravity;
+  XmlReader xml(source, &result.errors);
+  const UrdfElements elements = read_urdf_elements(text, &xml);
+  copy_name(elements.robot_name, result.model.name);
+  if (!elements.links.empty()) TreeBuilder(elements, &xml, &result).build(options.root_link);
+  if (result.ok()) {
+    for (const std::string& error : check_model(result.model)) xml.add_error(0, error);
+  }
+  return result;
+}
+
+UrdfResult load_urdf(const std::string& path, const UrdfOptions& options) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  if (file) text << file.rdbuf();
+  if (!file || !text) {
+    UrdfResult result;
+    const int code = errno;
+    result.errors.push_back(path + ": cannot be read (" +
+                            (code == 0 ? "not a file" : std::strerror(code)) +
+                            "), expected a URDF file; give its path");
+    return result;
+  }
+  return load_urdf_text(text.str(), path, options);
+}
+
+}  // namespace gaitd::dynamics

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The links and joints of a URDF file as they stand there, before they become a tree.
+#ifndef GAITD_DYNAMICS_SRC_URDF_ELEMENTS_H_
+#define GAITD_DYNAMICS_SRC_URDF_ELEMENTS_H_
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "xml_reader.h"
+
+namespace gaitd::dynamics {
+
+struct UrdfLinkElement {
+  int line = 0;
+  std::string name;
+  double mass = 0;  // kg; 0 without <inertial>
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  // about the centre of mass, link axes
+};
+
+enum class UrdfJointKind { kFixed, kRevolute, kPrismatic };
+
+struct UrdfJointElement {
+  int line = 0;
+  std::string name;
+  std::string parent;
+  std::string child;
+  UrdfJointKind kind = UrdfJointKind::kFixed;
+  Eigen::Isometry3d X_PJ = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  double lower = 0;
+  double upper = 0;
+  double velocity = 0;
+  double effort = 0;
+  double damping = 0;
+};
+
+struct UrdfElements {
+  std::string robot_name;
+  std::vector<UrdfLinkElement> links;
+  std::vector<UrdfJointElement> joints;
+};
+
+// Everything wrong with single elements goes to `reader`; what hangs together wrongly does not.
+UrdfElements read_urdf_elements(const std::string& text, XmlReader* reader);
+
+}  // namespace gaitd::dynamics
+
+#endif  // GAITD_DYNAMICS_SRC_URDF_ELEMENTS_H_

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every bad file is refused with its place and its reason, all of them at once.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "gaitd/dynamics/urdf.h"
+
+namespace gaitd::dynamics {
+namespace {
+
+const char kInertial[] = "<inertial><mass value='2'/><inertia ixx='1' iyy='1' izz='1'/></inertial>";
+const char kLimit[] = "<limit lower='-1' upper='1' velocity='1' effort='1'/>";
+
+std::string link(const std::string& name, const std::string& inside = kInertial) {
+  return "<link name='" + name + "'>" + inside + "</link>\n";
+}
+
+std::string joint(const std::string& name, const std::string& parent, const std::string& child,
+                  const std::string& inside = kLimit, const std::string& type = "revolute") {
+  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent +
+         "'/><child link='" + child + "'/>" + inside + "</joint>\n";
+}
+
+std::vector<std::string> errors_of(const std::string& inside) {
+  return load_urdf_text("<robot name='r'>\n" + inside + "</robot>", "bad.urdf").errors;
+}
+
+// Exactly one error; it starts with the place and holds all of `parts`.
+void expect_one(const std::vector<std::string>& errors, const std::string& place,
+                const std::vector<std::string>& parts) {
+  ASSERT_EQ(errors.size(), 1u) << (errors.empty() ? "no error" : errors[0] + "\n" + errors[1]);
+  EXPECT_EQ(errors[0].rfind(place, 0), 0u) << errors[0];
+  for (const std::string& part : parts) {
+    EXPECT_NE(errors[0].find(part), std::string::npos) << errors[0] << "\nlacks: " << part;
+  }
+}
+
+void expect_joint_error(const std::string& inside, const std::string& type,
+                        const std::vector<std::string>& parts) {
+  expect_one(errors_of(link("a") + link("b") + joint("j", "a", "b", inside, type)),
+             "bad.urdf:4: ", parts);
+}
+
+void expect_link_error(const std::string& inside, const std::vector<std::string>& parts) {
+  expect_one(errors_of(link("a") + link("b", inside) + joint("j", "a", "b")),
+             "bad.urdf:3: ", parts);
+}
+
+TEST(UrdfErrors, NoFile) {
+  expect_one(load_urdf("/no/such/robot.urdf").errors,
+             "/no/such/robot.urdf: ", {"cannot be read", "No such file", "give its path"});
+  expect_one(load_urdf("/").errors, "/: ", {"cannot be read"});
+}
+
+TEST(UrdfErrors, NotAUrdf) {
+  expect_one(load_urdf_text("", "bad.urdf").errors, "bad.urdf", {"expected"});
+  expect_one(load_urdf_text("<robot name='r'>\n<link name='a'>\n</robot>", "bad.urdf").errors,
+             "bad.urdf:", {"not well-formed XML"});
+  expect_one(load_urdf_text("<sdf/>", "bad.urdf").errors,
+             "bad.urdf:1: ", {"<sdf>", "expected <robot>"});
+  expect_one(load_urdf_text("just text", "bad.urdf").errors, "bad.urdf", {"expected"});
+  expect_one(errors_of(""), "bad.urdf:1: ", {"no <link>"});
+  expect_one(errors_of(link("a") + "<xacro:macro name='x'/>"), "bad.urdf:3: ", {"xacro"});
+}
+
+TEST(UrdfErrors, MovingBodyWithoutMass) {
+  expect_link_error("", {"'b' moves but has no mass", "<inertial>", "fixed"});
+  expect_one(errors_of("<link name='a'/>"), "bad.urdf:2: ", {"'a' moves but has no mass"});
+}
+
+TEST(UrdfErrors, WrongMass) {
+  const std::string inertia = "<inertia ixx='1' iyy='1' izz='1'/></inertial>";
+  expect_link_error("<inertial><mass value='two'/>" + inertia, {"'value'", "'two'", "number"});
+  expect_link_error("<inertial><mass value='-2'/>" + inertia, {"mass is -2 kg", "above 0"});
+  expect_link_error("<inertial><mass value='0'/>" + inertia, {"mass is 0 kg", "above 0"});
+  expect_link_error("<inertial><mass value='nan'/>" + inertia, {"'nan'", "finite number"});
+  expect_link_error("<inertial><mass value='1e999'/>" + inertia, {"'1e999'", "finite number"});
+  expect_link_error("<inertial><mass/>" + inertia, {"'value' of <mass> is missing"});
+  expect_link_error("<inertial>" + inertia, {"has no <mass>"});
+  expect_link_error("<inertial><mass value='2'/></inertial>", {"has no <inertia>"});
+}
+
+TEST(UrdfErrors, NonPhysicalInertia) {
+  const auto inertial = [](const std::string& inertia) {
+    return "<inertial><mass value='1'/><inertia " + inertia + "/></inertial>";
+  };
+  expect_link_error(inertial("ixx='1' iyy='1' izz='-1'"), {"'b'", "not positive definite"});
+  expect_link_error(inertial("ixx='1' iyy='1' izz='1' ixy='2'"), {"not positive definite"});
+  expect_link_error(inertial("ixx='0' iyy='0' izz='0'"), {"'b' with all links", "not positive"});
+  expect_link_error(inertial("ixx='1' iyy='1' izz='3'"), {"1, 1, 3", "sum of the two others"});
+  expect_link_error(inertial("ixx='1' iyy='1'"), {"'izz'", "missing"});
+}
+
+TEST(UrdfErrors, Loops) {
+  expect_one(errors_of(link("a") + link("b") + joint("j", "a", "b") + joint("k", "b", "a")),
+             "bad.urdf:", {"loop", "'a'", "'b'", "remove one"});
+  expect_one(
+      errors_of(link("r") + link("a") + link("b") + joint("j", "a", "b") + joint("k", "b", "a")),
+      "bad.urdf:", {"loop"});
+  expect_one(errors_of(link("a") + link("b") + joint("j", "a", "b") + joint("k", "b", "b")),
+             "bad.urdf:5: ", {"'b' has two parents", "'j'", "'k'"});
+  expect_one(errors_of(link("a") + link("b") + link("c") + joint("j", "a", "b") +
+                       joint("k", "a", "c") + joint("l", "b", "c")),
+             "bad.urdf:7: ", {"'c' has two parents", "open the loop"});
+}
+
+TEST(UrdfErrors, SeveralRoots) {
+  expect_one(errors_of(link("a") + link("b") + link("c") + joint("j", "a", "b")),
+             "bad.urdf: ", {"2 roots ('a', 'c')", "expected one"});
+}
+
+TEST(UrdfErrors, TooManyJoints) {
+  const auto link_name = [](int i) { return std::string("l").append(std::to_string(i)); };
+  std::string inside = link("l0");
+  for (int i = 1; i <= GAITD_MAX_JOINTS; ++i) {
+    const std::string child = link_name(i);
+    inside += link(child) + joint(child, link_name(i - 1), child);
+  }
+  EXPECT_TRUE(errors_of(inside).empty());
+  expect_one(errors_of(inside + link("more") + joint("j", "l0", "more")),
+             "bad.urdf: ", {"65 moving joints", "64 at most", "fixed"});
+}
+
+TEST(UrdfErrors, Names) {
+  const std::string longest(GAITD_NAME_SIZE - 1, 'x');
+  EXPECT_TRUE(errors_of(link(longest)).empty());
+  expect_one(errors_of(link(longest + "x")), "bad.urdf:2: ", {"48 characters", "47 at most"});
+  expect_one(errors_of(link("")), "bad.urdf:2: ", {"'name'", "missing"});
+  expect_one(errors_of(link("a") + link("a")), "bad.urdf:3: ", {"twice", "line 2"});
+  expect_one(
+      errors_of(link("a") + link("b") + link("c") + joint("j", "a", "b") + joint("j", "a", "c")),
+      "bad.urdf:6: ", {"joint 'j' is there twice", "line 5"});
+  expect_one(load_urdf_text("<robot>" + link("a") + "</robot>").errors,
+             "<text>:1: ", {"robot", "'name'"});
+}
+
+TEST(UrdfErrors, UnknownLinks) {
+  expect_one(errors_of(link("a") + link("b") + joint("j", "a", "c")),
+             "bad.urdf:4: ", {"child link 'c' does not exist"});
+  expect_one(errors_of(link("a") + link("b") + joint("j", "c", "b")),
+             "bad.urdf:4: ", {"parent link 'c' does not exist"});
+  expect_one(errors_of(link("a") + "<joint name='j' type='fixed'><child link='a'/></joint>"),
+             "bad.urdf:3: ", {"no <parent>"});
+}
+
+TEST(UrdfErrors, Limits) {
+  expect_joint_error("", "revolute", {"'j'", "no <limit>", "lower, upper, velocity and effort"});
+  expect_joint_error("", "continuous", {"no <limit>", "velocity and effort"});
+  expect_joint_error("<limit lower='-1' upper='1' effort='1'/>", "revolute",
+                     {"'velocity'", "missing"});
+  expect_joint_error("<limit lower='-1' upper='1' effort='1' velocity='0'/>", "revolute",
+                     {"velocity limit is 0", "above 0"});
+  expect_joint_error("<limit lower='-1' upper='1' effort='0' velocity='1'/>", "prismatic",
+                     {"effort limit is 0", "above 0"});
+  expect_joint_error("<limit effort='1' velocity='1'/>", "revolute", {"lower < upper"});
+  expect_joint_error("<limit lower='x' upper='1' effort='1' velocity='1'/>", "revolute",
+                     {"'lower'", "'x'"});
+}
+
+TEST(UrdfErrors, JointFigures) {
+  const std::string limit = kLimit;
+  expect_joint_error(limit + "<axis xyz='0 0 0'/>", "revolute", {"axis is zero"});
+  expect_joint_error(limit + "<axis xyz='0 1'/>", "revolute", {"'0 1'", "three"});
+  expect_joint_error(limit + "<axis xyz='1-2-3'/>", "revolute", {"'1-2-3'", "three"});
+  expect_joint_error(limit + "<axis xyz='0 1 0 0'/>", "revolute", {"'0 1 0 0'", "three"});
+  expect_joint_error(limit + "<origin xyz='0,1,2'/>", "revolute", {"'0,1,2'", "three"});
+  expect_joint_error(limit + "<dynamics damping='-1'/>", "revolute", {"damping", "0 or above"});
+  expect_joint_error(limit + "<mimic joint='k'/>", "revolute", {"<mimic>", "fixed"});
+}
+
+TEST(UrdfErrors, JointTypes) {
+  expect_joint_error(kLimit, "floating", {"'j'", "'floating'", "expected revolute"});
+  expect_joint_error(kLimit, "planar", {"'planar'"});
+  expect_joint_error(kLimit, "hinge", {"'hinge'"});
+}
+
+TEST(UrdfErrors, RootLink) {
+  const std::string text =
+      "<robot name='r'>\n" + link("a") + link("b") + joint("j", "a", "b") + "</robot>";
+  UrdfOptions options;
+  options.root_link = "c";
+  expect_one(load_urdf_text(text, "bad.urdf", options).errors,
+             "bad.urdf: ", {"'c' does not exist"});
+  options.root_link = "b";
+  expect_one(load_urdf_text(text, "bad.urdf", options).errors,
+             "bad.urdf:4: ", {"'b' moves against the root 'a' by joint 'j'"});
+}
+
+TEST(UrdfErrors, AllAtOnce) {
+  const std::vector<std::string> errors =
+      errors_of(link("a", "") + link("b", "<inertial><mass value='1'/></inertial>") + link("c") +
+                joint("j", "a", "b", "") + joint("k", "b", "c", kLimit, "planar"));
+  std::string text;
+  for (const std::string& error : errors) text += error + "\n";
+  for (const char* part :
+       {"'a' moves but has no mass", "has no <inertia>", "has no <limit>", "'planar'"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << " not in:\n" << text;
+  }
+}
+
+}  // namespace
+}  // namespace gaitd::dynamics

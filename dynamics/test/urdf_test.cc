@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a good file becomes.
+#include "gaitd/dynamics/urdf.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "gaitd/dynamics/dynamics.h"
+
+namespace gaitd::dynamics {
+namespace {
+
+std::string link(const std::string& name, const std::string& mass = "2") {
+  return "<link name='" + name + "'><inertial><origin xyz='0.1 0.2 0.3' rpy='0.1 0.2 0.3'/><mass " +
+         "value='" + mass + "'/><inertia ixx='1' iyy='1.2' izz='0.9' ixy='0.1' ixz='0' " +
+         "iyz='-0.05'/></inertial></link>\n";
+}
+
+std::string joint(const std::string& name, const std::string& type, const std::string& parent,
+                  const std::string& child, const std::string& inside = "",
+                  const std::string& xyz = "0 0.1 -0.4") {
+  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent +
+         "'/><child link='" + child + "'/><origin xyz='" + xyz + "' rpy='0.5 -0.2 0.7'/>" + inside +
+         "</joint>\n";
+}
+
+const char kLimit[] = "<axis xyz='0 2 0'/><limit lower='-1' upper='2' velocity='3' effort='4'/>";
+
+std::string robot(const std::string& inside) {
+  return "<robot name='test'>\n" + inside + "</robot>\n";
+}
+
+std::string all(const std::vector<std::string>& errors) {
+  std::string text;
+  for (const std::string& error : errors) text += error + "\n";
+  return text;
+}
+
+TEST(Urdf, AtlasHasItsPublishedFigures) {
+  const UrdfResult result = load_urdf(GAITD_ATLAS_URDF);
+  ASSERT_TRUE(result.ok()) << all(result.errors);
+  const GaitdModel& model = result.model;
+  EXPECT_EQ(model.size, sizeof(GaitdModel));
+  EXPECT_STREQ(model.name, "atlas");
+  EXPECT_EQ(model.body_count, 31);
+  EXPECT_EQ(model.joint_count, 30);
+  EXPECT_EQ(result.links.size(), 31u);
+  EXPECT_NEAR(model.total_mass, 175.118, 0.0005);
+  EXPECT_STREQ(model.bodies[0].name, "pelvis");
+
+  const UrdfLink* foot = result.find_link("l_foot");
+  ASSERT_NE(foot, nullptr);
+  const GaitdJoint& ankle = model.joints[foot->body - 1];
+  EXPECT_STREQ(ankle.name, "l_leg_akx");
+  EXPECT_EQ(ankle.effort_limit, 360);
+  EXPECT_EQ(ankle.velocity_limit, 12);
+  EXPECT_EQ(ankle.position_min, -0.8);
+  EXPECT_EQ(model.bodies[foot->body].mass, 2.41);
+  EXPECT_EQ(result.find_link("no_such_link"), nullptr);
+}
+
+TEST(Urdf, AtlasIsSymmetricAndStandsOnItsSoles) {
+  const UrdfResult result = load_urdf(GAITD_ATLAS_URDF);
+  ASSERT_TRUE(result.ok()) << all(result.errors);
+  Kinematics kinematics(result.model);  // at zero: upright, legs straight
+  const Eigen::Vector3d left = kinematics.p_WB(result.find_link("l_foot")->body);
+  const Eigen::Vector3d right = kinematics.p_WB(result.find_link("r_foot")->body);
+  EXPECT_NEAR(left.y(), 0.089 + 0.0225, 1e-12);
+  EXPECT_NEAR(left.z(), -0.066 - 0.374 - 0.422, 1e-12);
+  EXPECT_NEAR((left - right.cwiseProduct(Eigen::Vector3d(1, -1, 1))).norm(), 0, 1e-12);
+  const Eigen::Vector3d hand = kinematics.p_WB(result.find_link("l_hand")->body);
+  EXPECT_GT(hand.y(), 0.5);  // arms to the side
+  EXPECT_NEAR(kinematics.com().y(), 0, 0.01);
+}
+
+TEST(Urdf, JointsAreNumberedDepthFirstAndAlphabetically) {
+  const UrdfResult result = load_urdf_text(robot(
+      link("root") + link("a") + link("b") + link("c") + link("d") +
+      joint("z", "revolute", "root", "a", kLimit) + joint("y", "revolute", "a", "b", kLimit) +
+      joint("m", "prismatic", "root", "c", kLimit) + joint("x", "revolute", "c", "d", kLimit)));
+  ASSERT_TRUE(result.ok()) << all(result.errors);
+  std::string order;
+  for (int i = 0; i < result.model.joint_count; ++i) order += result.model.joints[i].name;
+  EXPECT_EQ(order, "mxzy");
+  EXPECT_EQ(result.model.joints[0].type, GAITD_JOINT_PRISMATIC);
+  EXPECT_EQ(result.model.joints[1].parent_body, 1);
+  EXPECT_EQ(result.model.joints[2].parent_body, 0);
+  EXPECT_EQ(result.model.joints[3].parent_body, 3);
+  EXPECT_EQ(result.model.joints[0].axis[1], 1);  // normalised
+}
+
+// A robot with fixed links must move as if each had a joint of its own that never moves.
+TEST(Urdf, FixedLinksAreMergedExactly) {
+  const auto text = [](const std::string& type) {
+    return robot(link("root", "3") + link("mid", "0.5") + link("tip") + link("end") +
+                 joint("j1", type, "root", "mid", kLimit) +
+                 joint("j2", "revolute", "mid", "tip", kLimit, "0.2 -0.3 0.1") +
+                 joint("j3", type, "tip", "end", kLimit));
+  };
+  const UrdfResult merged = load_urdf_text(text("fixed"));
+  const UrdfResult moving = load_urdf_text(text("revolute"));
+  ASSERT_TRUE(merged.ok() && moving.ok()) << all(merged.errors) << all(moving.errors);
+  ASSERT_EQ(merged.model.joint_count, 1);
+  EXPECT_STREQ(merged.model.bodies[1].name, "tip");
+  Dynamics a(merged.model), b(moving.model);
+  const Eigen::Quaterniond R_WP(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+  Vector6d V;
+  V << 0.1, -0.4, 0.3, 1, 2, -0.5;
+  const Eigen::Vector3d p(1, 2, 3);
+  a.update(p, R_WP, V, Eigen::VectorXd::Constant(1, 0.4), Eigen::VectorXd::Constant(1, -2));
+  b.update(p, R_WP, V, Eigen::Vector3d(0, 0.4, 0), Eigen::Vector3d(0, -2, 0));
+  const std::vector<int> kept = {0, 1, 2, 3, 4, 5, 7};
+  EXPECT_LE((a.mass_matrix() - b.mass_matrix()(kept, kept)).norm(), 1e-12);
+  EXPECT_LE((a.bias() - b.bias()(kept)).norm(), 1e-12 * b.bias().norm());
+  EXPECT_LE((a.com() - b.com()).norm(), 1e-14);
+
+  ASSERT_EQ(merged.links.size(), 4u);
+  for (const UrdfLink& l : merged.links) {
+    const Eigen::Isometry3d X_WL =
+        a.X_WB(l.body) * Eigen::Translation3d(l.p_BL) * Eigen::Isometry3d(l.R_BL);
+    const Eigen::Isometry3d expected = b.X_WB(moving.find_link(l.name)->body);
+    EXPECT_LE((X_WL.matrix() - expected.matrix()).norm(), 1e-12) << l.name;
+  }
+}
+
+TEST(Urdf, ALinkFixedToTheRootCanBeTheBase) {
+  const std::string text = robot("<link name='base'/>" + link("pelvis") + link("leg") +
+                                 joint("weld", "fixed", "base", "pelvis") +
+                                 joint("hip", "revolute", "pelvis", "leg", kLimit));
+  UrdfOptions options;
+  options.root_link = "pelvis";
+  const UrdfResult result = load_urdf_text(text, "t", options);
+  ASSERT_TRUE(result.ok()) << all(result.errors);
+  EXPECT_STREQ(result.model.bodies[0].name, "pelvis");
+  EXPECT_LE(result.find_link("pelvis")->p_BL.norm(), 1e-15);
+  EXPECT_NEAR(result.model.bodies[0].com[0], 0.1, 1e-15);
+  EXPECT_NEAR(result.model.joints[0].origin[2], -0.4, 1e-15);
+  const UrdfLink* base = result.find_link("base");
+  EXPECT_NEAR((base->R_BL.inverse() * -base->p_BL - Eigen::Vector3d(0, 0.1, -0.4)).norm(), 0,
+              1e-15);
+}
+
+TEST(Urdf, ContinuousJointsHaveNoStopsAndDampingIsKept) {
+  const UrdfResult result =
+      load_urdf_text(robot(link("a") + link("b") +
+                           joint("j", "continuous", "a", "b",
+                                 "<limit velocity='3' effort='4'/><dynamics damping='0.25'/>")));
+  ASSERT_TRUE(result.ok()) << all(result.errors);
+  const GaitdJoint& j = result.model.joints[0];
+  EXPECT_EQ(j.type, GAITD_JOINT_REVOLUTE);
+  EXPECT_EQ(j.position_min, -1e9);
+  EXPECT_EQ(j.position_max, 1e9);
+  EXPECT_EQ(j.damping, 0.25);
+  EXPECT_EQ(j.axis[0], 1);  // the default axis
+}
+
+}  // namespace
+}  // namespace gaitd::dynamics

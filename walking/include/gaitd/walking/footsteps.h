@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "gaitd/abi/types.h"
+#include "gaitd/walking/commands.h"
+#include "gaitd/walking/parameters.h"
+#include "gaitd/walking/refusal.h"
+
+namespace gaitd::walking {
+
+using GaitParameters = sdk::Parameters<Gait>;
+
+// Footsteps ahead, first in first out, storage taken at construction.
+class FootstepQueue {
+ public:
+  explicit FootstepQueue(int capacity) : steps_(capacity) {}
+  int size() const { return count_; }
+  int free() const { return static_cast<int>(steps_.size()) - count_; }
+  const GaitdFootstep& operator[](int i) const { return steps_[index(i)]; }
+  GaitdFootstep& operator[](int i) { return steps_[index(i)]; }
+  void push(const GaitdFootstep& step) { steps_[index(count_++)] = step; }
+  void pop() {
+    first_ = index(1);
+    --count_;
+  }
+  void truncate(int size) { count_ = size < count_ ? size : count_; }
+
+ private:
+  int index(int i) const { return (first_ + i) % static_cast<int>(steps_.size()); }
+  std::vector<GaitdFootstep> steps_;
+  int first_ = 0;
+  int count_ = 0;
+};
+
+// Makes the footsteps of a walk command one by one. Footfall k stands at M_k, half the width to
+// its side; M_k = M_{k-1} * (length, lateral, turn); the closing step stands beside the last at M_N.
+class FootstepGenerator {
+ public:
+  // `middle` is the pose half-way between the feet (the last footfall's M when already walking).
+  // A lateral walk is widened so that the feet never come closer than the least separation.
+  FootstepGenerator(const WalkCommand& walk, const GaitdPose& middle, int first_side,
+                    double width, const GaitParameters& parameters);
+  int count() const { return walk_.steps + 1; }
+  // Footstep i of count(), in order; call with i = 0, 1, 2, …
+  GaitdFootstep next();
+
+ private:
+  WalkCommand walk_;
+  GaitdPose middle_;
+  int side_;
+  double width_;
+  int made_ = 0;
+};
+
+// Pose half-way between two soles: mean position and height, mean yaw, level.
+GaitdPose middle_pose(const GaitdPose& a, const GaitdPose& b);
+
+// Whether `step` can be taken from `stance`, the pose of the other foot. `number` names the
+// footstep in the message, from 1.
+Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, int number,
+                       const GaitParameters& parameters);
+
+}  // namespace gaitd::walking

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "gaitd/abi/types.h"
+#include "gaitd/walking/commands.h"
+#include "gaitd/walking/footsteps.h"
+#include "gaitd/walking/refusal.h"
+
+namespace gaitd::walking {
+
+// Owns the footsteps and decides the phase: stand -> transfer -> swing -> transfer -> … -> stand.
+// Swing k owns the transfer before it. All of it runs at tick boundaries; nothing allocates.
+class GaitMachine {
+ public:
+  explicit GaitMachine(const GaitdModel& model);
+
+  void set_parameter(int index, double value);
+  const GaitParameters& parameters() const { return parameters_; }
+
+  // Stands on both feet where `robot` says they are; drops all footsteps. Keeps the mode.
+  void reset(const GaitdRobotState& robot);
+
+  // Commands. A refusal changes nothing.
+  Refusal set_mode(int mode);
+  Refusal walk(const WalkCommand& walk);
+  // Appends the footsteps, or replaces all that have not begun. `count` at most
+  // kMaxFootstepsPerCommand. Zero durations and heights take the parameters.
+  Refusal footsteps(const GaitdFootstep* steps, int count, bool replace);
+  Refusal pause();
+  Refusal resume();
+  Refusal stop();
+  Refusal abort();
+
+  // One tick. `icp_reference` (m, W) is that of the tick before; `toe_off` and `adjustment` are
+  // the outputs of the tick before.
+  void update(double dt, const GaitdRobotState& robot, const GaitdIcpPlan& plan,
+              const GaitdToeOff& toe_off, const GaitdStepAdjustment& adjustment);
+
+  const GaitdGaitState& state() const { return state_; }
+  // Swing: where the swing foot left the ground (W).
+  const GaitdPose& lift_off() const { return lift_off_; }
+  bool walking() const { return state_.phase != GAITD_PHASE_STAND; }
+
+ private:
+  static constexpr int kQueueCapacity = 1024;
+
+  void begin_transfer(int trailing_side);
+  void begin_swing(const GaitdRobotState& robot);
+  void begin_stand();
+  void touch_down(const GaitdRobotState& robot, bool early);
+  void apply_pending_mode();
+  bool icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& plan) const;
+  // Copies the queue into the state, with shifts and height offset.
+  void publish_footsteps();
+  void changed() { ++state_.plan_revision; }
+  // First footstep in the queue that has not begun.
+  int first_free() const { return state_.phase == GAITD_PHASE_SWING ? 1 : 0; }
+  GaitdFootstep closing_step(const GaitdPose& stance, int side) const;
+  Refusal check_room(int count) const;
+  void complete(GaitdFootstep& step);
+
+  const GaitdModel model_;
+  GaitParameters parameters_;
+  FootstepQueue queue_{kQueueCapacity};
+  GaitdGaitState state_{};
+  GaitdPose lift_off_{};
+  Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();  // of the current step
+  double height_offset_ = 0.0;  // m, measured minus commanded height of the ground so far
+  int pending_mode_ = GAITD_MODE_WALK_BENT;
+  std::uint32_t next_id_ = 1;
+  double nominal_omega_;
+};
+
+}  // namespace gaitd::walking

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "gaitd/abi/plugin.h"
+#include "gaitd/walking/icp_trajectory.h"
+
+namespace gaitd::walking {
+
+// The ICP reference of every tick, continuous whatever happens to the plan (theory section 2).
+// The first transfer out of standing is fitted to the reference so far; at every later change (early
+// or late touchdown, moved, added or re-timed steps) the difference is kept and decays:
+//   xi_ref = xi_plan + delta,  delta' = -k delta,  r_ref = r_plan + (1 + k/w) delta
+class IcpReference {
+ public:
+  explicit IcpReference(const GaitdModel& model) : model_(model) {}
+
+  void reset() { state_ = {}; }
+  void get_state(GaitdIcpPlannerState& state) const { state = state_; }
+  void set_state(const GaitdIcpPlannerState& state) { state_ = state; }
+
+  // One tick of `dt` seconds. `decay` is k (1/s); `fit_limit` bounds how far the start of a first
+  // transfer may move (m).
+  void update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
+              const CmpOffsets& offsets, double decay, double fit_limit, GaitdIcpPlan& plan);
+
+ private:
+  const GaitdModel model_;
+  IcpTrajectory trajectory_;
+  GaitdIcpPlannerState state_{};
+};
+
+}  // namespace gaitd::walking

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "gaitd/abi/types.h"
+#include "gaitd/dynamics/kinematics.h"
+#include "gaitd/walking/com_height.h"
+#include "gaitd/walking/leg_configuration.h"
+#include "gaitd/walking/parameters.h"
+#include "gaitd/walking/swing_trajectory.h"
+
+namespace gaitd::walking {
+
+using ObjectiveParameters = sdk::Parameters<Objective>;
+
+// Turns the state of the robot and the gait into what the whole-body controller is to achieve: all
+// feedback laws live here, the controller is a pure inverse-dynamics optimisation.
+class ObjectiveBuilder {
+ public:
+  explicit ObjectiveBuilder(const GaitdModel& model);
+
+  void set_objective_parameter(int index, double value) { parameters_.set(index, value); }
+  void set_leg_parameter(int index, double value) { leg_parameters_.set(index, value); }
+  void set_swing_parameter(int index, double value) { swing_parameters_.set(index, value); }
+
+  // Takes the present posture as the start of every reference.
+  void reset(const GaitdRobotState& robot, const GaitdGaitState& gait);
+
+  // One tick of `dt` seconds. `lift_off` is where the swing foot left the ground (W).
+  void update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
+              const GaitdPose& lift_off, const GaitdStepAdjustment& adjustment,
+              const GaitdToeOff& toe_off, GaitdObjectives& objectives);
+
+  const LegConfiguration::Reference& leg(int side) const { return legs_[side].reference(); }
+
+ private:
+  void update_contacts(const GaitdGaitState& gait, const GaitdToeOff& toe_off,
+                       GaitdObjectives& out) const;
+  void update_momentum(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
+                       const GaitdStepAdjustment& adjustment, GaitdObjectives& out);
+  void update_upper_body(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
+                         GaitdObjectives& out);
+  void update_feet(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
+                   const GaitdPose& lift_off, const GaitdToeOff& toe_off, GaitdObjectives& out);
+  void add_stance_foot(int side, const GaitdRobotState& robot, GaitdObjectives& out) const;
+  void add_toe(int side, const GaitdRobotState& robot, const GaitdGaitState& gait,
+               const GaitdToeOff& toe_off, GaitdObjectives& out) const;
+  void add_swing_foot(int side, const GaitdRobotState& robot, const GaitdGaitState& gait,
+                      const GaitdPose& lift_off, GaitdObjectives& out);
+  void update_privileged(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
+                         GaitdObjectives& out);
+  GaitdTask& add_task(GaitdObjectives& out, int type, int index, std::uint32_t mask) const;
+  void add_orientation_task(int body, const Eigen::Quaterniond& goal,
+                            const Eigen::Vector3d& goal_rate, double stiffness,
+                            double damping_ratio, double weight, GaitdObjectives& out) const;
+  // Share of the full load that the contacts of a foot may carry now, 0..1.
+  double load_share(int side, const GaitdGaitState& gait) const;
+
+  const GaitdModel model_;
+  double weight_;      // N
+  double leg_length_;  // m, hip to ankle in the nominal posture
+  dynamics::Kinematics kinematics_;
+  Eigen::Quaterniond chest_in_pelvis_;
+  std::array<bool, GAITD_MAX_JOINTS> posture_joint_{};  // neither leg nor spine
+
+  ObjectiveParameters parameters_{kObjectiveParameters};
+  LegParameters leg_parameters_{kLegParameters};
+  SwingParameters swing_parameters_{kSwingParameters};
+
+  std::array<LegConfiguration, GAITD_MAX_FEET> legs_;
+  SwingTrajectory swing_;
+  int swing_step_ = -1;      // step index of the trajectory in swing_
+  int swing_revision_ = -1;  // plan revision it was made for
+  ReferenceFilter height_;
+  ReferenceFilter yaw_;
+  std::array<double, GAITD_MAX_FEET> time_in_contact_{};
+};
+
+}  // namespace gaitd::walking

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "gaitd/abi/types.h"
+#include "gaitd/walking/polygon.h"
+
+namespace gaitd::walking {
+
+// Part of the sole that a foothold may load, in W, seen from above. In toe contact only the toe
+// point; nothing when the foot is in the air.
+void add_foothold(const GaitdFoothold& foothold, const double (&toe_point)[3],
+                  ConvexPolygon& polygon);
+
+// Support polygon of the commanded contacts of `gait` (W, m).
+ConvexPolygon support_polygon(const GaitdModel& model, const GaitdGaitState& gait);
+
+// The foothold that a footstep becomes: its own polygon or the whole sole of the model.
+GaitdFoothold foothold_of(const GaitdModel& model, const GaitdFootstep& footstep);
+// A foothold at `pose` with the whole sole.
+GaitdFoothold whole_sole(const GaitdModel& model, int side, const GaitdPose& pose);
+
+// Extent of the loadable part of a foothold in the sole frame (m).
+struct SoleExtent {
+  double x_min, x_max, y_min, y_max;
+};
+SoleExtent sole_extent(const GaitdFoothold& foothold);
+
+// Middle of two footholds' loadable parts, in W (m): where the ICP rests when standing.
+Eigen::Vector2d middle(const GaitdFoothold& a, const GaitdFoothold& b);
+
+inline int other_side(int side) { return side == GAITD_LEFT ? GAITD_RIGHT : GAITD_LEFT; }
+// +1 for the left foot, -1 for the right one: the direction of "outwards" in y.
+inline double side_sign(int side) { return side == GAITD_LEFT ? 1.0 : -1.0; }
+
+}  // namespace gaitd::walking

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "gaitd/abi/types.h"
+#include "gaitd/walking/parameters.h"
+
+namespace gaitd::walking {
+
+using SwingParameters = sdk::Parameters<Swing>;
+
+// Quintic polynomial in time through position, velocity and acceleration at both ends.
+class Quintic {
+ public:
+  void fit(double x0, double v0, double a0, double x1, double v1, double a1, double duration);
+  double position(double t) const;
+  double velocity(double t) const;
+  double acceleration(double t) const;
+
+ private:
+  double c_[6] = {};
+};
+
+// Path of the sole of the swing foot in W, with continuous acceleration: from lift-off over an apex
+// above the higher of both footholds down to the foothold, which it meets with a downward velocity.
+// After the planned end it keeps going down at the late velocity until the ground is met.
+class SwingTrajectory {
+ public:
+  struct Sample {
+    Eigen::Vector3d position, velocity, acceleration;               // m, m/s, m/s^2, W
+    Eigen::Quaterniond orientation;                                 // sole in W
+    Eigen::Vector3d angular_velocity, angular_acceleration;         // rad/s, rad/s^2, W
+  };
+
+  // A new swing from rest at `from`, `duration` seconds long.
+  void begin(const GaitdPose& from, const GaitdFootstep& to, double duration,
+             const SwingParameters& parameters);
+  // The foothold or the timing changed at time t of the swing: goes on from the present reference,
+  // continuous in acceleration, and ends at `to` at `duration`.
+  void replan(double t, const GaitdFootstep& to, double duration,
+              const SwingParameters& parameters);
+  Sample evaluate(double t) const;
+
+ private:
+  void plan(double t, const Sample& now, const GaitdFootstep& to, double duration,
+            const SwingParameters& parameters);
+
+  double start_ = 0.0;     // s, of the polynomials below
+  double apex_ = 0.0;      // s, where z changes polynomial
+  double duration_ = 0.0;  // s, end of the swing
+  double apex_height_ = 0.0;
+  double late_velocity_ = 0.0;
+  Quintic x_, y_, z_up_, z_down_;
+  Quintic angle_;  // share of the rotation still to go
+  Eigen::Quaterniond from_orientation_ = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d rotation_ = Eigen::Vector3d::Zero();  // rotation vector to the end, W
+};
+
+}  // namespace gaitd::walking

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/walking/footsteps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
+
+namespace gaitd::walking {
+namespace {
+
+GaitdPose moved(const GaitdPose& pose, double x, double y, double yaw) {
+  GaitdPose result;
+  sdk::view(result.position) = sdk::transform(pose, {x, y, 0.0});
+  sdk::store(sdk::quaternion(pose.orientation) * sdk::from_yaw(yaw), result.orientation);
+  return result;
+}
+
+}  // namespace
+
+FootstepGenerator::FootstepGenerator(const WalkCommand& walk, const GaitdPose& middle,
+                                     int first_side, double width, const GaitParameters& p)
+    : walk_(walk), middle_(middle), side_(first_side), width_(width) {
+  width_ = std::max(width_, std::abs(walk.lateral) + p[Gait::kMinFootSeparation]);
+  if (walk_.swing_duration <= 0.0) walk_.swing_duration = p[Gait::kSwingDuration];
+  if (walk_.transfer_duration <= 0.0) walk_.transfer_duration = p[Gait::kTransferDuration];
+}
+
+GaitdFootstep FootstepGenerator::next() {
+  const bool closing = made_ >= walk_.steps;
+  if (!closing) middle_ = moved(middle_, walk_.length, walk_.lateral, walk_.turn);
+  GaitdFootstep step{};
+  step.side = side_;
+  step.closing = closing ? 1 : 0;
+  step.pose = moved(middle_, 0.0, 0.5 * side_sign(side_) * width_, 0.0);
+  step.swing_duration = walk_.swing_duration;
+  step.transfer_duration = walk_.transfer_duration;
+  side_ = other_side(side_);
+  ++made_;
+  return step;
+}
+
+GaitdPose middle_pose(const GaitdPose& a, const GaitdPose& b) {
+  GaitdPose m;
+  sdk::view(m.position) = 0.5 * (sdk::view(a.position) + sdk::view(b.position));
+  const double ya = sdk::yaw_of(sdk::quaternion(a.orientation));
+  const double yb = sdk::yaw_of(sdk::quaternion(b.orientation));
+  sdk::store(sdk::from_yaw(ya + 0.5 * std::remainder(yb - ya, 2.0 * M_PI)), m.orientation);
+  return m;
+}
+
+Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, int number,
+                       const GaitParameters& p) {
+  const char* side = step.side == GAITD_LEFT ? "left" : "right";
+  const Eigen::Quaterniond q = sdk::quaternion(step.pose.orientation);
+  if (!sdk::view(step.pose.position).allFinite() || !q.coeffs().allFinite() ||
+      std::abs(q.norm() - 1.0) > 1e-6) {
+    return refuse("footstep %d (%s): pose must be finite numbers; correct it and send again",
+                  number, side);
+  }
+  const Eigen::Vector3d rpy = sdk::roll_pitch_yaw(q);
+  const double stance_yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
+  const Eigen::Vector3d d = sdk::from_yaw(-stance_yaw) *
+                            (sdk::view(step.pose.position) - sdk::view(stance.position));
+  const double outwards = side_sign(step.side) * d.y();
+  const double turn = std::remainder(rpy.z() - stance_yaw, 2.0 * M_PI);
+  if (outwards < p[Gait::kMinFootSeparation] - 0.005) {
+    return refuse(
+        "footstep %d (%s): %.3f m beside the other foot, at least %.3f expected "
+        "(gait.min_foot_separation), or the legs cross; move it outwards",
+        number, side, outwards, p[Gait::kMinFootSeparation]);
+  }
+  if (outwards > p[Gait::kMaxFootSeparation]) {
+    return refuse(
+        "footstep %d (%s): %.3f m beside the other foot, at most %.3f expected "
+        "(gait.max_foot_separation); take more steps",
+        number, side, outwards, p[Gait::kMaxFootSeparation]);
+  }
+  if (d.x() > p[Gait::kMaxStepForward] || -d.x() > p[Gait::kMaxStepBackward]) {
+    return refuse(
+        "footstep %d (%s): %.3f m ahead of the other foot, %.3f to %.3f expected "
+        "(gait.max_step_backward, gait.max_step_forward); take more steps",
+        number, side, d.x(), -p[Gait::kMaxStepBackward], p[Gait::kMaxStepForward]);
+  }
+  if (std::abs(d.z()) > p[Gait::kMaxStepHeight]) {
+    return refuse(
+        "footstep %d (%s): %.3f m above the other foot, within %.3f expected "
+        "(gait.max_step_height); find lower footholds",
+        number, side, d.z(), p[Gait::kMaxStepHeight]);
+  }
+  if (std::abs(turn) > p[Gait::kMaxStepTurn]) {
+    return refuse(
+        "footstep %d (%s): turned by %.3f rad from the other foot, within %.3f expected "
+        "(gait.max_step_turn); take more steps",
+        number, side, turn, p[Gait::kMaxStepTurn]);
+  }
+  if (std::max(std::abs(rpy.x()), std::abs(rpy.y())) > p[Gait::kMaxStepTilt]) {
+    return refuse(
+        "footstep %d (%s): tilted by %.3f rad, within %.3f expected (gait.max_step_tilt); "
+        "find a flatter foothold",
+        number, side, std::max(std::abs(rpy.x()), std::abs(rpy.y())), p[Gait::kMaxStepTilt]);
+  }
+  return {};
+}
+
+}  // namespace gaitd::walking

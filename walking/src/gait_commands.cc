@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands of the gait machine: what operators and scenarios may ask of it.
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/gait_machine.h"
+#include "gaitd/walking/support.h"
+
+namespace gaitd::walking {
+namespace {
+
+// Feet this close to side by side need no closing step (m).
+constexpr double kClosedGap = 0.03;
+
+}  // namespace
+
+Refusal GaitMachine::check_room(int count) const {
+  if (count <= queue_.free()) return {};
+  return refuse("%d footsteps: the queue has room for %d of %d; send fewer, or wait", count,
+                queue_.free(), kQueueCapacity);
+}
+
+void GaitMachine::complete(GaitdFootstep& step) {
+  if (step.swing_duration <= 0.0) step.swing_duration = parameters_[Gait::kSwingDuration];
+  if (step.transfer_duration <= 0.0) step.transfer_duration = parameters_[Gait::kTransferDuration];
+  if (step.swing_height <= 0.0) step.swing_height = parameters_[Gait::kSwingHeight];
+  step.id = next_id_++;
+}
+
+Refusal GaitMachine::set_mode(int mode) {
+  if (mode < GAITD_MODE_STAND || mode > GAITD_MODE_WALK_BENT) {
+    return refuse("mode %d: stand, walk-straight or walk-bent expected", mode);
+  }
+  if (mode == GAITD_MODE_STAND && walking()) stop();
+  pending_mode_ = mode;
+  return {};
+}
+
+Refusal GaitMachine::walk(const WalkCommand& walk) {
+  if (pending_mode_ == GAITD_MODE_STAND) {
+    return refuse("walk: the gait mode is stand; choose one to walk in: gaitctl mode walk-bent");
+  }
+  if (Refusal r = check_room(walk.steps + 1); r.refused()) return r;
+  // The feet from which the first new footstep is taken: the last two places on the way.
+  GaitdPose feet[2] = {state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose};
+  for (int side = 0; side < 2; ++side) feet[side].position[2] -= height_offset_;
+  for (int i = 0; i < queue_.size(); ++i) feet[queue_[i].side] = queue_[i].pose;
+  int first = walk.first_side;
+  if (queue_.size() > 0) {
+    const int next = other_side(queue_[queue_.size() - 1].side);
+    if (first != GAITD_BOTH && first != next) {
+      return refuse("walk: the last footstep ahead is %s, so the first must be %s",
+                    next == GAITD_LEFT ? "right" : "left", next == GAITD_LEFT ? "left" : "right");
+    }
+    first = next;
+  } else if (first == GAITD_BOTH) {
+    // Into the walk with the foot on the side it goes to, so that the legs never close first.
+    first = walk.lateral > 0.0 || (walk.lateral == 0.0 && walk.turn > 0.0) ? GAITD_LEFT
+                                                                          : GAITD_RIGHT;
+  }
+  const double width = walk.width > 0.0 ? walk.width : model_.nominal_foot_separation;
+  if (width < parameters_[Gait::kMinFootSeparation]) {
+    return refuse("walk: width %.3f m, at least %.3f expected (gait.min_foot_separation)", width,
+                  parameters_[Gait::kMinFootSeparation]);
+  }
+  GaitdPose middle = middle_pose(feet[GAITD_LEFT], feet[GAITD_RIGHT]);
+  FootstepGenerator check(walk, middle, first, width, parameters_);
+  GaitdPose stance = feet[other_side(first)];
+  for (int i = 0; i < check.count(); ++i) {
+    const GaitdFootstep step = check.next();
+    if (Refusal r = check_footstep(step, stance, i + 1, parameters_); r.refused()) return r;
+    stance = step.pose;
+  }
+  FootstepGenerator generator(walk, middle, first, width, parameters_);
+  for (int i = 0; i < generator.count(); ++i) {
+    GaitdFootstep step = generator.next();
+    complete(step);
+    queue_.push(step);
+  }
+  publish_footsteps();
+  changed();
+  return {};
+}
+
+Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool replace) {
+  if (pending_mode_ == GAITD_MODE_STAND) {
+    return refuse("steps: the gait mode is stand; choose one to walk in: gaitctl mode walk-bent");
+  }
+  // A transfer has chosen its foot: its footstep may be replaced by one of the same side only.
+  const bool committed = state_.phase == GAITD_PHASE_TRANSFER && state_.transfer_final == 0;
+  const int kept = replace ? std::min(first_free(), queue_.size()) : queue_.size();
+  if (count < 1 && !(replace && !committed)) return refuse("steps: at least one expected, got none");
+  if (Refusal r = check_room(count - (queue_.size() - kept)); r.refused()) return r;
+  GaitdPose feet[2] = {state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose};
+  for (int side = 0; side < 2; ++side) feet[side].position[2] -= height_offset_;
+  for (int i = 0; i < kept; ++i) feet[queue_[i].side] = queue_[i].pose;
+  int expected = kept > 0 ? other_side(queue_[kept - 1].side) : GAITD_BOTH;
+  if (kept == 0 && committed) expected = state_.next_side;
+  for (int i = 0; i < count; ++i) {
+    const GaitdFootstep& step = steps[i];
+    if (step.side != GAITD_LEFT && step.side != GAITD_RIGHT) {
+      return refuse("footstep %d: side left or right expected", i + 1);
+    }
+    if (expected != GAITD_BOTH && step.side != expected) {
+      return refuse("footstep %d: side %s expected, because feet alternate%s, got %s", i + 1,
+                    expected == GAITD_LEFT ? "left" : "right",
+                    i == 0 ? " with the footsteps already ahead" : "",
+                    step.side == GAITD_LEFT ? "left" : "right");
+    }
+    if (Refusal r = check_footstep(step, feet[other_side(step.side)], i + 1, parameters_);
+        r.refused()) {
+      return r;
+    }
+    feet[step.side] = step.pose;
+    expected = other_side(step.side);
+  }
+  queue_.truncate(kept);
+  for (int i = 0; i < count; ++i) {
+    GaitdFootstep step = steps[i];
+    complete(step);
+    queue_.push(step);
+  }
+  publish_footsteps();
+  changed();
+  return {};
+}
+
+Refusal GaitMachine::pause() {
+  state_.paused = 1;
+  publish_footsteps();
+  changed();
+  return {};
+}
+
+Refusal GaitMachine::resume() {
+  state_.paused = 0;
+  publish_footsteps();
+  changed();
+  return {};
+}
+
+GaitdFootstep GaitMachine::closing_step(const GaitdPose& stance, int side) const {
+  GaitdFootstep step{};
+  step.side = side;
+  step.closing = 1;
+  const double yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
+  GaitdPose level = stance;
+  sdk::store(sdk::from_yaw(yaw), level.orientation);
+  sdk::view(step.pose.position) = sdk::transform(
+      level, {0.0, side_sign(side) * model_.nominal_foot_separation, 0.0});
+  sdk::store(sdk::from_yaw(yaw), step.pose.orientation);
+  return step;
+}
+
+Refusal GaitMachine::stop() {
+  state_.paused = 0;
+  const int kept = std::min(first_free(), queue_.size());
+  GaitdPose stance;
+  int side;
+  if (kept > 0) {  // finish the swing, then close beside it
+    stance = queue_[0].pose;
+    side = other_side(queue_[0].side);
+  } else if (state_.phase == GAITD_PHASE_TRANSFER && state_.transfer_final == 0) {
+    side = state_.next_side;
+    stance = state_.footholds[other_side(side)].pose;
+    stance.position[2] -= height_offset_;
+  } else {
+    queue_.truncate(0);
+    publish_footsteps();
+    changed();
+    return {};
+  }
+  const GaitdFootstep current = queue_[0];
+  queue_.truncate(kept);
+  GaitdFootstep step = closing_step(stance, side);
+  GaitdPose standing = state_.footholds[side].pose;
+  standing.position[2] -= height_offset_;
+  const double gap = (sdk::view(standing.position) - sdk::view(step.pose.position)).norm();
+  if (kept > 0 && gap < kClosedGap) {
+    publish_footsteps();
+    changed();
+    return {};
+  }
+  step.swing_duration = current.swing_duration;
+  step.transfer_duration = current.transfer_duration;
+  complete(step);
+  queue_.push(step);
+  publish_footsteps();
+  changed();
+  return {};
+}
+
+Refusal GaitMachine::abort() {
+  state_.paused = 0;
+  const bool committed = state_.phase == GAITD_PHASE_SWING ||
+                         (state_.phase == GAITD_PHASE_TRANSFER && state_.transfer_final == 0);
+  queue_.truncate(committed ? 1 : 0);
+  publish_footsteps();
+  changed();
+  return {};
+}
+
+}  // namespace gaitd::walking

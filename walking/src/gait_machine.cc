@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/walking/gait_machine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
+
+namespace gaitd::walking {
+
+GaitMachine::GaitMachine(const GaitdModel& model)
+    : model_(model),
+      parameters_(kGaitParameters),
+      nominal_omega_(std::sqrt(model.gravity / model.nominal_com_height)) {
+  state_.size = sizeof(state_);
+  state_.mode = GAITD_MODE_WALK_BENT;
+  state_.next_side = GAITD_BOTH;
+  state_.trailing_side = GAITD_BOTH;
+  state_.support = GAITD_BOTH;
+  state_.omega = nominal_omega_;
+  for (auto& foothold : state_.footholds) {
+    foothold.pose.orientation[3] = 1.0;
+    foothold.contact = GAITD_CONTACT_FULL;
+  }
+}
+
+void GaitMachine::set_parameter(int index, double value) {
+  parameters_.set(index, value);
+  const double omega = parameters_[Gait::kOmega];
+  state_.omega = omega > 0.0 ? omega : nominal_omega_;
+}
+
+void GaitMachine::reset(const GaitdRobotState& robot) {
+  queue_.truncate(0);
+  shift_.setZero();
+  height_offset_ = 0.0;
+  state_.step_index = 0;
+  state_.paused = 0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    GaitdPose pose;
+    sdk::view(pose.position) = sdk::view(robot.feet[side].position);
+    sdk::store(sdk::quaternion(robot.feet[side].orientation), pose.orientation);
+    state_.footholds[side] = whole_sole(model_, side, pose);
+  }
+  begin_stand();
+}
+
+void GaitMachine::apply_pending_mode() { state_.mode = pending_mode_; }
+
+void GaitMachine::begin_stand() {
+  apply_pending_mode();
+  state_.phase = GAITD_PHASE_STAND;
+  state_.support = GAITD_BOTH;
+  state_.next_side = GAITD_BOTH;
+  state_.trailing_side = GAITD_BOTH;
+  state_.transfer_final = 0;
+  state_.time_in_phase = 0.0;
+  state_.phase_duration = 0.0;
+  state_.time_remaining = 0.0;
+  state_.early_contact = 0;
+  state_.late_contact = 0;
+  changed();
+  publish_footsteps();
+}
+
+void GaitMachine::begin_transfer(int trailing_side) {
+  const bool final = queue_.size() == 0 || state_.paused != 0;
+  state_.phase = GAITD_PHASE_TRANSFER;
+  state_.support = GAITD_BOTH;
+  state_.trailing_side = trailing_side;
+  state_.transfer_final = final ? 1 : 0;
+  state_.time_in_phase = 0.0;
+  state_.final_transfer_duration = parameters_[Gait::kFinalTransferDuration];
+  if (final) {
+    state_.phase_duration = state_.final_transfer_duration;
+    state_.next_side = GAITD_BOTH;
+  } else {
+    state_.phase_duration = queue_[0].transfer_duration;
+    if (trailing_side == GAITD_BOTH) {
+      state_.phase_duration =
+          std::max(state_.phase_duration, parameters_[Gait::kInitialTransferDuration]);
+    }
+    state_.next_side = queue_[0].side;
+    ++state_.step_index;
+  }
+  state_.time_remaining = state_.phase_duration;
+  changed();
+  publish_footsteps();
+}
+
+void GaitMachine::begin_swing(const GaitdRobotState& robot) {
+  const int side = queue_[0].side;
+  state_.phase = GAITD_PHASE_SWING;
+  state_.support = other_side(side);
+  state_.next_side = side;
+  state_.time_in_phase = 0.0;
+  state_.phase_duration = queue_[0].swing_duration;
+  state_.time_remaining = state_.phase_duration;
+  state_.early_contact = 0;
+  state_.late_contact = 0;
+  state_.footholds[side].contact = GAITD_CONTACT_NONE;
+  shift_.setZero();
+  sdk::view(lift_off_.position) = sdk::view(robot.feet[side].position);
+  sdk::store(sdk::quaternion(robot.feet[side].orientation), lift_off_.orientation);
+  changed();
+  publish_footsteps();
+}
+
+void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
+  GaitdFootstep landed = state_.adjusted[0];
+  const int side = landed.side;
+  // The ground is where the foot met it: later footholds keep their heights relative to this one.
+  const double height_error = robot.feet[side].position[2] - landed.pose.position[2];
+  height_offset_ += height_error;
+  sdk::view(landed.pose.position) = sdk::view(robot.feet[side].position);
+  state_.footholds[side] = foothold_of(model_, landed);
+  state_.early_contact = early ? 1 : 0;
+  queue_.pop();
+  shift_.setZero();
+  apply_pending_mode();
+  begin_transfer(other_side(side));
+}
+
+bool GaitMachine::icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& plan) const {
+  const Eigen::Vector2d error = sdk::view(robot.icp) - sdk::view(plan.icp);
+  const Eigen::Quaterniond heading = sdk::quaternion(
+      middle_pose(state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose)
+          .orientation);
+  const Eigen::Vector3d local = heading.conjugate() * Eigen::Vector3d(error.x(), error.y(), 0.0);
+  return std::abs(local.x()) <= parameters_[Gait::kIcpErrorForward] &&
+         std::abs(local.y()) <= parameters_[Gait::kIcpErrorSideways];
+}
+
+void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcpPlan& plan,
+                         const GaitdToeOff& toe_off, const GaitdStepAdjustment& adjustment) {
+  state_.time_in_phase += dt;
+  const double end = state_.phase_duration - 0.5 * dt;
+  const bool over = state_.time_in_phase >= end;
+  switch (state_.phase) {
+    case GAITD_PHASE_STAND:
+      apply_pending_mode();
+      if (queue_.size() > 0 && state_.paused == 0) begin_transfer(GAITD_BOTH);
+      break;
+    case GAITD_PHASE_TRANSFER: {
+      const int trailing = state_.trailing_side;
+      if (trailing != GAITD_BOTH && state_.transfer_final == 0) {
+        state_.footholds[trailing].contact =
+            toe_off.active != 0 && toe_off.side == trailing ? GAITD_CONTACT_TOE
+                                                            : GAITD_CONTACT_FULL;
+      }
+      if (state_.transfer_final != 0) {
+        if (queue_.size() > 0 && state_.paused == 0) {
+          begin_transfer(GAITD_BOTH);
+        } else if (over) {
+          begin_stand();
+        }
+      } else if (over && (icp_ready(robot, plan) ||
+                          state_.time_in_phase >= end + parameters_[Gait::kTransferPatience])) {
+        begin_swing(robot);
+      }
+      break;
+    }
+    case GAITD_PHASE_SWING: {
+      if (adjustment.active != 0) {
+        shift_ = sdk::view(adjustment.shift);
+        state_.phase_duration += adjustment.time_shift;
+        changed();
+        publish_footsteps();
+      }
+      const double weight = model_.total_mass * model_.gravity;
+      const bool loaded = robot.feet[state_.next_side].normal_force >
+                          parameters_[Gait::kTouchdownForce] * weight;
+      const bool credible = state_.time_in_phase >=
+                            parameters_[Gait::kTouchdownFraction] * state_.phase_duration;
+      state_.late_contact = over && !loaded ? 1 : 0;
+      if (loaded && credible) touch_down(robot, !over);
+      break;
+    }
+    default:
+      break;
+  }
+  state_.time_remaining = std::max(0.0, state_.phase_duration - state_.time_in_phase);
+}
+
+void GaitMachine::publish_footsteps() {
+  // Paused on the way: the plan ends after the step that has begun.
+  const int visible = state_.paused != 0 && walking() ? 1 : GAITD_MAX_FOOTSTEPS;
+  state_.footstep_count = std::min<int>(queue_.size(), visible);
+  for (int i = 0; i < state_.footstep_count; ++i) {
+    state_.commanded[i] = queue_[i];
+    state_.adjusted[i] = queue_[i];
+    state_.adjusted[i].pose.position[2] += height_offset_;
+  }
+  if (state_.footstep_count > 0) {
+    for (int k = 0; k < 3; ++k) state_.adjusted[0].pose.position[k] += shift_[k];
+  }
+}
+
+}  // namespace gaitd::walking

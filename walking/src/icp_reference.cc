@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/walking/icp_reference.h"
+
+#include <algorithm>
+
+#include "gaitd/sdk/views.h"
+
+namespace gaitd::walking {
+
+using sdk::view;
+
+void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
+                          const CmpOffsets& offsets, double decay, double fit_limit,
+                          GaitdIcpPlan& plan) {
+  const bool first = state_.size == 0;
+  const bool changed = first || state_.plan_revision != gait.plan_revision;
+  auto icp = view(state_.icp);
+  auto delta = view(state_.offset);
+  auto start = view(state_.start_ecmp);
+  const double omega = gait.omega;
+
+  trajectory_.build(model_, gait, offsets);
+  const bool from_standing = gait.phase == GAITD_PHASE_TRANSFER && gait.trailing_side == GAITD_BOTH;
+  if (from_standing) {
+    // A transfer that has just begun, or one that another variant began, is fitted once.
+    const bool begun = gait.phase != state_.phase || gait.time_in_phase < 0.5 * dt;
+    if (begun || state_.start_ecmp_valid == 0) {
+      trajectory_.fit_start(first ? Eigen::Vector2d(view(robot.icp)) : Eigen::Vector2d(icp),
+                            fit_limit);
+      start = trajectory_.start();
+      state_.start_ecmp_valid = 1;
+    } else {
+      trajectory_.set_start(start);
+    }
+  } else {
+    state_.start_ecmp_valid = 0;
+  }
+
+  IcpTrajectory::Sample s;
+  if (trajectory_.empty()) {
+    s.icp = s.icp_end = s.ecmp = trajectory_.rest();
+    s.icp_velocity.setZero();
+  } else {
+    s = trajectory_.evaluate(gait.time_remaining);
+  }
+  if (changed) {
+    // state_.icp already holds the prediction for this tick.
+    delta = (first ? Eigen::Vector2d(view(robot.icp)) : Eigen::Vector2d(icp)) - s.icp;
+  } else {
+    delta *= std::max(0.0, 1.0 - decay * dt);
+  }
+
+  plan.size = sizeof(plan);
+  view(plan.icp) = s.icp + delta;
+  view(plan.ecmp) = s.ecmp + (1.0 + decay / omega) * delta;
+  view(plan.icp_velocity) = omega * (view(plan.icp) - view(plan.ecmp));
+  view(plan.icp_end) = s.icp_end;
+  view(plan.offset) = delta;
+  view(plan.com) = view(robot.com).head<2>();
+  view(plan.com_velocity) = omega * (view(plan.icp) - view(plan.com));
+  plan.kappa = robot.com[2] > 0.0 ? model_.nominal_com_height * omega * omega / model_.gravity : 1.0;
+  plan.time_remaining = gait.time_remaining;
+  for (int i = 0; i < GAITD_MAX_FOOTSTEPS; ++i) {
+    plan.gamma[i] =
+        i < gait.footstep_count ? trajectory_.gamma(i, gait.time_remaining) : 0.0;
+  }
+
+  state_.size = sizeof(state_);
+  state_.phase = gait.phase;
+  state_.plan_revision = gait.plan_revision;
+  icp = view(plan.icp) + dt * view(plan.icp_velocity);
+}
+
+}  // namespace gaitd::walking

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/walking/objectives.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
+
+namespace gaitd::walking {
+namespace {
+
+using sdk::view;
+
+constexpr double kHeightRate = 8.0;  // 1/s, of the reference filter of the CoM height
+constexpr double kYawRate = 6.0;     // 1/s, of the reference filter of the heading
+constexpr std::uint32_t kAngularRows = 0b000111;
+constexpr std::uint32_t kLinearRows = 0b111000;
+constexpr std::uint32_t kAllRows = 0b111111;
+
+double damping(double stiffness, double ratio) { return 2.0 * ratio * std::sqrt(stiffness); }
+
+Eigen::Vector3d rotation_error(const Eigen::Quaterniond& goal, const Eigen::Quaterniond& now) {
+  return sdk::log_so3(goal * now.conjugate());
+}
+
+double heading(const GaitdPose& pose) { return sdk::yaw_of(sdk::quaternion(pose.orientation)); }
+
+double mean_heading(double a, double b) { return a + 0.5 * std::remainder(b - a, 2.0 * M_PI); }
+
+// Heading that the body turns to: half-way between the feet it will stand on next.
+double heading_target(const GaitdGaitState& gait) {
+  const double left = heading(gait.footholds[GAITD_LEFT].pose);
+  const double right = heading(gait.footholds[GAITD_RIGHT].pose);
+  if (gait.phase != GAITD_PHASE_SWING) return mean_heading(left, right);
+  return mean_heading(heading(gait.footholds[gait.support].pose), heading(gait.adjusted[0].pose));
+}
+
+}  // namespace
+
+ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
+    : model_(model), weight_(model.total_mass * model.gravity), kinematics_(model) {
+  kinematics_.update(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(), sdk::Vector6d::Zero(),
+                     sdk::head(model_.nominal_position, model_.joint_count),
+                     Eigen::VectorXd::Zero(model_.joint_count));
+  chest_in_pelvis_ = Eigen::Quaterniond(kinematics_.R_WB(model_.chest_body));
+  const GaitdLeg& leg = model_.legs[GAITD_LEFT];
+  const Eigen::Vector3d hip = kinematics_.p_WB(model_.joints[leg.hip_pitch].child_body);
+  const Eigen::Vector3d ankle = kinematics_.p_WB(model_.joints[leg.ankle_pitch].child_body);
+  leg_length_ = (hip - ankle).norm();
+  posture_joint_.fill(false);
+  for (int i = 0; i < model_.joint_count; ++i) posture_joint_[i] = true;
+  for (const GaitdLeg& l : model_.legs) {
+    for (int i = 0; i < l.joint_count; ++i) posture_joint_[l.joints[i]] = false;
+  }
+  for (int body = model_.chest_body; body > 0; body = model_.bodies[body].parent) {
+    posture_joint_[model_.bodies[body].joint] = false;
+  }
+}
+
+void ObjectiveBuilder::reset(const GaitdRobotState& robot, const GaitdGaitState& gait) {
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const GaitdLeg& leg = model_.legs[side];
+    legs_[side].reset(leg.knee_bend_sign * robot.joint_position[leg.knee]);
+    time_in_contact_[side] = 1e3;
+  }
+  swing_step_ = -1;
+  height_.reset(robot.com[2]);
+  yaw_.reset(sdk::yaw_of(sdk::quaternion(robot.pelvis_orientation)));
+}
+
+void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
+                              const GaitdPose& lift_off, const GaitdStepAdjustment& adjustment,
+                              const GaitdToeOff& toe_off, GaitdObjectives& out) {
+  kinematics_.update(view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
+                     view(robot.pelvis_twist), sdk::head(robot.joint_position, model_.joint_count),
+                     sdk::head(robot.joint_velocity, model_.joint_count));
+  out.size = sizeof(out);
+  out.task_count = 0;
+  out.contact_count = 0;
+  out.rho_weight = parameters_[Objective::kRhoWeight] / (weight_ * weight_);
+  out.rho_rate_weight =
+      parameters_[Objective::kRhoRateWeight] / (weight_ * weight_) * (1e-3 / dt) * 1e3;
+  out.acceleration_weight = parameters_[Objective::kAccelerationWeight];
+  std::copy(std::begin(robot.external_wrench), std::end(robot.external_wrench),
+            out.external_wrench);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const bool touching = gait.footholds[side].contact != GAITD_CONTACT_NONE;
+    time_in_contact_[side] = touching ? time_in_contact_[side] + dt : 0.0;
+  }
+  update_contacts(gait, toe_off, out);
+  update_momentum(dt, robot, gait, adjustment, out);
+  update_upper_body(dt, robot, gait, out);
+  update_feet(dt, robot, gait, lift_off, toe_off, out);
+  update_privileged(dt, robot, gait, out);
+  for (int i = 0; i < GAITD_MAX_JOINTS; ++i) out.joint_stiffness[i] = out.joint_damping[i] = 0.0;
+}
+
+double ObjectiveBuilder::load_share(int side, const GaitdGaitState& gait) const {
+  const double ramp = parameters_[Objective::kContactRamp];
+  if (ramp <= 0.0) return 1.0;
+  double share = std::min(1.0, time_in_contact_[side] / ramp);
+  const bool leaving = gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 &&
+                       gait.next_side == side;
+  if (leaving) share = std::min(share, gait.time_remaining / ramp);
+  return std::clamp(share, 0.0, 1.0);
+}
+
+void ObjectiveBuilder::update_contacts(const GaitdGaitState& gait, const GaitdToeOff& toe_off,
+                                       GaitdObjectives& out) const {
+  const double rho_max = parameters_[Objective::kRhoMax] * weight_;
+  const double rho_min = parameters_[Objective::kRhoMin] * weight_;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const GaitdFoothold& foothold = gait.footholds[side];
+    if (foothold.contact == GAITD_CONTACT_NONE) continue;
+    const GaitdFoot& foot = model_.feet[side];
+    const bool toe = toe_off.active != 0 && toe_off.side == side;
+    const Eigen::Quaterniond sole = sdk::quaternion(foothold.pose.orientation);
+    const double share = load_share(side, gait);
+    const int points = toe ? 1 : foothold.polygon_count;
+    for (int i = 0; i < points && out.contact_count < GAITD_MAX_CONTACTS; ++i) {
+      GaitdContactPoint& c = out.contacts[out.contact_count++];
+      c.side = side;
+      c.body = foot.body;
+      const Eigen::Vector3d in_sole =
+          toe ? Eigen::Vector3d(view(toe_off.toe_point))
+              : Eigen::Vector3d(foothold.contact_polygon[i][0], foothold.contact_polygon[i][1], 0);
+      view(c.point) =
+          view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole;
+      view(c.normal) = sole * Eigen::Vector3d::UnitZ();
+      view(c.tangent) = sole * Eigen::Vector3d::UnitX();
+      c.friction = parameters_[Objective::kFriction];
+      c.rho_max = std::max(share * share * rho_max, 1e-3);
+      c.rho_min = std::min(rho_min, 0.5 * c.rho_max);
+    }
+  }
+}
+
+void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
+                                       const GaitdGaitState& gait,
+                                       const GaitdStepAdjustment& adjustment,
+                                       GaitdObjectives& out) {
+  const double mass = model_.total_mass;
+  const double standing = parameters_[Objective::kComHeight] * model_.nominal_com_height;
+  out.height_target = com_height_target(gait, standing, leg_length_, model_.nominal_foot_separation);
+  height_.update(dt, out.height_target, kHeightRate);
+  const double stiffness = parameters_[Objective::kHeightStiffness];
+  const double limit = parameters_[Objective::kHeightAccelerationLimit] * model_.gravity;
+  const double wanted =
+      height_.acceleration() + stiffness * (height_.value() - robot.com[2]) +
+      damping(stiffness, parameters_[Objective::kHeightDampingRatio]) *
+          (height_.velocity() - robot.com_velocity[2]);
+  for (int i = 0; i < 3; ++i) out.momentum_rate[i] = adjustment.angular_momentum_rate[i];
+  out.momentum_rate[3] = adjustment.linear_momentum_rate[0];
+  out.momentum_rate[4] = adjustment.linear_momentum_rate[1];
+  out.momentum_rate[5] = mass * std::clamp(wanted, -limit, limit);
+  const double horizontal = parameters_[Objective::kMomentumWeight] / (mass * mass);
+  const double vertical = parameters_[Objective::kMomentumHeightWeight] / (mass * mass);
+  for (int i = 0; i < 6; ++i) out.momentum_weight[i] = i == 5 ? vertical : horizontal;
+  const bool straight = gait.mode == GAITD_MODE_WALK_STRAIGHT;
+  out.momentum_mask = (static_cast<std::uint32_t>(adjustment.angular_momentum_mask) & kAngularRows) |
+                      (straight ? 0b011000u : kLinearRows);
+}
+
+GaitdTask& ObjectiveBuilder::add_task(GaitdObjectives& out, int type, int index,
+                                      std::uint32_t mask) const {
+  // Pelvis, chest and at most two for each foot: always room.
+  GaitdTask& task = out.tasks[std::min<int>(out.task_count, GAITD_MAX_TASKS - 1)];
+  if (out.task_count < GAITD_MAX_TASKS) ++out.task_count;
+  task = {};
+  task.type = type;
+  task.index = index;
+  task.row_mask = mask;
+  task.axes[3] = 1.0;
+  return task;
+}
+
+void ObjectiveBuilder::add_orientation_task(int body, const Eigen::Quaterniond& goal,
+                                            const Eigen::Vector3d& goal_rate, double stiffness,
+                                            double damping_ratio, double weight,
+                                            GaitdObjectives& out) const {
+  GaitdTask& task = add_task(out, GAITD_TASK_FRAME, body, kAngularRows);
+  const Eigen::Quaterniond now(kinematics_.R_WB(body));
+  const Eigen::Vector3d rate = kinematics_.body_twist(body).head<3>();
+  view(task.acceleration).head<3>() = stiffness * rotation_error(goal, now) +
+                                      damping(stiffness, damping_ratio) * (goal_rate - rate);
+  view(task.weight).head<3>().setConstant(weight);
+}
+
+void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot,
+                                         const GaitdGaitState& gait, GaitdObjectives& out) {
+  // Unwrapped, so that the filter never turns the long way round.
+  const double target = heading_target(gait);
+  yaw_.update(dt, yaw_.value() + std::remainder(target - yaw_.value(), 2.0 * M_PI), kYawRate);
+  const Eigen::Quaterniond goal = sdk::from_yaw(yaw_.value());
+  const Eigen::Vector3d rate(0.0, 0.0, yaw_.velocity());
+  add_orientation_task(0, goal, rate, parameters_[Objective::kPelvisStiffness],
+                       parameters_[Objective::kPelvisDampingRatio],
+                       parameters_[Objective::kPelvisWeight], out);
+  if (model_.chest_body > 0) {
+    add_orientation_task(model_.chest_body, goal * chest_in_pelvis_, rate,
+                         parameters_[Objective::kChestStiffness],
+                         parameters_[Objective::kChestDampingRatio],
+                         parameters_[Objective::kChestWeight], out);
+  }
+  const double stiffness = parameters_[Objective::kPostureStiffness];
+  const double rate_gain = damping(stiffness, parameters_[Objective::kPostureDampingRatio]);
+  for (int i = 0; i < model_.joint_count; ++i) {
+    out.posture_weight[i] = posture_joint_[i] ? parameters_[Objective::kPostureWeight] : 0.0;
+    out.posture_acceleration[i] =
+        stiffness * (model_.nominal_position[i] - robot.joint_position[i]) -
+        rate_gain * robot.joint_velocity[i];
+  }
+}
+
+void ObjectiveBuilder::update_feet(double dt, const GaitdRobotState& robot,
+                                   const GaitdGaitState& gait, const GaitdPose& lift_off,
+                                   const GaitdToeOff& toe_off, GaitdObjectives& out) {
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    if (gait.footholds[side].contact == GAITD_CONTACT_NONE) {
+      add_swing_foot(side, robot, gait, lift_off, out);
+    } else if (toe_off.active != 0 && toe_off.side == side) {
+      add_toe(side, robot, gait, toe_off, out);
+    } else {
+      add_stance_foot(side, robot, out);
+    }
+  }
+}
+
+void ObjectiveBuilder::add_stance_foot(int side, const GaitdRobotState& robot,
+                                       GaitdObjectives& out) const {
+  const GaitdFoot& foot = model_.feet[side];
+  GaitdTask& task = add_task(out, GAITD_TASK_FRAME, foot.body, kAllRows);
+  view(task.point) = view(foot.sole.origin);
+  view(task.acceleration) =
+      -parameters_[Objective::kStanceDamping] * view(robot.feet[side].twist);
+  view(task.weight).setConstant(parameters_[Objective::kStanceWeight]);
+}
+
+void ObjectiveBuilder::add_toe(int side, const GaitdRobotState& robot, const GaitdGaitState& gait,
+                               const GaitdToeOff& toe_off, GaitdObjectives& out) const {
+  const GaitdFoot& foot = model_.feet[side];
+  const Eigen::Vector3d in_sole = view(toe_off.toe_point);
+  const Eigen::Vector3d in_body =
+      view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole;
+  const GaitdPose& hold = gait.footholds[side].pose;
+  // The point is held where the foothold has it; rows along the axes of the foothold.
+  GaitdTask& point = add_task(out, GAITD_TASK_FRAME, foot.body, kLinearRows);
+  view(point.point) = in_body;
+  const double stiffness = parameters_[Objective::kToeStiffness];
+  const double ratio = parameters_[Objective::kToeDampingRatio];
+  view(point.acceleration).tail<3>() =
+      stiffness * (sdk::transform(hold, in_sole) - kinematics_.frame_position(foot.body, in_body)) -
+      damping(stiffness, ratio) * kinematics_.frame_velocity(foot.body, in_body).tail<3>();
+  view(point.weight).setConstant(parameters_[Objective::kToeWeight]);
+  // Roll and yaw of the sole are held; its pitch has no row at all.
+  GaitdTask& turn = add_task(out, GAITD_TASK_FRAME, foot.body, 0b000101);
+  view(turn.point) = in_body;
+  const Eigen::Quaterniond now = sdk::quaternion(robot.feet[side].orientation);
+  sdk::store(now, turn.axes);
+  const double angular = parameters_[Objective::kToeAngularStiffness];
+  const Eigen::Vector3d error =
+      now.conjugate() * rotation_error(sdk::quaternion(hold.orientation), now);
+  const Eigen::Vector3d rate = now.conjugate() * view(robot.feet[side].twist).head<3>();
+  view(turn.acceleration).head<3>() = angular * error - damping(angular, ratio) * rate;
+  view(turn.weight).setConstant(parameters_[Objective::kToeAngularWeight]);
+}
+
+void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
+                                      const GaitdGaitState& gait, const GaitdPose& lift_off,
+                                      GaitdObjectives& out) {
+  const GaitdFootstep& goal = gait.adjusted[0];
+  if (swing_step_ != gait.step_index) {
+    swing_.begin(lift_off, goal, gait.phase_duration, swing_parameters_);
+    swing_step_ = gait.step_index;
+    swing_revision_ = gait.plan_revision;
+  } else if (swing_revision_ != gait.plan_revision) {
+    swing_.replan(gait.time_in_phase, goal, gait.phase_duration, swing_parameters_);
+    swing_revision_ = gait.plan_revision;
+  }
+  const SwingTrajectory::Sample s = swing_.evaluate(gait.time_in_phase);
+  const GaitdFoot& foot = model_.feet[side];
+  const GaitdFootState& now = robot.feet[side];
+  GaitdTask& task = add_task(out, GAITD_TASK_FRAME, foot.body, kAllRows);
+  view(task.point) = view(foot.sole.origin);
+  const double ratio = parameters_[Objective::kSwingDampingRatio];
+  const double kp_xy = parameters_[Objective::kSwingStiffness];
+  const double kp_z = parameters_[Objective::kSwingHeightStiffness];
+  const Eigen::Vector3d kp(kp_xy, kp_xy, kp_z);
+  const Eigen::Vector3d kd(damping(kp_xy, ratio), damping(kp_xy, ratio), damping(kp_z, ratio));
+  const auto twist = view(now.twist);
+  view(task.acceleration).tail<3>() =
+      s.acceleration + kp.cwiseProduct(s.position - view(now.position)) +
+      kd.cwiseProduct(s.velocity - twist.tail<3>());
+  view(task.acceleration).head<3>() =
+      s.angular_acceleration +
+      kp_z * rotation_error(s.orientation, sdk::quaternion(now.orientation)) +
+      damping(kp_z, ratio) * (s.angular_velocity - twist.head<3>());
+  view(task.weight).head<3>().setConstant(parameters_[Objective::kSwingAngularWeight]);
+  view(task.weight).tail<3>().setConstant(parameters_[Objective::kSwingWeight]);
+}
+
+void ObjectiveBuilder::update_privileged(double dt, const GaitdRobotState& robot,
+                                         const GaitdGaitState& gait, GaitdObjectives& out) {
+  for (int i = 0; i < GAITD_MAX_JOINTS; ++i) {
+    out.privileged_acceleration[i] = 0.0;
+    out.privileged_weight[i] = 0.0;
+  }
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const GaitdLeg& leg = model_.legs[side];
+    const double knee = leg.knee_bend_sign * robot.joint_position[leg.knee];
+    const double rate = leg.knee_bend_sign * robot.joint_velocity[leg.knee];
+    const LegConfiguration::Reference& r =
+        legs_[side].update(dt, side, knee, gait, leg_parameters_);
+    // The leg acts as a unit: half the knee to hip and ankle each keeps the direction of the
+    // line from hip to ankle (theory section 4).
+    const double bend = r.stiffness * (r.knee - knee) - r.damping * rate;
+    out.privileged_acceleration[leg.knee] = leg.knee_bend_sign * bend;
+    out.privileged_acceleration[leg.hip_pitch] = 0.5 * leg.hip_pitch_bend_sign * bend;
+    out.privileged_acceleration[leg.ankle_pitch] = 0.5 * leg.ankle_pitch_bend_sign * bend;
+    for (int joint : {leg.knee, leg.hip_pitch, leg.ankle_pitch}) {
+      out.privileged_weight[joint] = r.weight;
+    }
+  }
+}
+
+}  // namespace gaitd::walking

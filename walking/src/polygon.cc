@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/walking/polygon.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace gaitd::walking {
+namespace {
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+Eigen::Vector2d closest_on_segment(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                                   const Eigen::Vector2d& p) {
+  const Eigen::Vector2d d = b - a;
+  const double l2 = d.squaredNorm();
+  const double t = l2 > 0.0 ? std::clamp((p - a).dot(d) / l2, 0.0, 1.0) : 0.0;
+  return a + t * d;
+}
+
+}  // namespace
+
+void ConvexPolygon::make_hull() {
+  if (size_ < 2) return;
+  auto less = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  };
+  std::sort(vertices_.begin(), vertices_.begin() + size_, less);
+  const auto last = std::unique(vertices_.begin(), vertices_.begin() + size_);
+  const int n = static_cast<int>(last - vertices_.begin());
+  if (n < 3) {
+    size_ = n;
+    return;
+  }
+  std::array<Eigen::Vector2d, 2 * kCapacity> hull;
+  int k = 0;
+  auto push = [&](const Eigen::Vector2d& p, int floor) {
+    while (k >= floor + 2 && cross(hull[k - 1] - hull[k - 2], p - hull[k - 2]) <= 0.0) --k;
+    hull[k++] = p;
+  };
+  for (int i = 0; i < n; ++i) push(vertices_[i], 0);
+  const int upper = k - 1;
+  for (int i = n - 2; i >= 0; --i) push(vertices_[i], upper);
+  size_ = k - 1;
+  std::copy(hull.begin(), hull.begin() + size_, vertices_.begin());
+}
+
+double ConvexPolygon::inside_distance(const Eigen::Vector2d& p) const {
+  if (size_ == 0) return -std::numeric_limits<double>::infinity();
+  if (size_ >= 3) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < size_; ++i) {
+      const Eigen::Vector2d& a = vertices_[i];
+      const Eigen::Vector2d d = (vertices_[(i + 1) % size_] - a).normalized();
+      least = std::min(least, cross(d, p - a));
+    }
+    if (least >= 0.0) return least;
+  }
+  return -(closest_point(p) - p).norm();
+}
+
+Eigen::Vector2d ConvexPolygon::closest_point(const Eigen::Vector2d& p) const {
+  if (size_ == 0) return p;
+  if (size_ == 1) return vertices_[0];
+  bool inside = size_ >= 3;
+  Eigen::Vector2d best = vertices_[0];
+  double best_distance = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < size_; ++i) {
+    const Eigen::Vector2d& a = vertices_[i];
+    const Eigen::Vector2d& b = vertices_[(i + 1) % size_];
+    if (cross(b - a, p - a) < 0.0) inside = false;
+    const Eigen::Vector2d c = closest_on_segment(a, b, p);
+    const double distance = (c - p).squaredNorm();
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = c;
+    }
+  }
+  return inside ? p : best;
+}
+
+ConvexPolygon ConvexPolygon::inset(double margin) const {
+  ConvexPolygon result = *this;
+  if (size_ < 3) return result;
+  for (int i = 0; i < size_; ++i) {
+    const Eigen::Vector2d& a = vertices_[i];
+    const Eigen::Vector2d d = (vertices_[(i + 1) % size_] - a).normalized();
+    // Clip by the half-plane left of the edge, moved inwards (Sutherland and Hodgman).
+    ConvexPolygon clipped;
+    for (int j = 0; j < result.size_; ++j) {
+      const Eigen::Vector2d& p = result.vertices_[j];
+      const Eigen::Vector2d& q = result.vertices_[(j + 1) % result.size_];
+      const double hp = cross(d, p - a) - margin;
+      const double hq = cross(d, q - a) - margin;
+      if (hp >= 0.0) clipped.add(p);
+      if ((hp > 0.0 && hq < 0.0) || (hp < 0.0 && hq > 0.0)) {
+        clipped.add(p + (q - p) * (hp / (hp - hq)));
+      }
+    }
+    result = clipped;
+    if (result.empty()) {
+      result.add(centre());
+      return result;
+    }
+  }
+  return result;
+}
+
+Eigen::Vector2d ConvexPolygon::centre() const {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (int i = 0; i < size_; ++i) sum += vertices_[i];
+  return size_ > 0 ? Eigen::Vector2d(sum / size_) : sum;
+}
+
+}  // namespace gaitd::walking

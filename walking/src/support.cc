@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/walking/support.h"
+
+#include <algorithm>
+
+#include "gaitd/sdk/views.h"
+
+namespace gaitd::walking {
+namespace {
+
+Eigen::Vector2d to_world(const GaitdPose& pose, double x, double y) {
+  return sdk::transform(pose, {x, y, 0.0}).head<2>();
+}
+
+}  // namespace
+
+void add_foothold(const GaitdFoothold& foothold, const double (&toe_point)[3],
+                  ConvexPolygon& polygon) {
+  if (foothold.contact == GAITD_CONTACT_TOE) {
+    polygon.add(to_world(foothold.pose, toe_point[0], toe_point[1]));
+  } else if (foothold.contact == GAITD_CONTACT_FULL) {
+    for (int i = 0; i < foothold.polygon_count; ++i) {
+      polygon.add(to_world(foothold.pose, foothold.contact_polygon[i][0],
+                           foothold.contact_polygon[i][1]));
+    }
+  }
+}
+
+ConvexPolygon support_polygon(const GaitdModel& model, const GaitdGaitState& gait) {
+  ConvexPolygon polygon;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    add_foothold(gait.footholds[side], model.feet[side].toe_point, polygon);
+  }
+  polygon.make_hull();
+  return polygon;
+}
+
+GaitdFoothold whole_sole(const GaitdModel& model, int side, const GaitdPose& pose) {
+  GaitdFoothold foothold{};
+  foothold.pose = pose;
+  foothold.contact = GAITD_CONTACT_FULL;
+  foothold.polygon_count = model.feet[side].point_count;
+  for (int i = 0; i < foothold.polygon_count; ++i) {
+    foothold.contact_polygon[i][0] = model.feet[side].points[i][0];
+    foothold.contact_polygon[i][1] = model.feet[side].points[i][1];
+  }
+  return foothold;
+}
+
+GaitdFoothold foothold_of(const GaitdModel& model, const GaitdFootstep& footstep) {
+  GaitdFoothold foothold = whole_sole(model, footstep.side, footstep.pose);
+  if (footstep.polygon_count >= 3) {
+    foothold.polygon_count = footstep.polygon_count;
+    for (int i = 0; i < footstep.polygon_count; ++i) {
+      foothold.contact_polygon[i][0] = footstep.contact_polygon[i][0];
+      foothold.contact_polygon[i][1] = footstep.contact_polygon[i][1];
+    }
+  }
+  return foothold;
+}
+
+SoleExtent sole_extent(const GaitdFoothold& foothold) {
+  SoleExtent e{1e9, -1e9, 1e9, -1e9};
+  for (int i = 0; i < foothold.polygon_count; ++i) {
+    e.x_min = std::min(e.x_min, foothold.contact_polygon[i][0]);
+    e.x_max = std::max(e.x_max, foothold.contact_polygon[i][0]);
+    e.y_min = std::min(e.y_min, foothold.contact_polygon[i][1]);
+    e.y_max = std::max(e.y_max, foothold.contact_polygon[i][1]);
+  }
+  return e;
+}
+
+Eigen::Vector2d middle(const GaitdFoothold& a, const GaitdFoothold& b) {
+  const SoleExtent ea = sole_extent(a);
+  const SoleExtent eb = sole_extent(b);
+  return 0.5 * (to_world(a.pose, 0.5 * (ea.x_min + ea.x_max), 0.5 * (ea.y_min + ea.y_max)) +
+                to_world(b.pose, 0.5 * (eb.x_min + eb.x_max), 0.5 * (eb.y_min + eb.y_max)));
+}
+
+}  // namespace gaitd::walking
