@@ -50,7 +50,7 @@ class ElementReader {
   }
 
   std::string name_of(const TiXmlElement& element, const std::string& owner) {
-    const std::string name = xml_.text(element, "name", owner);
+    std::string name = xml_.text(element, "name", owner);
     if (name.size() >= GAITD_NAME_SIZE) {
       xml_.add_error(element.Row(), owner + ": name " + quoted(name) + " has " +
                                         std::to_string(name.size()) + " characters, expected " +

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace gaitd::cli {
+
+/// Exit codes of gaitctl.
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;  // the daemon refused, or the run failed
+inline constexpr int kUsage = 2;
+inline constexpr int kNoDaemon = 3;
+
+/// What the command line said, shared by all commands. Parsing only chooses the action; main() runs
+/// it afterwards.
+struct Context {
+  std::string socket;  ///< of --socket; empty: look in the usual places
+  bool json = false;
+  std::function<int()> action;
+};
+
+}  // namespace gaitd::cli

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/private_daemon.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <system_error>
+#include <thread>
+
+namespace gaitd::cli {
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+void request_stop(int) { stop_requested = 1; }
+
+// Takes SIGINT and SIGTERM while it lives, so that the child is ended and its directory removed.
+class StopSignals {
+ public:
+  StopSignals() {
+    stop_requested = 0;
+    struct sigaction action {};
+    action.sa_handler = request_stop;
+    sigaction(SIGINT, &action, &before_[0]);
+    sigaction(SIGTERM, &action, &before_[1]);
+  }
+  ~StopSignals() {
+    sigaction(SIGINT, &before_[0], nullptr);
+    sigaction(SIGTERM, &before_[1], nullptr);
+  }
+
+ private:
+  struct sigaction before_[2];
+};
+
+// A directory that goes away with its object.
+class PrivateDirectory {
+ public:
+  PrivateDirectory() {
+    const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+    for (const std::string parent : {runtime == nullptr ? "" : runtime, "/tmp"}) {
+      std::string name = parent + "/gaitd-run-XXXXXX";
+      if (parent.empty() || mkdtemp(name.data()) == nullptr) continue;
+      path_ = name;
+      return;
+    }
+  }
+  ~PrivateDirectory() {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+// After fork: system calls only.
+[[noreturn]] void become_daemon(char** argv, const char* output, pid_t parent, int failure_fd) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) _exit(127);
+  const int out = open(output, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const int in = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  if (out >= 0 && in >= 0 && dup2(in, STDIN_FILENO) >= 0 && dup2(out, STDOUT_FILENO) >= 0 &&
+      dup2(out, STDERR_FILENO) >= 0) {
+    execv(argv[0], argv);
+  }
+  const int error = errno;
+  [[maybe_unused]] const ssize_t written = write(failure_fd, &error, sizeof(error));
+  _exit(127);
+}
+
+// The child, or -1 with errno if it could not be started, exec included.
+pid_t start(std::vector<std::string> arguments, const std::string& output) {
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  int failure[2];
+  if (pipe2(failure, O_CLOEXEC) != 0) return -1;
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid == 0) become_daemon(argv.data(), output.c_str(), parent, failure[1]);
+  int error = pid < 0 ? errno : 0;
+  close(failure[1]);
+  const bool failed = pid > 0 && read(failure[0], &error, sizeof(error)) == sizeof(error);
+  close(failure[0]);
+  if (failed) waitpid(pid, nullptr, 0);
+  errno = error;
+  return failed ? -1 : pid;
+}
+
+// Waits for the end of the child; asked to stop, ends it politely, then by force.
+DaemonEnd wait_for(pid_t pid, const std::string& socket, const Watch& watch) {
+  constexpr auto kWatchPeriod = milliseconds(200);
+  constexpr auto kPatience = milliseconds(5000);
+  DaemonEnd end;
+  Clock::time_point next_watch = Clock::now() + kWatchPeriod;
+  Clock::time_point kill_at{};
+  for (;;) {
+    int status = 0;
+    const pid_t ended = waitpid(pid, &status, WNOHANG);
+    if (ended == pid || (ended < 0 && errno != EINTR)) {
+      // A terminal interrupts both of us: it may have ended before it was told to.
+      end.interrupted |= stop_requested != 0;
+      if (ended == pid && WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
+      if (ended == pid && WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+      return end;
+    }
+    const Clock::time_point now = Clock::now();
+    if (stop_requested != 0 && !end.interrupted) {
+      end.interrupted = true;
+      kill_at = now + kPatience;
+      kill(pid, SIGTERM);
+    }
+    if (end.interrupted && now >= kill_at) kill(pid, SIGKILL);
+    if (!end.interrupted && watch && now >= next_watch) {
+      watch(socket);
+      next_watch = Clock::now() + kWatchPeriod;
+    }
+    std::this_thread::sleep_for(milliseconds(5));
+  }
+}
+
+}  // namespace
+
+std::optional<DaemonEnd> run_daemon(const DaemonRun& run, const Watch& watch, std::string* error) {
+  const PrivateDirectory directory;
+  if (directory.path().empty()) {
+    *error = "cannot make a directory for the socket in $XDG_RUNTIME_DIR or /tmp: " +
+             std::string(std::strerror(errno));
+    return std::nullopt;
+  }
+  const std::string socket = directory.path() + "/gaitd.sock";
+  std::vector<std::string> arguments{run.program, "--scenario", run.scenario, "--clock", "lockstep",
+                                     "--socket",  socket,       "--log",      run.log};
+  for (const std::string& setting : run.settings) {
+    arguments.push_back("--set");
+    arguments.push_back(setting);
+  }
+  const StopSignals signals;
+  const pid_t pid = start(std::move(arguments), run.output.string());
+  if (pid < 0) {
+    *error = "cannot start " + run.program.string() + " (output to " + run.output.string() +
+             "): " + std::strerror(errno);
+    return std::nullopt;
+  }
+  return wait_for(pid, socket, watch);
+}
+
+}  // namespace gaitd::cli

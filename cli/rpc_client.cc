@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/rpc_client.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace gaitd::cli {
+namespace {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+// A connected descriptor, or -1 with errno.
+int connect_to(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof(address.sun_path)) {
+    errno = ENAMETOOLONG;
+    return -1;
+  }
+  path.copy(address.sun_path, sizeof(address.sun_path) - 1);
+  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (fd < 0) return -1;
+  if (connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) return fd;
+  const int error = errno;
+  close(fd);
+  errno = error;
+  return -1;
+}
+
+std::string why_not(const std::string& path, int error) {
+  std::string out = "\n  " + path + ": " + std::strerror(error);
+  if (error == ECONNREFUSED) out += " (a socket that no daemon listens on)";
+  if (error == EACCES) out += " (be root or a member of the group gaitd)";
+  return out;
+}
+
+daemon::RpcError broken(const std::string& what) {
+  return {daemon::rpc_code::kInternalError, what, nullptr};
+}
+
+}  // namespace
+
+std::unique_ptr<RpcClient> RpcClient::connect(const std::vector<std::string>& paths,
+                                              std::string* error) {
+  std::string reasons;
+  for (const std::string& path : paths) {
+    const int fd = connect_to(path);
+    if (fd >= 0) return std::unique_ptr<RpcClient>(new RpcClient(fd));
+    reasons += why_not(path, errno);
+  }
+  *error =
+      "no gaitd listens:" + reasons +
+      "\nStart one with `gaitd --backend simbody`, or `systemctl start gaitd` on a robot; give "
+      "its socket with --socket PATH. `gaitctl run` needs none.";
+  return nullptr;
+}
+
+RpcClient::~RpcClient() { close(fd_); }
+
+daemon::RpcResult RpcClient::call(const std::string& method, const json& params,
+                                  std::chrono::milliseconds timeout) {
+  const int id = next_id_++;
+  json request = {{"jsonrpc", "2.0"}, {"id", id}, {"method", method}};
+  if (!params.is_null()) request["params"] = params;
+  const Clock::time_point deadline = Clock::now() + timeout;
+  if (!send_all(request.dump(-1, ' ', false, json::error_handler_t::replace) + "\n")) {
+    // The daemon may have said why before it closed.
+    if (errno != EPIPE && errno != ECONNRESET) {
+      return broken(std::string("cannot send to gaitd: ") + std::strerror(errno));
+    }
+  }
+  for (;;) {
+    std::string problem;
+    const std::string line = read_line(deadline, &problem);
+    if (!problem.empty()) return broken(problem);
+    json answer = json::parse(line, nullptr, false);
+    if (!answer.is_object() || (!answer.contains("result") && !answer.contains("error"))) {
+      return broken("what listens on the socket does not speak the protocol of gaitd");
+    }
+    const json answered = answer.value("id", json());
+    if (answered != id && !answered.is_null()) continue;  // to a request that we gave up
+    if (!answer.contains("error")) return answer["result"];
+    const json& error = answer["error"];
+    if (!error.is_object()) return broken("gaitd answered with an error that is no object");
+    const json code = error.value("code", json());
+    const json message = error.value("message", json());
+    return daemon::RpcError{
+        code.is_number_integer() ? code.get<int>() : daemon::rpc_code::kInternalError,
+        message.is_string() ? message.get<std::string>() : error.dump(),
+        error.value("data", json())};
+  }
+}
+
+bool RpcClient::send_all(const std::string& bytes) {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t n = ::send(fd_, bytes.data() + done, bytes.size() - done, MSG_NOSIGNAL);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    done += static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+std::string RpcClient::read_line(Clock::time_point deadline, std::string* problem) {
+  for (std::size_t searched = 0;;) {
+    const std::size_t end = buffer_.find('\n', searched);
+    if (end != std::string::npos) {
+      std::string line = buffer_.substr(0, end);
+      buffer_.erase(0, end + 1);
+      return line;
+    }
+    searched = buffer_.size();
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    pollfd entry{fd_, POLLIN, 0};
+    const int ready = left <= 0 ? 0 : poll(&entry, 1, static_cast<int>(left));
+    if (ready < 0 && errno == EINTR) continue;
+    if (ready <= 0) {
+      *problem = "gaitd did not answer in time; it may hang, see its log or journalctl -u gaitd";
+      return "";
+    }
+    char chunk[65536];
+    const ssize_t n = recv(fd_, chunk, sizeof(chunk), 0);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) {
+      *problem =
+          "gaitd closed the connection before it answered; see its log or journalctl -u gaitd";
+      return "";
+    }
+    buffer_.append(chunk, static_cast<std::size_t>(n));
+  }
+}
+
+}  // namespace gaitd::cli

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/run_command.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "cli/print.h"
+#include "cli/scenario_run.h"
+
+namespace gaitd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kInterrupted = 130;  // as a shell reports a program that SIGINT ended
+
+struct Arguments {
+  std::vector<std::string> scenarios;
+  std::vector<std::string> settings;
+  std::string log;
+};
+
+// gaitd stands beside this program, in a build tree and installed.
+fs::path beside_this_program() {
+  std::error_code ignored;
+  return fs::read_symlink("/proc/self/exe", ignored).parent_path() / "gaitd";
+}
+
+void show_progress(const std::string& scenario, double time, double duration) {
+  std::fprintf(stderr, "\r%s: %.1f of %.1f s simulated\033[K", scenario.c_str(), time, duration);
+  std::fflush(stderr);
+}
+
+int run(const Arguments& arguments, bool json) {
+  std::error_code ignored;
+  if (arguments.scenarios.size() > 1 && !arguments.log.empty() && !arguments.log.ends_with('/') &&
+      !fs::is_directory(arguments.log, ignored)) {
+    std::cerr << "gaitctl: run: --log " << arguments.log
+              << ": one file for several scenarios; give a folder (ending in /)\n";
+    return kUsage;
+  }
+  const RunOptions options{beside_this_program(), arguments.settings, arguments.log};
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  bool pass = true;
+  bool interrupted = false;
+  std::size_t done = 0;
+  nlohmann::json reports = nlohmann::json::array();
+  for (const std::string& scenario : arguments.scenarios) {
+    if (!terminal) std::cerr << "running " << scenario << std::endl;
+    const RunReport report =
+        run_scenario(scenario, options, terminal ? Progress(show_progress) : Progress());
+    if (terminal) std::cerr << "\r\033[K";
+    pass &= report.pass();
+    ++done;
+    if (json) {
+      reports.push_back(report_json(report));
+    } else {
+      std::cout << (done > 1 ? "\n" : "") << report_text(report) << std::flush;
+    }
+    interrupted = report.interrupted;
+    if (interrupted) break;
+  }
+  if (json) std::cout << json_text({{"pass", pass}, {"scenarios", reports}});
+  if (interrupted) return kInterrupted;
+  return pass ? kDone : kFailed;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App* app, Context* context) {
+  auto* command = app->add_subcommand(
+      "run", "Play scenarios on a private gaitd in lockstep and judge what the logs show");
+  command->footer("Exit code 0 only if every expectation of every scenario holds.");
+  auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("SCENARIO", arguments->scenarios,
+                   "Name of a scenario (flat-0.35), or the path of a scenario file")
+      ->required();
+  command
+      ->add_option("--set", arguments->settings,
+                   "KEY=VALUE over the configuration and the scenario, in YAML; may be repeated")
+      ->take_all()
+      ->expected(1);
+  command->add_option("--log", arguments->log,
+                      "Log file, or folder for several (ending in /); by default a new file in "
+                      "$XDG_STATE_HOME/gaitd/logs (~/.local/state/gaitd/logs). The output of gaitd "
+                      "goes beside it as .txt");
+  command->callback([context, arguments] {
+    context->action = [context, arguments] { return run(*arguments, context->json); };
+  });
+}
+
+}  // namespace gaitd::cli

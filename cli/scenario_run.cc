@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/scenario_run.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <system_error>
+
+#include "cli/private_daemon.h"
+#include "cli/rpc_client.h"
+#include "daemon/config/paths.h"
+#include "daemon/config/scenario.h"
+#include "daemon/telemetry/log_reader.h"
+
+namespace gaitd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using daemon::Issues;
+using daemon::Scenario;
+using nlohmann::json;
+
+// A name that no log in the folder has: <scenario>-<UTC time>.mcap.
+fs::path fresh_log(const fs::path& folder, const std::string& scenario) {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char stamp[32];
+  std::strftime(stamp, sizeof(stamp), "%Y%m%d-%H%M%S", &utc);
+  const std::string base = scenario + "-" + stamp;
+  fs::path path = folder / (base + ".mcap");
+  std::error_code ignored;
+  for (int i = 2; fs::exists(path, ignored); ++i) {
+    path = folder / (base + "-" + std::to_string(i) + ".mcap");
+  }
+  return path;
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return path.filename().empty() || fs::is_directory(path, ignored);
+}
+
+// Where the log of this scenario goes; its folder is made. Empty with a reason in `problem`.
+fs::path choose_log(const fs::path& asked, const std::string& scenario, std::string* problem) {
+  const fs::path path = asked.empty()      ? fresh_log(default_log_folder(), scenario)
+                        : is_folder(asked) ? asked / (scenario + ".mcap")
+                                           : asked;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error) return fs::absolute(path);
+  *problem = "cannot make the folder " + folder.string() + ": " + error.message() +
+             "; give another place with --log";
+  return {};
+}
+
+std::optional<Scenario> load(const RunOptions& options, RunReport* report) {
+  const daemon::Paths paths = daemon::Paths::detect();
+  const auto file = paths.scenario(report->scenario);
+  if (!file) {
+    std::string there;
+    for (const std::string& name : paths.scenarios()) there += " " + name;
+    report->problems.push_back(
+        "no scenario '" + report->scenario +
+        "'; give the path of a file, or one of:" + (there.empty() ? " (none found)" : there));
+    return std::nullopt;
+  }
+  report->file = file->string();
+  daemon::Settings settings;
+  Issues issues;
+  for (const std::string& setting : options.settings) settings.set_assignment(setting, &issues);
+  auto scenario = daemon::load_scenario(report->file, &settings, &issues);
+  if (!issues.ok()) {
+    report->problems.push_back(issues.error_text());
+    return std::nullopt;
+  }
+  return scenario;
+}
+
+// The simulated time of the daemon there, if it answers at once.
+std::optional<double> simulated_time(const std::string& socket) {
+  std::string ignored;
+  const auto client = RpcClient::connect({socket}, &ignored);
+  if (!client) return std::nullopt;
+  const daemon::RpcResult status = client->call("status", nullptr, std::chrono::milliseconds(500));
+  const json* result = std::get_if<json>(&status);
+  if (result == nullptr || !result->is_object()) return std::nullopt;
+  const json time = result->value("time", json());
+  if (!time.is_number()) return std::nullopt;
+  return time.get<double>();
+}
+
+// The last lines of what the daemon printed.
+std::string tail(const fs::path& file) {
+  constexpr std::size_t kLines = 15;
+  std::ifstream in(file);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  std::size_t begin = text.size();
+  for (std::size_t lines = 0; begin > 0; --begin) {
+    if (text[begin - 1] == '\n' && lines++ == kLines) break;
+  }
+  return text.substr(begin);
+}
+
+void report_end(const DaemonEnd& end, const fs::path& output, RunReport* report) {
+  std::string what;
+  if (end.interrupted) {
+    report->interrupted = true;
+    report->problems.push_back("interrupted");
+    return;
+  }
+  if (end.signal != 0) {
+    const char* name = sigabbrev_np(end.signal);
+    what = "gaitd crashed with " +
+           (name == nullptr ? "signal " + std::to_string(end.signal) : "SIG" + std::string(name));
+  } else if (end.exit_code != 0) {
+    what = "gaitd ended with exit code " + std::to_string(end.exit_code);
+  } else {
+    return;
+  }
+  const std::string last = tail(output);
+  report->problems.push_back(what + "; its output is in " + output.string() +
+                             (last.empty() ? ", and empty" : ", and ends with:\n" + last));
+}
+
+void judge(const Scenario& scenario, RunReport* report) {
+  std::string error;
+  const auto log = daemon::LogReader::open(report->log, &error);
+  if (!log) {
+    report->problems.push_back("no log to judge: " + error);
+    return;
+  }
+  if (!log->finished()) {
+    report->problems.push_back("the log is cut off: " + log->break_reason());
+  }
+  report->verdict = daemon::compute_verdict(*log, scenario.expect);
+}
+
+std::string with_newline(std::string text) {
+  if (!text.ends_with('\n')) text += '\n';
+  return text;
+}
+
+}  // namespace
+
+fs::path default_log_folder() {
+  const char* state = std::getenv("XDG_STATE_HOME");
+  const char* home = std::getenv("HOME");
+  fs::path folder;
+  if (state != nullptr && state[0] == '/') {
+    folder = fs::path(state) / "gaitd" / "logs";
+  } else if (home != nullptr && home[0] == '/') {
+    folder = fs::path(home) / ".local" / "state" / "gaitd" / "logs";
+  }
+  std::error_code error;
+  if (!folder.empty()) fs::create_directories(folder, error);
+  const bool usable = !folder.empty() && !error && access(folder.c_str(), W_OK | X_OK) == 0;
+  return usable ? folder : fs::path("gaitd-logs");
+}
+
+RunReport run_scenario(const std::string& name, const RunOptions& options,
+                       const Progress& progress) {
+  RunReport report;
+  report.scenario = name;
+  const std::optional<Scenario> scenario = load(options, &report);
+  if (!scenario) return report;
+  std::string problem;
+  const fs::path log = choose_log(options.log, scenario->name, &problem);
+  if (log.empty()) {
+    report.problems.push_back(problem);
+    return report;
+  }
+  report.log = log.string();
+  // An old log of this name must never be judged as the new one.
+  std::error_code ignored;
+  fs::remove(log, ignored);
+
+  DaemonRun run{options.gaitd, report.file, log, fs::path(log).replace_extension(".txt"),
+                options.settings};
+  Watch watch;
+  if (progress) {
+    watch = [&](const std::string& socket) {
+      if (const auto time = simulated_time(socket)) {
+        progress(scenario->name, *time, scenario->duration);
+      }
+    };
+  }
+  const std::optional<DaemonEnd> end = run_daemon(run, watch, &problem);
+  if (!end) {
+    report.problems.push_back(problem);
+    return report;
+  }
+  report_end(*end, run.output, &report);
+  if (!report.interrupted) judge(*scenario, &report);
+  return report;
+}
+
+std::string report_text(const RunReport& report) {
+  std::string out = report.scenario + ": " + (report.pass() ? "PASS" : "FAIL") + "\n";
+  for (const std::string& problem : report.problems) out += with_newline("  " + problem);
+  if (report.verdict) out += with_newline(daemon::verdict_text(*report.verdict));
+  if (!report.log.empty()) out += "log: " + report.log + "\n";
+  return out;
+}
+
+json report_json(const RunReport& report) {
+  json out = {{"scenario", report.scenario}, {"file", report.file},         {"log", report.log},
+              {"pass", report.pass()},       {"problems", report.problems}, {"verdict", nullptr}};
+  if (report.verdict) {
+    out["verdict"] = json::parse(daemon::verdict_json(*report.verdict), nullptr, false);
+  }
+  return out;
+}
+
+}  // namespace gaitd::cli

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/verdict/verdict.h"
+
+namespace gaitd::cli {
+
+struct RunOptions {
+  std::filesystem::path gaitd;        ///< the daemon's program
+  std::vector<std::string> settings;  ///< KEY=VALUE, over those of the scenario
+  std::filesystem::path log;  ///< where to write: a file, or a folder (ending in /); may be empty
+};
+
+/// Progress of the present scenario: simulated time and duration, s.
+using Progress = std::function<void(const std::string& scenario, double time, double duration)>;
+
+/// What came of one scenario.
+struct RunReport {
+  std::string scenario;  ///< as asked for
+  std::string file;
+  std::string log;
+  std::vector<std::string> problems;  ///< what went wrong apart from the expectations
+  bool interrupted = false;
+  std::optional<daemon::Verdict> verdict;
+
+  bool pass() const { return problems.empty() && verdict && verdict->pass; }
+};
+
+/// Plays one scenario (a name, or the path of a file) on a private gaitd and judges its log.
+RunReport run_scenario(const std::string& scenario, const RunOptions& options,
+                       const Progress& progress);
+
+/// The report for people, with every figure, and for --json.
+std::string report_text(const RunReport& report);
+nlohmann::json report_json(const RunReport& report);
+
+/// Where logs go when none is asked for: $XDG_STATE_HOME/gaitd/logs or ~/.local/state/gaitd/logs;
+/// ./gaitd-logs if neither can be written to.
+std::filesystem::path default_log_folder();
+
+}  // namespace gaitd::cli

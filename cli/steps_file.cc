@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/steps_file.h"
+
+#include <iostream>
+#include <iterator>
+
+#include "daemon/config/issues.h"
+#include "daemon/config/node.h"
+
+namespace gaitd::cli {
+
+using daemon::Issues;
+using daemon::NodeKind;
+using daemon::NodePtr;
+
+std::optional<nlohmann::json> read_steps(const std::string& file, bool replace,
+                                         std::string* error) {
+  Issues issues;
+  NodePtr root;
+  if (file == "-") {
+    const std::string text(std::istreambuf_iterator<char>(std::cin), {});
+    root = daemon::parse_yaml(text, "standard input", &issues);
+  } else {
+    root = daemon::load_yaml_file(file, &issues);
+  }
+  if (root == nullptr || !issues.ok()) {
+    *error = issues.error_text();
+    return std::nullopt;
+  }
+  NodePtr list = root;
+  if (root->kind == NodeKind::kMap) {
+    const daemon::Node::Entry* entry = root->find("footsteps");
+    if (entry != nullptr) list = entry->value;
+    for (const daemon::Node::Entry& other : root->entries) {
+      if (other.key == "footsteps") continue;
+      issues.add(other.where, other.key, "the key footsteps alone", "another key", "remove it");
+    }
+  }
+  if (list->kind != NodeKind::kList || list->items.empty()) {
+    issues.add(list->where, "footsteps", "a list of footsteps {side, x, y, z, yaw, ...}",
+               daemon::describe(*list), "see `gaitctl steps --help`");
+  }
+  if (!issues.ok()) {
+    *error = issues.error_text();
+    return std::nullopt;
+  }
+  return nlohmann::json{{"footsteps", daemon::to_json(*list)}, {"replace", replace}};
+}
+
+}  // namespace gaitd::cli

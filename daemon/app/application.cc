@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/app/application.h"
+
+#include <spdlog/spdlog.h>
+
+#include <ctime>
+#include <filesystem>
+#include <thread>
+
+#include "daemon/app/metadata.h"
+#include "daemon/app/realtime.h"
+#include "daemon/config/command_parse.h"
+#include "daemon/control/signals.h"
+#include "daemon/host/layers.h"
+#include "daemon/host/plugin_json.h"
+#include "gaitd/walking/parameters.h"
+
+namespace gaitd::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+
+void log_plugin(int level, std::string_view plugin, std::string_view message) {
+  constexpr spdlog::level::level_enum kLevels[] = {spdlog::level::debug, spdlog::level::info,
+                                                   spdlog::level::warn, spdlog::level::err};
+  spdlog::log(kLevels[std::clamp(level, 0, 3)], "{}: {}", plugin, message);
+}
+
+template <class Set>
+void apply(const std::vector<double>& values, Set&& set) {
+  for (std::size_t i = 0; i < values.size(); ++i) set(static_cast<int>(i), values[i]);
+}
+
+nlohmann::json settings_json(const Settings& settings) {
+  nlohmann::json all;
+  for (const Settings::Entry& entry : settings.effective()) all[entry.key] = to_json(*entry.value);
+  return all;
+}
+
+}  // namespace
+
+Application::Application(const Options& options) : options_(options), paths_(Paths::detect()) {}
+Application::~Application() = default;
+
+void Application::report_issues(const Issues& issues) const {
+  for (const Issue& issue : issues.all()) {
+    spdlog::log(issue.warning ? spdlog::level::warn : spdlog::level::err, "{}", issue.text());
+  }
+}
+
+bool Application::read_configuration() {
+  Issues issues;
+  auto override_key = [this](const char* key, const std::string& value) {
+    if (!value.empty()) {
+      settings_.set(SettingSource::kCommandLine, key, make_scalar(value, {"command line", 0}));
+    }
+  };
+  override_key("backend", options_.backend);
+  override_key("robot", options_.robot);
+  override_key("clock", options_.clock);
+  override_key("socket", options_.socket);
+  override_key("log.file", options_.log);
+  for (const std::string& setting : options_.set) settings_.set_assignment(setting, &issues);
+
+  if (!options_.config.empty()) {
+    load_config_file(options_.config, &settings_, &issues);
+  } else if (const auto file = paths_.config()) {
+    load_config_file(file->string(), &settings_, &issues);
+  }
+  if (!options_.scenario.empty()) {
+    const auto file = paths_.scenario(options_.scenario);
+    if (!file) {
+      issues.add_text({}, "--scenario", "no scenario '" + options_.scenario + "'");
+    } else {
+      scenario_ = load_scenario(file->string(), &settings_, &issues);
+    }
+  }
+  config_ = read_daemon_config(&settings_, &issues);
+  if (scenario_ && options_.robot.empty()) config_.robot = scenario_->robot;
+  if (options_.require_rt) config_.realtime.require = true;
+  const auto robot_file = paths_.robot(config_.robot);
+  if (!robot_file) {
+    std::string there;
+    for (const std::string& name : paths_.robots()) there += " " + name;
+    issues.add_text({}, "robot", "no robot '" + config_.robot + "'; give a robot.yaml or one of:" +
+                                     (there.empty() ? " (none found)" : there));
+  } else {
+    robot_ = load_robot(robot_file->string(), config_.profile, &settings_, &issues);
+  }
+  if (scenario_ && robot_) {
+    check_scenario(*scenario_, robot_->model, &issues);
+    player_ = std::make_unique<ScenarioPlayer>(*scenario_, robot_->model, &issues);
+  }
+  report_issues(issues);
+  return issues.ok();
+}
+
+bool Application::load_layers() {
+  const PluginDirectory directory(paths_.plugin_folders());
+  Issues issues;
+  for (const PluginEntry& entry : directory.list()) {
+    if (entry.layer < GAITD_LAYER_COUNT) {
+      settings_.declare_variant(layer_name(entry.layer), entry.variant);
+    }
+  }
+  bool loaded = true;
+  std::vector<LoadedLayer::Request> requests;
+  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
+    const std::string& variant = config_.variants[layer];
+    std::string error;
+    const auto path = directory.find(layer, variant, &error);
+    Refusal refusal;
+    const auto file = path ? read_plugin_file(*path, layer, &refusal) : std::nullopt;
+    if (!file) {
+      spdlog::error("{}", path ? refusal.text() : error);
+      loaded = false;
+      continue;
+    }
+    const GaitdPluginDescriptor& d = file->descriptor;
+    layer_variants_.push_back(d.id);
+    LoadedLayer::Request request;
+    request.path = *path;
+    request.layer = layer;
+    request.model = &robot_->model;
+    request.parameters =
+        settings_.resolve(layer_name(layer), {d.parameters, d.parameter_count}, &issues, d.id);
+    request.log = log_plugin;
+    requests.push_back(std::move(request));
+  }
+  auto resolve = [&](const char* scope, std::span<const GaitdParameter> table) {
+    return settings_.resolve(scope, table, &issues);
+  };
+  const auto gait = resolve("gait", walking::kGaitParameters);
+  const auto swing = resolve("swing", walking::kSwingParameters);
+  const auto legs = resolve("legs", walking::kLegParameters);
+  const auto objectives = resolve("objectives", walking::kObjectiveParameters);
+  const auto safety = resolve("safety", kSafetyParameters);
+  settings_.report_unknown(&issues);
+  report_issues(issues);
+  if (!loaded || !issues.ok()) return false;
+  if (options_.check_config) return true;
+
+  for (const LoadedLayer::Request& request : requests) {
+    Refusal refusal;
+    layers_[request.layer] = LoadedLayer::load(request, &refusal);
+    if (layers_[request.layer] == nullptr) {
+      spdlog::error("{}", refusal.text());
+      return false;
+    }
+  }
+  const GaitdStart start = scenario_ ? scenario_->start : GaitdStart{};
+  pipeline_ = std::make_unique<Pipeline>(robot_->model, std::move(layers_), start, config_.limits,
+                                         config_.period);
+  apply(gait, [&](int i, double v) { pipeline_->gait().set_parameter(i, v); });
+  apply(swing, [&](int i, double v) { pipeline_->objectives().set_swing_parameter(i, v); });
+  apply(legs, [&](int i, double v) { pipeline_->objectives().set_leg_parameter(i, v); });
+  apply(objectives, [&](int i, double v) { pipeline_->objectives().set_objective_parameter(i, v); });
+  apply(safety, [&](int i, double v) { pipeline_->safety().set_parameter(i, v); });
+  if (scenario_) {
+    Command mode;
+    mode.type = CommandType::kMode;
+    mode.mode = scenario_->mode;
+    pipeline_->execute(mode);
+  }
+  return true;
+}
+
+bool Application::load_backend() {
+  const PluginDirectory directory(paths_.plugin_folders());
+  std::string error;
+  const auto path = directory.find(GAITD_LAYER_BACKEND, config_.backend, &error);
+  if (!path) {
+    spdlog::error("{}", error);
+    return false;
+  }
+  Refusal refusal;
+  backend_ = LoadedBackend::load({*path, &robot_->model, true, {}, log_plugin}, &refusal);
+  if (backend_ == nullptr) {
+    spdlog::error("{}", refusal.text());
+    return false;
+  }
+  nlohmann::json world = scenario_ ? scenario_->simulator_config() : nlohmann::json::object();
+  if (!scenario_ && config_.backend == "simbody") world["terrain"] = {{"ground_z", 0.0}};
+  if (const NodePtr more = settings_.subtree("sim"); more != nullptr) {
+    const nlohmann::json overlay = to_json(*more);
+    if (overlay.is_object()) world.update(overlay);
+  }
+  error = backend_->init(robot_->model, world.dump(), config_.period, config_.clock);
+  if (!error.empty()) {
+    spdlog::error("{}", error);
+    return false;
+  }
+  const GaitdBackendInstance& b = backend_->instance();
+  GaitdTruth truth{};
+  truth_ = b.vtable->truth != nullptr && b.vtable->truth(b.self, &truth) == GAITD_OK;
+  return true;
+}
+
+std::string Application::default_log_file() const {
+  if (!config_.log.file.empty()) return config_.log.file;
+  char name[64];
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::strftime(name, sizeof(name), "gaitd-%Y%m%d-%H%M%S.mcap", &utc);
+  return (fs::path(config_.log.directory) / name).string();
+}
+
+LogMetadata Application::metadata() const {
+  LogMetadata m;
+  add_robot_metadata(robot_->model, &m);
+  m["robot"] = robot_->name;
+  m["settings"] = settings_json(settings_).dump();
+  m["period"] = std::to_string(config_.period);
+  m["clock"] = config_.clock == GAITD_CLOCK_LOCKSTEP ? "lockstep" : "realtime";
+  m["backend"] = config_.backend;
+  m["version"] = GAITD_VERSION;
+  m["build"] = GAITD_BUILD;
+  nlohmann::json plugins;
+  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
+    const PluginLibrary& library = pipeline_->layers().layer(layer).library();
+    plugins[std::string(layer_name(layer))] = {{"variant", library.descriptor().id},
+                                               {"version", library.descriptor().version},
+                                               {"hash", library.hash()}};
+  }
+  m["plugins"] = plugins.dump();
+  if (scenario_) {
+    m["scenario"] = scenario_->name;
+    m["seed"] = std::to_string(scenario_->seed);
+    m["world"] = scenario_->simulator_config().dump();
+  }
+  return m;
+}
+
+bool Application::start_telemetry() {
+  TelemetryOptions options;
+  options.period = config_.period;
+  telemetry_ = std::make_unique<Telemetry>(make_signal_table(robot_->model, truth_), options);
+  if (config_.log.enabled) {
+    log_file_ = default_log_file();
+    McapOptions mcap;
+    mcap.compression = config_.log.compression == LogCompression::kNone ? McapCompression::kNone
+                                                                        : McapCompression::kZstd;
+    std::string error;
+    if (!telemetry_->open_log(log_file_, metadata(), mcap, &error)) {
+      spdlog::error("{}", error);
+      return false;
+    }
+    spdlog::info("log: {}", log_file_);
+  }
+  telemetry_->start();
+  return true;
+}
+
+nlohmann::json Application::status() const {
+  nlohmann::json s = status_of(*telemetry_);
+  s["robot"] = robot_->name;
+  s["backend"] = config_.backend;
+  s["clock"] = config_.clock == GAITD_CLOCK_LOCKSTEP ? "lockstep" : "realtime";
+  s["version"] = GAITD_VERSION;
+  s["scenario"] = scenario_ ? nlohmann::json(scenario_->name) : nlohmann::json(nullptr);
+  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
+    s["layers"].push_back({{"layer", layer_name(layer)}, {"variant", layer_variants_[layer]}});
+  }
+  const Telemetry::LogStatus log = telemetry_->log_status();
+  s["log"] = {{"file", log_file_},
+              {"open", log.open},
+              {"error", log.error},
+              {"ticks", log.ticks},
+              {"bytes", log.bytes},
+              {"dropouts", telemetry_->dropouts()}};
+  return s;
+}
+
+bool Application::start_server() {
+  bridge_ = std::make_unique<CommandBridge>();
+  Methods methods;
+  add_command_methods(&methods, bridge_.get(),
+                      [this](const std::string& method, const nlohmann::json& params)
+                          -> std::variant<Command, RpcError> {
+                        std::string error;
+                        if (auto command = parse_command(method, params, robot_->model, &error)) {
+                          return *command;
+                        }
+                        return RpcError{rpc_code::kInvalidParams, error};
+                      });
+  methods.add_snapshot("status", [this] { return status(); });
+  methods.add_snapshot("version", [] {
+    return nlohmann::json{{"version", GAITD_VERSION}, {"build", GAITD_BUILD}};
+  });
+  methods.add_snapshot("plugin.list", [this] {
+    std::map<std::string, std::string> active;
+    for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
+      active[std::string(layer_name(layer))] = layer_variants_[layer];
+    }
+    return plugin_list_json(PluginDirectory(paths_.plugin_folders()).list(), active);
+  });
+  ServerOptions options;
+  options.socket_path = config_.socket;
+  std::string error;
+  server_ = CommandServer::start(options, std::move(methods), bridge_.get(), &error);
+  if (server_ == nullptr) {
+    spdlog::error("{}", error);
+    return false;
+  }
+  spdlog::info("commands: {}", server_->socket_path());
+  return true;
+}
+
+bool Application::prepare() {
+  if (!read_configuration() || !load_layers()) return false;
+  if (options_.check_config) return true;
+  return load_backend() && start_telemetry() && start_server();
+}
+
+int Application::run() {
+  const GaitdBackendInstance& backend = backend_->instance();
+  RealtimeReport realtime;
+  const bool paced = config_.clock == GAITD_CLOCK_REALTIME;
+  if (paced) lock_memory(config_.realtime, &realtime);
+  if (backend.vtable->start(backend.self) != GAITD_OK) {
+    spdlog::error("backend {}: start failed; see the messages above", config_.backend);
+    return 1;
+  }
+  LoopOptions options;
+  options.clock = config_.clock;
+  options.period = config_.period;
+  options.arm = truth_;  // a robot comes up disarmed, a simulated one ready to use
+  options.safe_stop_on_overrun = config_.realtime.overrun == OverrunPolicy::kSafeStop;
+  options.overrun_run = config_.realtime.overrun_run;
+  loop_ = std::make_unique<ControlLoop>(options, robot_->model, pipeline_.get(), backend,
+                                        telemetry_.get(), bridge_.get(), player_.get());
+  LoopReport report;
+  bool degraded = false;
+  std::thread control([&] {
+    if (paced) {
+      enter_realtime(config_.realtime, &realtime);
+      for (const std::string& line : realtime.got) spdlog::info("real time: {}", line);
+      for (const std::string& line : realtime.degraded) spdlog::warn("real time, degraded: {}", line);
+      degraded = !realtime.degraded.empty();
+      if (degraded && config_.realtime.require) {
+        spdlog::error("--require-rt: not running degraded");
+        return;
+      }
+    }
+    report = loop_->run();
+  });
+  control.join();
+  backend.vtable->stop(backend.self);
+  server_.reset();
+  const double simulated = static_cast<double>(report.ticks) * config_.period;
+  const double factor = report.wall_seconds > 0.0 ? simulated / report.wall_seconds : 0.0;
+  constexpr const char* kEnds[] = {"stopped", "settled", "duration", "fault"};
+  std::string error;
+  const bool logged = telemetry_->close({{"realtime_factor", std::to_string(factor)},
+                                         {"wall_seconds", std::to_string(report.wall_seconds)},
+                                         {"end", kEnds[static_cast<int>(report.end)]}},
+                                        &error);
+  if (!logged && config_.log.enabled) spdlog::error("{}", error);
+  spdlog::info("{:.3f} s in {} ticks, {:.2f} times real time; overruns {}, late sensors {}; {}",
+               simulated, report.ticks, factor, report.overruns, report.late_backend,
+               kEnds[static_cast<int>(report.end)]);
+  return degraded && config_.realtime.require ? 1 : 0;
+}
+
+void Application::request_stop() {
+  if (loop_ != nullptr) loop_->stop();
+}
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/config/daemon_config.h"
+#include "daemon/config/paths.h"
+#include "daemon/config/scenario.h"
+#include "daemon/control/control_loop.h"
+#include "daemon/host/loaded_plugin.h"
+#include "daemon/host/plugin_directory.h"
+#include "daemon/server/command_server.h"
+
+namespace gaitd::daemon {
+
+// What the command line asks for; empty: not given.
+struct Options {
+  std::string config;
+  std::string backend;
+  std::string robot;
+  std::string scenario;
+  std::string clock;
+  std::string socket;
+  std::string log;
+  std::vector<std::string> set;
+  bool require_rt = false;
+  bool check_config = false;
+};
+
+// gaitd put together: configuration, robot, plugins, backend, telemetry, command server and the
+// control thread, in this order; taken apart in the reverse one.
+class Application {
+ public:
+  explicit Application(const Options& options);
+  ~Application();
+
+  // Reads and loads everything. Errors go to the log, all of them at once. False: do not run.
+  bool prepare();
+  // Until the scenario ends or request_stop(). The exit code.
+  int run();
+  void request_stop();
+
+ private:
+  bool read_configuration();
+  bool load_layers();
+  bool load_backend();
+  bool start_telemetry();
+  bool start_server();
+  std::string default_log_file() const;
+  void report_issues(const Issues& issues) const;
+  nlohmann::json status() const;
+  LogMetadata metadata() const;
+
+  const Options options_;
+  Paths paths_;
+  Settings settings_;
+  DaemonConfig config_;
+  std::optional<Robot> robot_;
+  std::optional<Scenario> scenario_;
+  std::unique_ptr<ScenarioPlayer> player_;
+  LayerChain::Layers layers_;
+  std::vector<std::string> layer_variants_;
+  std::unique_ptr<LoadedBackend> backend_;
+  bool truth_ = false;
+  std::string log_file_;
+  std::unique_ptr<Telemetry> telemetry_;
+  std::unique_ptr<CommandBridge> bridge_;
+  std::unique_ptr<Pipeline> pipeline_;
+  std::unique_ptr<ControlLoop> loop_;
+  std::unique_ptr<CommandServer> server_;
+};
+
+}  // namespace gaitd::daemon

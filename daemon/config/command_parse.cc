@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/config/command_parse.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "daemon/config/yaml_reader.h"
+
+namespace gaitd::daemon {
+namespace {
+
+constexpr std::array<std::string_view, 3> kModes = {"stand", "walk-straight", "walk-bent"};
+constexpr std::array<std::string_view, 2> kSides = {"left", "right"};
+constexpr int kMaxSteps = 1000;
+constexpr Bounds kDuration = {0.05, 20.0, "s"};
+constexpr Bounds kPosition = {-1e4, 1e4, "m"};
+constexpr Bounds kSolePosition = {-1.0, 1.0, "m"};
+
+struct PlainMethod {
+  std::string_view name;
+  CommandType type;
+};
+constexpr std::array<PlainMethod, 9> kPlainMethods = {{
+    {"arm", CommandType::kArm},
+    {"disarm", CommandType::kDisarm},
+    {"estop", CommandType::kEstop},
+    {"reset", CommandType::kReset},
+    {"pause", CommandType::kPause},
+    {"resume", CommandType::kResume},
+    {"stop", CommandType::kStop},
+    {"abort", CommandType::kAbort},
+    {"sim.reset", CommandType::kSimReset},
+}};
+
+NodePtr map_of(std::string_view key, const NodePtr& value) {
+  auto map = std::make_shared<Node>();
+  map->kind = NodeKind::kMap;
+  map->where = value->where;
+  map->entries.push_back({std::string(key), value->where, value});
+  return map;
+}
+
+// The short forms of scenario files (`pause: true`, `mode: walk-bent`, `footsteps: [...]`) as maps.
+NodePtr expanded(std::string_view method, const NodePtr& params, bool plain,
+                 const std::string& path, Issues* issues) {
+  if (!params || params->kind == NodeKind::kNull) {
+    auto empty = std::make_shared<Node>();
+    empty->kind = NodeKind::kMap;
+    if (params) empty->where = params->where;
+    return empty;
+  }
+  if (plain && params->kind == NodeKind::kScalar) {
+    if (as_boolean(*params) != true) {
+      issues->add(params->where, path, "true", describe(*params),
+                  "write true or leave the command out");
+    }
+    return expanded(method, nullptr, plain, path, issues);
+  }
+  if (method == "mode" && params->kind == NodeKind::kScalar) return map_of("mode", params);
+  if (params->kind == NodeKind::kList && (method == "footsteps" || method == "replace")) {
+    return map_of("footsteps", params);
+  }
+  return params;
+}
+
+void read_walk(MapReader* map, walking::WalkCommand* walk) {
+  map->require({"steps"});
+  walk->steps = static_cast<int>(map->integer("steps", 1, kMaxSteps).value_or(0));
+  walk->length = map->number("length", {-2.0, 2.0, "m"}).value_or(0.0);
+  walk->lateral = map->number("lateral", {-1.0, 1.0, "m"}).value_or(0.0);
+  walk->width = map->number("width", {0.0, 2.0, "m"}).value_or(0.0);
+  walk->turn = map->number("turn", {-1.6, 1.6, "rad"}).value_or(0.0);
+  walk->swing_duration = map->number("swing", kDuration).value_or(0.0);
+  walk->transfer_duration = map->number("transfer", kDuration).value_or(0.0);
+  walk->first_side = map->choice("first", kSides).value_or(GAITD_BOTH);
+}
+
+void read_contact_polygon(MapReader* map, GaitdFootstep* footstep) {
+  const std::vector<NodePtr> nodes = map->list("contact_polygon", 3, GAITD_MAX_FOOT_POINTS);
+  const std::string path = map->path_of("contact_polygon");
+  const std::vector<double> points = read_points(nodes, path, 2, kSolePosition, map->issues());
+  if (points.empty()) return;
+  footstep->polygon_count = static_cast<int>(points.size() / 2);
+  std::copy(points.begin(), points.end(), &footstep->contact_polygon[0][0]);
+  std::string why;
+  if (!is_convex_counter_clockwise(points, 2, &why)) {
+    map->fail("contact_polygon", "a convex outline, counter-clockwise from above", why, "");
+  }
+}
+
+void read_landing_region(MapReader* map, GaitdFootstep* footstep) {
+  const std::vector<NodePtr> nodes = map->list("landing_region", 3, GAITD_MAX_REGION_POINTS);
+  const std::string path = map->path_of("landing_region");
+  const std::vector<double> points = read_points(nodes, path, 3, kPosition, map->issues());
+  if (points.empty()) return;
+  footstep->region_count = static_cast<int>(points.size() / 3);
+  std::copy(points.begin(), points.end(), &footstep->landing_region[0][0]);
+  std::string why;
+  if (!is_convex_counter_clockwise(points, 3, &why)) {
+    map->fail("landing_region", "a convex outline, counter-clockwise from above", why, "");
+  }
+}
+
+void read_footstep(MapReader map, GaitdFootstep* footstep) {
+  map.require({"side", "x", "y"});
+  footstep->side = map.choice("side", kSides).value_or(GAITD_LEFT);
+  footstep->pose.position[0] = map.number("x", kPosition).value_or(0.0);
+  footstep->pose.position[1] = map.number("y", kPosition).value_or(0.0);
+  footstep->pose.position[2] = map.number("z", kPosition).value_or(0.0);
+  const double yaw = map.number("yaw", {-100.0, 100.0, "rad"}).value_or(0.0);
+  const double pitch = map.number("pitch", {-1.0, 1.0, "rad"}).value_or(0.0);
+  const double roll = map.number("roll", {-1.0, 1.0, "rad"}).value_or(0.0);
+  const Eigen::Quaterniond orientation = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+                                         Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+                                         Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX());
+  Eigen::Map<Eigen::Vector4d>(footstep->pose.orientation) = orientation.coeffs();
+  footstep->swing_duration = map.number("swing", kDuration).value_or(0.0);
+  footstep->transfer_duration = map.number("transfer", kDuration).value_or(0.0);
+  footstep->swing_height = map.number("swing_height", {0.01, 1.0, "m"}).value_or(0.0);
+  read_contact_polygon(&map, footstep);
+  read_landing_region(&map, footstep);
+  map.finish();
+}
+
+void read_footsteps(MapReader* map, bool replace, Command* command) {
+  map->require({"footsteps"});
+  const std::vector<NodePtr> nodes = map->list("footsteps", 1, walking::kMaxFootstepsPerCommand);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const std::string path = map->path_of("footsteps") + "[" + std::to_string(i) + "]";
+    read_footstep(MapReader(nodes[i], path, map->issues()), &command->footsteps[i]);
+  }
+  command->footstep_count = static_cast<int>(nodes.size());
+  command->replace = map->boolean("replace").value_or(replace) || replace;
+}
+
+void read_push(MapReader* map, const GaitdModel* model, GaitdDisturbance* push) {
+  map->require({"link", "force", "duration"});
+  push->body = -1;
+  if (const auto link = map->text("link"); link && model) {
+    push->body = body_index(*model, *link);
+    if (push->body < 0) {
+      std::vector<std::string> names;
+      for (int i = 0; i < model->body_count; ++i) names.emplace_back(model->bodies[i].name);
+      map->fail("link", "a link of the robot that moves", *link, suggestion(*link, names));
+    }
+  }
+  map->numbers("force", push->force, {-1e5, 1e5, "N"});
+  map->numbers("point", push->point, {-10.0, 10.0, "m"});
+  push->duration = map->number("duration", {1e-4, 60.0, "s"}).value_or(0.0);
+}
+
+}  // namespace
+
+const std::vector<std::string>& command_methods() {
+  static const std::vector<std::string> kMethods = [] {
+    std::vector<std::string> names = {"mode", "walk", "footsteps", "replace", "sim.push"};
+    for (const PlainMethod& plain : kPlainMethods) names.emplace_back(plain.name);
+    std::sort(names.begin(), names.end());
+    return names;
+  }();
+  return kMethods;
+}
+
+std::optional<Command> parse_command(std::string_view method, const NodePtr& params,
+                                     const GaitdModel* model, const std::string& path,
+                                     Issues* issues) {
+  const auto plain = std::find_if(kPlainMethods.begin(), kPlainMethods.end(),
+                                  [&](const PlainMethod& m) { return m.name == method; });
+  const bool is_plain = plain != kPlainMethods.end();
+  Issues found;
+  MapReader map(expanded(method, params, is_plain, path, &found), path, &found);
+  Command command{};
+  if (is_plain) {
+    command.type = plain->type;
+  } else if (method == "mode") {
+    command.type = CommandType::kMode;
+    map.require({"mode"});
+    command.mode = map.choice("mode", kModes).value_or(GAITD_MODE_STAND);
+  } else if (method == "walk") {
+    command.type = CommandType::kWalk;
+    read_walk(&map, &command.walk);
+  } else if (method == "footsteps" || method == "replace") {
+    command.type = CommandType::kFootsteps;
+    read_footsteps(&map, method == "replace", &command);
+  } else if (method == "sim.push") {
+    command.type = CommandType::kPush;
+    read_push(&map, model, &command.push);
+  } else {
+    found.add_text(
+        map.where(), path,
+        "unknown command '" + std::string(method) + "'; " + suggestion(method, command_methods()));
+    issues->append(found);
+    return std::nullopt;
+  }
+  map.finish();
+  issues->append(found);
+  if (!found.ok()) return std::nullopt;
+  return command;
+}
+
+std::optional<Command> parse_command(std::string_view method, const nlohmann::json& params,
+                                     const GaitdModel& model, std::string* error) {
+  Issues issues;
+  auto command = parse_command(method, from_json(params, {}), &model, std::string(method), &issues);
+  *error = issues.error_text();
+  return command;
+}
+
+int mode_from_name(std::string_view name) {
+  const auto found = std::find(kModes.begin(), kModes.end(), name);
+  return found == kModes.end() ? -1 : static_cast<int>(found - kModes.begin());
+}
+
+std::string_view mode_name(int mode) {
+  return mode >= 0 && mode < static_cast<int>(kModes.size()) ? kModes[mode] : "unknown";
+}
+
+int body_index(const GaitdModel& model, std::string_view name) {
+  for (int i = 0; i < model.body_count; ++i) {
+    if (name == model.bodies[i].name) return i;
+  }
+  return -1;
+}
+
+int joint_index(const GaitdModel& model, std::string_view name) {
+  for (int i = 0; i < model.joint_count; ++i) {
+    if (name == model.joints[i].name) return i;
+  }
+  return -1;
+}
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/config/daemon_config.h"
+
+#include <memory>
+#include <span>
+
+#include "daemon/config/yaml_reader.h"
+
+namespace gaitd::daemon {
+namespace {
+
+constexpr std::string_view kSchema = "gaitd.config/1";
+constexpr std::array<std::string_view, 3> kBackends = {"simbody", "socketcan", "mock"};
+constexpr std::array<std::string_view, 2> kClocks = {"realtime", "lockstep"};
+constexpr std::array<std::string_view, 3> kProfiles = {"simulation", "hardware", "auto"};
+constexpr std::array<std::string_view, 2> kOverrunPolicies = {"report", "safe-stop"};
+constexpr std::array<std::string_view, 3> kCompressions = {"none", "lz4", "zstd"};
+constexpr int kMaxProcessor = 1023;
+
+// One key at a time out of the settings, with the checks of MapReader; what is not set or does not
+// fit leaves the default.
+class SettingReader {
+ public:
+  SettingReader(Settings* settings, Issues* issues) : settings_(settings), issues_(issues) {}
+
+  void number(const std::string& key, const Bounds& bounds, double* out) {
+    if (const auto value = reader(key).number(key, bounds)) *out = *value;
+  }
+  void integer(const std::string& key, int minimum, int maximum, int* out) {
+    if (const auto value = reader(key).integer(key, minimum, maximum)) {
+      *out = static_cast<int>(*value);
+    }
+  }
+  void boolean(const std::string& key, bool* out) {
+    if (const auto value = reader(key).boolean(key)) *out = *value;
+  }
+  // An empty text is allowed where it has a meaning.
+  void text(const std::string& key, bool may_be_empty, std::string* out) {
+    const NodePtr node = settings_->find(key);
+    if (node && may_be_empty && node->kind == NodeKind::kScalar) {
+      *out = node->text;
+    } else if (const auto value = reader(key).text(key)) {
+      *out = *value;
+    }
+  }
+  int choice(const std::string& key, std::span<const std::string_view> words, int fallback) {
+    return reader(key).choice(key, words).value_or(fallback);
+  }
+  std::vector<NodePtr> list(const std::string& key, std::size_t maximum) {
+    return reader(key).list(key, 0, maximum);
+  }
+
+ private:
+  // A map of this one key.
+  MapReader reader(const std::string& key) {
+    auto map = std::make_shared<Node>();
+    map->kind = NodeKind::kMap;
+    if (const NodePtr value = settings_->find(key)) {
+      map->where = value->where;
+      map->entries.push_back({key, value->where, value});
+    }
+    return MapReader(map, "", issues_);
+  }
+
+  Settings* settings_;
+  Issues* issues_;
+};
+
+void read_realtime(SettingReader* reader, Issues* issues, RealtimeConfig* realtime) {
+  reader->integer("realtime.priority", 1, 99, &realtime->priority);
+  for (const NodePtr& item : reader->list("realtime.affinity", kMaxProcessor + 1)) {
+    const auto processor = as_integer(*item);
+    if (processor && *processor >= 0 && *processor <= kMaxProcessor) {
+      realtime->affinity.push_back(static_cast<int>(*processor));
+    } else {
+      issues->add(item->where, "realtime.affinity", "numbers of processors in 0..1023",
+                  describe(*item), "write for example [2, 3], or [] for any");
+    }
+  }
+  reader->boolean("realtime.lock_memory", &realtime->lock_memory);
+  reader->boolean("realtime.require", &realtime->require);
+  realtime->overrun =
+      static_cast<OverrunPolicy>(reader->choice("realtime.overrun", kOverrunPolicies, 0));
+  reader->number("realtime.overrun_run", {0.0, 10.0, "s"}, &realtime->overrun_run);
+}
+
+void read_log(SettingReader* reader, Issues* issues, LogConfig* log) {
+  reader->boolean("log.enabled", &log->enabled);
+  reader->text("log.directory", true, &log->directory);
+  reader->text("log.file", true, &log->file);
+  log->compression = static_cast<LogCompression>(
+      reader->choice("log.compression", kCompressions, static_cast<int>(LogCompression::kZstd)));
+}
+
+}  // namespace
+
+bool load_config_file(const std::string& file, Settings* settings, Issues* issues) {
+  Issues found;
+  const NodePtr document = load_yaml_file(file, &found);
+  MapReader root(document, "", &found);
+  root.require({"schema"});
+  if (const auto schema = root.text("schema"); schema && *schema != kSchema) {
+    root.fail("schema", std::string(kSchema), *schema, "write that, or use a matching gaitd");
+  }
+  if (root.valid()) {
+    Node settings_only = *document;
+    std::erase_if(settings_only.entries,
+                  [](const Node::Entry& entry) { return entry.key == "schema"; });
+    settings->set_tree(SettingSource::kConfig, settings_only, &found);
+  }
+  issues->append(found);
+  return found.ok();
+}
+
+DaemonConfig read_daemon_config(Settings* settings, Issues* issues) {
+  DaemonConfig config;
+  SettingReader reader(settings, issues);
+  const int backend = reader.choice("backend", kBackends, 0);
+  config.backend = kBackends[backend];
+  reader.text("robot", false, &config.robot);
+  config.clock = reader.choice("clock", kClocks, GAITD_CLOCK_REALTIME);
+  reader.number("period", {0.0002, 0.02, "s"}, &config.period);
+
+  int profile = reader.choice("profile", kProfiles, 2);
+  if (profile == 2) profile = config.backend == "socketcan" ? 1 : 0;
+  config.profile = static_cast<Profile>(profile);
+
+  for (std::size_t layer = 0; layer < kLayerNames.size(); ++layer) {
+    reader.text(std::string(kLayerNames[layer]) + ".variant", false, &config.variants[layer]);
+  }
+  read_realtime(&reader, issues, &config.realtime);
+  reader.number("limits.torque_ratio", {0.0, 1.0, ""}, &config.limits.torque_ratio);
+  reader.number("limits.velocity_ratio", {0.0, 1.0, ""}, &config.limits.velocity_ratio);
+  reader.number("limits.position_margin", {0.0, 0.5, "rad"}, &config.limits.position_margin);
+  reader.boolean("swap.allow_on_hardware", &config.swap.allow_on_hardware);
+  reader.number("swap.shadow", {0.0, 60.0, "s"}, &config.swap.shadow);
+  reader.number("swap.probation", {0.0, 60.0, "s"}, &config.swap.probation);
+  reader.number("swap.cross_fade", {0.0, 1.0, "s"}, &config.swap.cross_fade);
+  read_log(&reader, issues, &config.log);
+  reader.text("socket", true, &config.socket);
+  return config;
+}
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/config/issues.h"
+#include "daemon/config/robot.h"
+#include "daemon/config/settings.h"
+#include "gaitd/abi/backend.h"
+#include "gaitd/abi/plugin.h"
+
+namespace gaitd::daemon {
+
+// Names of the layers in the order of GAITD_LAYER_*: the scopes of their parameters.
+inline constexpr std::array<std::string_view, GAITD_LAYER_COUNT> kLayerNames = {
+    "state_estimator", "icp_planner", "step_adjuster", "toe_off", "whole_body_controller"};
+
+enum class OverrunPolicy { kReport, kSafeStop };
+
+struct RealtimeConfig {
+  int priority = 80;          // SCHED_FIFO, 1..99
+  std::vector<int> affinity;  // processors; empty: any
+  bool lock_memory = true;
+  bool require = false;                            // --require-rt: refuse to run degraded
+  OverrunPolicy overrun = OverrunPolicy::kReport;  // one tick over the period
+  double overrun_run = 0.01;  // s of overruns in a row that lead to a safe stop
+};
+
+// Clamps of the daemon after the plugins, against the limits of the model.
+struct LimitsConfig {
+  double torque_ratio = 1.0;     // of the effort limit
+  double velocity_ratio = 1.0;   // of the velocity limit
+  double position_margin = 0.0;  // rad or m, inside the position limits
+};
+
+struct SwapConfig {
+  bool allow_on_hardware = false;
+  double shadow = 0.25;      // s, live inputs before the switch
+  double probation = 1.0;    // s, incumbent ready after the switch
+  double cross_fade = 0.03;  // s
+};
+
+enum class LogCompression { kNone, kLz4, kZstd };
+
+struct LogConfig {
+  bool enabled = true;
+  std::string directory;  // where logs get a name by time; "" with a file
+  std::string file;       // this file instead; "" for none
+  LogCompression compression = LogCompression::kZstd;
+};
+
+// etc/gaitd.yaml with everything laid over it.
+struct DaemonConfig {
+  std::string backend = "simbody";
+  std::string robot = "atlas";  // a name or the path of a robot.yaml
+  int clock = GAITD_CLOCK_REALTIME;
+  double period = 0.001;  // s
+  Profile profile = Profile::kSimulation;
+  std::array<std::string, GAITD_LAYER_COUNT> variants = {"kinematic_inertial", "heel_to_toe",
+                                                         "fixed_steps", "never", "com_height_qp"};
+  RealtimeConfig realtime;
+  LimitsConfig limits;
+  SwapConfig swap;
+  LogConfig log;
+  std::string socket;  // "": the default place for the user
+};
+
+// Puts a gaitd.yaml (schema gaitd.config/1) into the settings. False when it cannot be read.
+bool load_config_file(const std::string& file, Settings* settings, Issues* issues);
+
+// Reads everything above from the settings: gaitd.yaml, scenario and command line together.
+DaemonConfig read_daemon_config(Settings* settings, Issues* issues);
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "daemon/config/issues.h"
+#include "daemon/config/settings.h"
+#include "gaitd/abi/types.h"
+
+namespace gaitd::daemon {
+
+enum class Profile { kSimulation, kHardware };
+
+// Stiffness and damping of the drives around the integrated references, per joint of the model.
+struct JointImpedance {
+  std::array<double, GAITD_MAX_JOINTS> stiffness{};  // N m/rad
+  std::array<double, GAITD_MAX_JOINTS> damping{};    // N m s/rad
+};
+
+// What a leg uses in each of its states; joints that belong to no leg use `support`.
+struct ImpedanceProfile {
+  JointImpedance support;      // the foot carries load
+  JointImpedance swing;        // the foot is in the air
+  JointImpedance heel_strike;  // the first moments after touchdown
+};
+
+// A robot as its robot.yaml describes it: data, never code.
+struct Robot {
+  std::string name;
+  std::string file;  // robot.yaml
+  std::string urdf;  // path of the URDF file
+  GaitdModel model{};
+  ImpedanceProfile impedance;  // of the chosen profile; all zero unless it says otherwise
+};
+
+// Reads robots/<name>/robot.yaml and the URDF it names, fills the model, and puts the parameters of
+// the robot and of the profile into `settings`. Reports everything that is wrong and then returns
+// nothing: unknown keys, links and joints, a chain that does not run from pelvis to foot, a nominal
+// posture outside the joint limits or in which the soles are not level and side by side.
+std::optional<Robot> load_robot(const std::string& file, Profile profile, Settings* settings,
+                                Issues* issues);
+
+}  // namespace gaitd::daemon

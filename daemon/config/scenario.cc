@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/config/scenario.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "daemon/config/command_parse.h"
+#include "daemon/config/scenario_sections.h"
+#include "daemon/config/yaml_reader.h"
+
+namespace gaitd::daemon {
+namespace {
+
+constexpr std::string_view kSchema = "gaitd.scenario/1";
+constexpr std::array<std::string_view, 3> kModes = {"stand", "walk-straight", "walk-bent"};
+// What the command line may replace.
+constexpr std::array<std::string_view, 8> kOverridable = {
+    "duration", "seed", "start", "mode", "terrain", "sensors", "actuators", "model_error"};
+
+NodePtr with_overrides(NodePtr root, Settings* settings) {
+  for (const Settings::Entry& entry : settings->from(SettingSource::kCommandLine)) {
+    const std::string_view first = std::string_view(entry.key).substr(0, entry.key.find('.'));
+    if (std::find(kOverridable.begin(), kOverridable.end(), first) == kOverridable.end()) continue;
+    root = with_value(root, entry.key, entry.value);
+    settings->declare(entry.key);
+  }
+  return root;
+}
+
+// Without a height the robot starts on the ground.
+GaitdStart read_start(MapReader map, const nlohmann::json& terrain, const Location& where) {
+  constexpr Bounds kPosition = {-1e4, 1e4, "m"};
+  GaitdStart start{};
+  start.position[0] = map.number("x", kPosition).value_or(0.0);
+  start.position[1] = map.number("y", kPosition).value_or(0.0);
+  start.position[2] = map.number("z", kPosition).value_or(terrain.value("ground_z", 0.0));
+  if (!map.has("z") && !terrain.contains("ground_z")) {
+    map.issues()->add(map.valid() ? map.where() : where, "start.z",
+                      "the height of the soles, as there is no terrain.ground_z", "nothing",
+                      "add it");
+  }
+  start.yaw = map.number("yaw", {-100.0, 100.0, "rad"}).value_or(0.0);
+  map.finish();
+  return start;
+}
+
+// A path is meant from the folder of the scenario, where there is such a file.
+std::string robot_from(const std::string& scenario_file, const std::string& robot) {
+  const std::filesystem::path beside = std::filesystem::path(scenario_file).parent_path() / robot;
+  std::error_code error;
+  if (robot.ends_with(".yaml") && std::filesystem::is_regular_file(beside, error)) {
+    return beside.lexically_normal().string();
+  }
+  return robot;
+}
+
+void check_link(const std::string& link, const GaitdModel& model, const Location& where,
+                const std::string& path, Issues* issues) {
+  if (body_index(model, link) >= 0) return;
+  std::vector<std::string> names;
+  for (int i = 0; i < model.body_count; ++i) names.emplace_back(model.bodies[i].name);
+  issues->add(where, path, "a link of the robot that moves", link, suggestion(link, names));
+}
+
+}  // namespace
+
+nlohmann::json Scenario::simulator_config() const {
+  return {{"start",
+           {{"x", start.position[0]},
+            {"y", start.position[1]},
+            {"z", start.position[2]},
+            {"yaw", start.yaw}}},
+          {"seed", seed},
+          {"terrain", terrain},
+          {"sensors", sensors},
+          {"actuators", actuators},
+          {"model_error", model_error}};
+}
+
+std::optional<Scenario> load_scenario(const std::string& file, Settings* settings, Issues* issues) {
+  Issues found;
+  const NodePtr root = load_yaml_file(file, &found);
+  std::optional<Scenario> scenario;
+  if (root) scenario = read_scenario(root, file, settings, &found);
+  issues->append(found);
+  return found.ok() ? scenario : std::nullopt;
+}
+
+std::optional<Scenario> read_scenario(const NodePtr& document, const std::string& file,
+                                      Settings* settings, Issues* issues) {
+  Issues found;
+  NodePtr overlaid = document;
+  if (document->kind == NodeKind::kMap) overlaid = with_overrides(document, settings);
+  MapReader root(overlaid, "", &found);
+  root.require({"schema", "name", "robot", "duration"});
+  if (const auto schema = root.text("schema"); schema && *schema != kSchema) {
+    root.fail("schema", std::string(kSchema), *schema, "write that, or use a matching gaitd");
+  }
+  Scenario scenario;
+  scenario.file = file;
+  scenario.name = root.text("name").value_or("");
+  scenario.robot = robot_from(file, root.text("robot").value_or(""));
+  scenario.duration = root.number("duration", {0.001, 86400.0, "s"}).value_or(86400.0);
+  scenario.seed = static_cast<std::uint64_t>(root.integer("seed", 0, 4294967295).value_or(1));
+  scenario.mode = root.choice("mode", kModes).value_or(GAITD_MODE_STAND);
+  scenario.terrain = read_terrain(root.map("terrain"));
+  scenario.start = read_start(root.map("start"), scenario.terrain, root.where());
+  scenario.sensors = read_sensors(root.map("sensors"));
+  scenario.actuators = read_actuators(root.map("actuators"));
+  scenario.model_error = read_model_error(root.map("model_error"));
+  scenario.commands = read_scenario_commands(&root, scenario.duration);
+  scenario.disturbances = read_disturbances(&root, scenario.duration, scenario.commands);
+  scenario.expect = read_expectations(root.map("expect"));
+  if (const NodePtr set = root.node("set")) {
+    MapReader map(set, "set", &found);
+    if (map.valid()) settings->set_tree(SettingSource::kScenario, *set, &found);
+  }
+  if (const NodePtr robot = root.node("robot"); robot && !scenario.robot.empty()) {
+    settings->set(SettingSource::kScenario, "robot", make_scalar(scenario.robot, robot->where));
+  }
+  root.finish();
+  issues->append(found);
+  if (!found.ok()) return std::nullopt;
+  return scenario;
+}
+
+void check_scenario(const Scenario& scenario, const GaitdModel& model, Issues* issues) {
+  for (const ScenarioCommand& command : scenario.commands) {
+    if (command.method != "sim.push") continue;
+    parse_command(command.method, from_json(command.params, command.where), &model, "push", issues);
+  }
+  for (const ScenarioDisturbance& disturbance : scenario.disturbances) {
+    check_link(disturbance.link, model, disturbance.where, "disturbances.link", issues);
+  }
+  for (const auto& [section, links] : scenario.model_error.items()) {
+    if (!links.is_object()) continue;
+    for (const auto& [link, value] : links.items()) {
+      check_link(link, model, {scenario.file, 0}, "model_error." + section, issues);
+    }
+  }
+}
+
+}  // namespace gaitd::daemon

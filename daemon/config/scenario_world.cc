@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scenario says about the simulated world, as configuration of the simulator.
+#include <array>
+
+#include "daemon/config/scenario_sections.h"
+
+namespace gaitd::daemon {
+namespace {
+
+constexpr double kDefaultFriction = 0.8;
+constexpr std::size_t kMaxBoxes = 1000;
+constexpr Bounds kFriction = {0.0, 10.0, ""};
+constexpr Bounds kPosition = {-1e4, 1e4, "m"};
+
+struct Figure {
+  std::string_view name;
+  Bounds bounds;
+};
+
+// The names and bounds of the simulator.
+constexpr std::array<Figure, 11> kSensorFigures = {{
+    {"gyro_noise", {0.0, 10.0, "rad/s"}},
+    {"gyro_bias", {0.0, 10.0, "rad/s"}},
+    {"accelerometer_noise", {0.0, 100.0, "m/s^2"}},
+    {"accelerometer_bias", {0.0, 100.0, "m/s^2"}},
+    {"encoder_bits", {0.0, 48.0, ""}},
+    {"encoder_noise", {0.0, 1.0, "rad"}},
+    {"velocity_filter", {0.0, 1e5, "Hz"}},
+    {"force_noise", {0.0, 1e4, "N"}},
+    {"force_offset", {0.0, 1e4, "N"}},
+    {"moment_noise", {0.0, 1e4, "N m"}},
+    {"delay", {0.0, 0.1, "s"}},
+}};
+
+constexpr std::array<Figure, 5> kActuatorFigures = {{
+    {"command_delay", {0.0, 0.1, "s"}},
+    {"bandwidth", {0.0, 1e5, "Hz"}},
+    {"torque_noise", {0.0, 1.0, "of the limit"}},
+    {"coulomb_friction", {0.0, 1.0, "of the limit"}},
+    {"speed_derating", {0.0, 100.0, "times the velocity limit"}},
+}};
+
+// One of two words, or a map of figures.
+nlohmann::json read_word_or_figures(MapReader* map, std::string_view key,
+                                    const std::array<std::string_view, 2>& words,
+                                    std::span<const Figure> figures) {
+  const NodePtr node = map->node(key);
+  if (!node) return std::string(words[0]);
+  if (node->kind != NodeKind::kMap) {
+    const auto word = map->choice(key, words);
+    return std::string(words[word.value_or(0)]);
+  }
+  MapReader values = map->map(key);
+  nlohmann::json result = nlohmann::json::object();
+  for (const Figure& figure : figures) {
+    const auto value = values.number(figure.name, figure.bounds);
+    if (value) result[std::string(figure.name)] = *value;
+  }
+  values.finish();
+  return result;
+}
+
+nlohmann::json read_box(MapReader map, double friction) {
+  map.require({"center", "size"});
+  std::array<double, 3> center{};
+  std::array<double, 3> size{};
+  std::array<double, 3> rpy{};
+  map.numbers("center", center, kPosition);
+  map.numbers("size", size, {1e-3, 1e4, "m"});
+  map.numbers("rpy", rpy, {-6.3, 6.3, "rad"});
+  const double own_friction = map.number("friction", kFriction).value_or(friction);
+  map.finish();
+  return {{"center", center}, {"size", size}, {"rpy", rpy}, {"friction", own_friction}};
+}
+
+nlohmann::json read_scales(MapReader map) {
+  nlohmann::json result = nlohmann::json::object();
+  for (const Node::Entry& entry : map.entries()) {
+    const auto value =
+        read_number(*entry.value, map.path_of(entry.key), {0.1, 10.0, ""}, map.issues());
+    if (value) result[entry.key] = *value;
+  }
+  return result;
+}
+
+}  // namespace
+
+nlohmann::json read_terrain(MapReader map) {
+  if (!map.valid()) {
+    return {{"friction", kDefaultFriction}, {"ground_z", 0.0}, {"boxes", nlohmann::json::array()}};
+  }
+  const double friction = map.number("friction", kFriction).value_or(kDefaultFriction);
+  nlohmann::json result = {{"friction", friction}, {"boxes", nlohmann::json::array()}};
+  if (const auto ground = map.number("ground_z", kPosition)) result["ground_z"] = *ground;
+  const std::vector<NodePtr> boxes = map.list("boxes", 0, kMaxBoxes);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const std::string path = map.path_of("boxes") + "[" + std::to_string(i) + "]";
+    result["boxes"].push_back(read_box(MapReader(boxes[i], path, map.issues()), friction));
+  }
+  if (!map.has("ground_z") && !map.has("boxes")) {
+    map.fail("", "ground_z or boxes", "neither",
+             "add 'ground_z: 0.0': there is nothing to stand on");
+  }
+  map.finish();
+  return result;
+}
+
+nlohmann::json read_sensors(MapReader map) {
+  nlohmann::json result = {
+      {"noise", read_word_or_figures(&map, "noise", {"none", "nominal"}, kSensorFigures)}};
+  map.finish();
+  return result;
+}
+
+nlohmann::json read_actuators(MapReader map) {
+  nlohmann::json result = {
+      {"model", read_word_or_figures(&map, "model", {"ideal", "nominal"}, kActuatorFigures)}};
+  map.finish();
+  return result;
+}
+
+nlohmann::json read_model_error(MapReader map) {
+  nlohmann::json offsets = nlohmann::json::object();
+  MapReader com_offset = map.map("com_offset");
+  for (const Node::Entry& entry : com_offset.entries()) {
+    std::array<double, 3> offset{};
+    com_offset.numbers(entry.key, offset, {-0.5, 0.5, "m"});
+    offsets[entry.key] = offset;
+  }
+  nlohmann::json result = {{"mass_scale", read_scales(map.map("mass_scale"))},
+                           {"com_offset", offsets},
+                           {"inertia_scale", read_scales(map.map("inertia_scale"))}};
+  if (const auto friction = map.number("friction", {0.0, 100.0, ""})) {
+    result["friction"] = *friction;
+  }
+  map.finish();
+  return result;
+}
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "daemon/config/daemon_config.h"
+#include "daemon/config/paths.h"
+#include "daemon/config/test/temporary_folder.h"
+
+namespace gaitd::daemon {
+namespace {
+
+TEST(DaemonConfig, TheShippedFileSaysWhatTheDefaultsAre) {
+  Settings settings;
+  Issues issues;
+  const auto file = Paths::detect().config();
+  ASSERT_TRUE(file);
+  ASSERT_TRUE(load_config_file(file->string(), &settings, &issues)) << issues.error_text();
+  const DaemonConfig config = read_daemon_config(&settings, &issues);
+  settings.report_unknown(&issues);
+  EXPECT_TRUE(issues.ok()) << issues.error_text();
+
+  const DaemonConfig defaults;
+  EXPECT_EQ(config.backend, defaults.backend);
+  EXPECT_EQ(config.robot, defaults.robot);
+  EXPECT_EQ(config.clock, defaults.clock);
+  EXPECT_EQ(config.period, defaults.period);
+  EXPECT_EQ(config.profile, defaults.profile);
+  EXPECT_EQ(config.variants, defaults.variants);
+  EXPECT_EQ(config.realtime.priority, defaults.realtime.priority);
+  EXPECT_EQ(config.realtime.affinity, defaults.realtime.affinity);
+  EXPECT_EQ(config.realtime.lock_memory, defaults.realtime.lock_memory);
+  EXPECT_EQ(config.realtime.require, defaults.realtime.require);
+  EXPECT_EQ(config.realtime.overrun, defaults.realtime.overrun);
+  EXPECT_EQ(config.realtime.overrun_run, defaults.realtime.overrun_run);
+  EXPECT_EQ(config.limits.torque_ratio, defaults.limits.torque_ratio);
+  EXPECT_EQ(config.limits.velocity_ratio, defaults.limits.velocity_ratio);
+  EXPECT_EQ(config.limits.position_margin, defaults.limits.position_margin);
+  EXPECT_EQ(config.swap.allow_on_hardware, defaults.swap.allow_on_hardware);
+  EXPECT_EQ(config.swap.shadow, defaults.swap.shadow);
+  EXPECT_EQ(config.swap.probation, defaults.swap.probation);
+  EXPECT_EQ(config.swap.cross_fade, defaults.swap.cross_fade);
+  EXPECT_EQ(config.log.enabled, defaults.log.enabled);
+  EXPECT_EQ(config.log.compression, defaults.log.compression);
+  EXPECT_EQ(config.socket, defaults.socket);
+}
+
+TEST(DaemonConfig, ReadsWhatDiffersFromTheDefaults) {
+  TemporaryFolder folder;
+  const std::string file =
+      folder.write("gaitd.yaml",
+                   "schema: gaitd.config/1\nbackend: socketcan\nclock: lockstep\nperiod: 0.004\n"
+                   "toe_off: {variant: icp_criteria}\nstep_adjuster/icp_qp: {dead_band: 0.02}\n"
+                   "realtime: {affinity: [2, 3], overrun: safe-stop}\nlog: {compression: none}\n");
+  Settings settings;
+  Issues issues;
+  ASSERT_TRUE(load_config_file(file, &settings, &issues)) << issues.error_text();
+  ASSERT_TRUE(settings.set_assignment("period=0.002", &issues));
+  const DaemonConfig config = read_daemon_config(&settings, &issues);
+  settings.declare_variant("step_adjuster", "icp_qp");
+  settings.report_unknown(&issues);
+  EXPECT_TRUE(issues.ok()) << issues.error_text();
+  EXPECT_EQ(config.profile, Profile::kHardware);
+  EXPECT_EQ(config.clock, GAITD_CLOCK_LOCKSTEP);
+  EXPECT_EQ(config.period, 0.002);
+  EXPECT_EQ(config.variants[GAITD_LAYER_TOE_OFF], "icp_criteria");
+  EXPECT_EQ(config.realtime.affinity, (std::vector<int>{2, 3}));
+  EXPECT_EQ(config.realtime.overrun, OverrunPolicy::kSafeStop);
+  EXPECT_EQ(config.log.compression, LogCompression::kNone);
+}
+
+TEST(DaemonConfig, ReportsEveryErrorWithItsLine) {
+  TemporaryFolder folder;
+  const std::string file = folder.write("gaitd.yaml",
+                                        "schema: gaitd.config/1\n"           // 1
+                                        "backend: simbodi\n"                 // 2
+                                        "period: 1\n"                        // 3
+                                        "realtime: {priority: 100,\n"        // 4
+                                        "           affinity: [a, 5000],\n"  // 5
+                                        "           lock_memori: true}\n"    // 6
+                                        "toe_off:\n"                         // 7
+                                        "  variant:\n"                       // 8
+                                        "log: {compression: gzip}\n");       // 9
+  Settings settings;
+  Issues issues;
+  load_config_file(file, &settings, &issues);
+  read_daemon_config(&settings, &issues);
+  settings.report_unknown(&issues);
+  const std::string errors = issues.error_text();
+  for (const char* part :
+       {":2: backend: expected one of simbody, socketcan, mock, got 'simbodi' (text); did you mean",
+        ":3: period: expected a number in 0.0002..0.02 s, got 1",
+        ":4: realtime.priority: expected a whole number in 1..99, got 100",
+        ":5: realtime.affinity: expected numbers of processors in 0..1023, got 'a' (text)",
+        ":5: realtime.affinity: expected numbers of processors in 0..1023, got 5000",
+        ":6: realtime.lock_memori: unknown key; did you mean 'realtime.lock_memory'?",
+        "toe_off.variant: expected a value, got nothing",
+        ":9: log.compression: expected one of none, lz4, zstd"}) {
+    EXPECT_NE(errors.find(part), std::string::npos) << part << "\nin:\n" << errors;
+  }
+}
+
+TEST(DaemonConfig, RefusesAFileOfAnotherSchema) {
+  TemporaryFolder folder;
+  for (const char* text : {"backend: simbody\n", "schema: gaitd.robot/1\n", "[1, 2]\n", ""}) {
+    Settings settings;
+    Issues issues;
+    EXPECT_FALSE(load_config_file(folder.write("x.yaml", text), &settings, &issues)) << text;
+    EXPECT_FALSE(issues.ok());
+  }
+}
+
+}  // namespace
+}  // namespace gaitd::daemon

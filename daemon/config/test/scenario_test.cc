@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/config/scenario.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "daemon/config/command_parse.h"
+#include "daemon/config/paths.h"
+#include "daemon/config/robot.h"
+
+namespace gaitd::daemon {
+namespace {
+
+const std::string kHead = "schema: gaitd.scenario/1\nname: test\nrobot: atlas\nduration: 10\n";
+
+std::optional<Scenario> read(const std::string& text, Issues* issues, Settings* settings) {
+  const NodePtr root = parse_yaml(text, "test.yaml", issues);
+  if (!root) return std::nullopt;
+  return read_scenario(root, "test.yaml", settings, issues);
+}
+
+std::string errors_of(const std::string& text) {
+  Issues issues;
+  Settings settings;
+  const auto scenario = read(text, &issues, &settings);
+  EXPECT_EQ(scenario.has_value(), issues.ok());
+  return issues.error_text();
+}
+
+#define EXPECT_PART(text, part) \
+  EXPECT_NE((text).find(part), std::string::npos) << part << "\nin:\n" << (text)
+
+TEST(Scenario, ReadsEverySection) {
+  Issues issues;
+  Settings settings;
+  const auto scenario = read(
+      kHead +
+          "seed: 7\n"
+          "start: {x: 1, y: 2, yaw: 0.5}\n"
+          "mode: walk-straight\n"
+          "set: {step_adjuster.variant: icp_qp, gait: {swing_duration: 0.7}}\n"
+          "terrain:\n"
+          "  friction: 0.6\n"
+          "  ground_z: 0.1\n"
+          "  boxes: [{center: [1.5, 0, 0.1], size: [0.3, 2, 0.2]}]\n"
+          "sensors: {noise: {gyro_noise: 0.01}}\n"
+          "actuators: {model: nominal}\n"
+          "model_error: {mass_scale: {utorso: 1.1}, com_offset: {utorso: [0, 0.01, 0]}}\n"
+          "commands:\n"
+          "  - {at: 4.0, pause: true}\n"
+          "  - {at: 1.0, walk: {steps: 12, length: 0.35, first: right}}\n"
+          "  - {at: 2.0, footsteps: [{side: left, x: 0.3, y: 0.12}]}\n"
+          "  - {at: 3.0, swap: {layer: whole_body_controller, to: com_height_qp}}\n"
+          "  - {at: 3.5, param: {gait.swing_duration: 0.8, gait.swing_height: 0.1}}\n"
+          "  - {at: 5.0, mode: walk-bent}\n"
+          "  - {at: 6.0, push: {link: utorso, force: [1, 2, 3], duration: 0.1}}\n"
+          "disturbances:\n"
+          "  - {link: utorso, point: [0, 0, 0.3], force: [444, 0, 0], duration: 0.1,\n"
+          "     when: {step: 3, phase: swing, fraction: 0.5}}\n"
+          "  - {link: pelvis, force: [0, 1, 0], duration: 0.2, when: {time: 2.5}}\n"
+          "expect:\n"
+          "  no_fall: true\n"
+          "  steps_taken: 12\n"
+          "  final_pelvis: {x: 4.2, y: 0, tolerance: 0.2, yaw: 0.1, yaw_tolerance: 0.05}\n"
+          "  final_yaw: {yaw: 0.1, tolerance: 0.05}\n"
+          "  stance_knee_mean_max: 0.35\n"
+          "  toe_off_steps_min: 10\n"
+          "  icp_error_rms_max: 0.03\n"
+          "  foot_slip_max: 0.01\n"
+          "  torque_saturation_max: 0.02\n"
+          "  torque_chatter_max: 0.01\n"
+          "  contact_lost: false\n"
+          "  pelvis_drift_max: {start: 1, max: 0.005}\n"
+          "  checks: [{signal: 'truth/foot/*/side_force', stat: max, during: swing, max: 50}]\n",
+      &issues, &settings);
+  ASSERT_TRUE(scenario) << issues.error_text();
+  EXPECT_EQ(issues.warning_text(), "");
+  EXPECT_EQ(scenario->seed, 7u);
+  EXPECT_EQ(scenario->mode, GAITD_MODE_WALK_STRAIGHT);
+  EXPECT_EQ(settings.peek("gait.swing_duration")->text, "0.7");
+  EXPECT_EQ(settings.peek("robot")->text, "atlas");
+
+  const nlohmann::json world = scenario->simulator_config();
+  EXPECT_EQ(world["start"], (nlohmann::json{{"x", 1.0}, {"y", 2.0}, {"z", 0.1}, {"yaw", 0.5}}));
+  EXPECT_EQ(world["terrain"]["boxes"][0]["friction"], 0.6);
+  EXPECT_EQ(world["terrain"]["boxes"][0]["size"][1], 2.0);
+  EXPECT_EQ(world["sensors"]["noise"]["gyro_noise"], 0.01);
+  EXPECT_EQ(world["actuators"]["model"], "nominal");
+  EXPECT_EQ(world["model_error"]["mass_scale"]["utorso"], 1.1);
+
+  ASSERT_EQ(scenario->commands.size(), 8u);
+  EXPECT_EQ(scenario->commands[0].method, "walk");
+  EXPECT_EQ(scenario->commands[0].where.line, 18);
+  EXPECT_EQ(scenario->commands[1].method, "footsteps");
+  EXPECT_EQ(scenario->commands[2].method, "plugin.swap");
+  EXPECT_EQ(scenario->commands[2].params["variant"], "com_height_qp");
+  EXPECT_EQ(scenario->commands[3].method, "param.set");
+  EXPECT_EQ(scenario->commands[4].params["value"], 0.1);
+  EXPECT_EQ(scenario->commands[7].method, "sim.push");
+
+  ASSERT_EQ(scenario->disturbances.size(), 2u);
+  EXPECT_TRUE(scenario->disturbances[0].at_step);
+  EXPECT_EQ(scenario->disturbances[0].step, 3);
+  EXPECT_EQ(scenario->disturbances[0].fraction, 0.5);
+  EXPECT_FALSE(scenario->disturbances[1].at_step);
+  EXPECT_EQ(scenario->disturbances[1].time, 2.5);
+
+  const Expectations& expect = scenario->expect;
+  EXPECT_EQ(expect.no_fall, true);
+  EXPECT_EQ(expect.steps_taken, 12);
+  EXPECT_EQ(expect.final_pelvis->yaw_tolerance, 0.05);
+  EXPECT_EQ(expect.final_yaw->tolerance, 0.05);
+  EXPECT_EQ(expect.contact_lost, false);
+  EXPECT_EQ(expect.pelvis_drift_max->start, 1.0);
+  ASSERT_EQ(expect.checks.size(), 1u);
+  EXPECT_EQ(expect.checks[0].statistic, Statistic::kMax);
+  EXPECT_EQ(expect.checks[0].during, During::kSwing);
+  EXPECT_EQ(expect.checks[0].max, 50.0);
+}
+
+TEST(Scenario, CommandsCanBeParsedAgainFromWhatTheScenarioHolds) {
+  Issues issues;
+  Settings settings;
+  const auto scenario = read(kHead +
+                                 "commands:\n"
+                                 "  - {at: 1, mode: walk-bent}\n"
+                                 "  - {at: 1, walk: {steps: 2, first: left}}\n"
+                                 "  - {at: 1, replace: [{side: left, x: 0.3, y: 0.12}]}\n"
+                                 "  - {at: 2, stop: true}\n",
+                             &issues, &settings);
+  ASSERT_TRUE(scenario) << issues.error_text();
+  const auto model = std::make_unique<GaitdModel>();
+  for (const ScenarioCommand& command : scenario->commands) {
+    std::string error;
+    EXPECT_TRUE(parse_command(command.method, command.params, *model, &error)) << error;
+  }
+}
+
+TEST(Scenario, HasFlatGroundAndNoDisturbancesByDefault) {
+  Issues issues;
+  Settings settings;
+  const auto scenario = read(kHead, &issues, &settings);
+  ASSERT_TRUE(scenario) << issues.error_text();
+  EXPECT_EQ(scenario->terrain["ground_z"], 0.0);
+  EXPECT_EQ(scenario->sensors["noise"], "none");
+  EXPECT_EQ(scenario->actuators["model"], "ideal");
+  EXPECT_EQ(scenario->seed, 1u);
+}
+
+TEST(Scenario, ReportsEveryErrorAtOnce) {
+  const std::string errors = errors_of(
+      "schema: gaitd.scenario/2\nname: test\nrobot: atlas\nduration: -3\nmood: bent\n"
+      "terrain: {friction: -1, boxes: [{center: [0, 0, 0], size: [0, 1, 1]}]}\n"
+      "sensors: {noise: loud}\nactuators: {model: {bandwith: 60}}\n"
+      "commands: [{at: -1, walk: {steps: 0}}, {walk: {steps: 1}, stop: true}, {at: 1}]\n"
+      "disturbances: [{link: utorso, force: [1, 2], duration: 0.1, when: {}}]\n"
+      "expect: {no_fal: true, checks: [{signal: x, stat: median}]}\n");
+  for (const char* part :
+       {"test.yaml:1: schema: expected gaitd.scenario/1, got gaitd.scenario/2",
+        "test.yaml:4: duration: expected a number in 0.001..86400 s, got -3",
+        "test.yaml:5: mood: unknown key; did you mean 'mode'?",
+        "test.yaml:6: terrain.friction: expected a number in 0..10, got -1",
+        "test.yaml:6: terrain.boxes[0].size[0]: expected a number in 0.001..10000 m, got 0",
+        "start.z: expected the height of the soles, as there is no terrain.ground_z",
+        "test.yaml:7: sensors.noise: expected one of none, nominal, got 'loud' (text)",
+        "test.yaml:8: actuators.model.bandwith: unknown key; did you mean 'bandwidth'?",
+        "test.yaml:9: commands[0].at: expected a number in 0..86400 s, got -1",
+        "test.yaml:9: commands[0].walk.steps: expected a whole number in 1..1000, got 0",
+        "test.yaml:9: commands[1].at: expected a value, got nothing",
+        "test.yaml:9: commands[1]: expected one command beside 'at', got 2",
+        "test.yaml:9: commands[2]: expected one command beside 'at', got 0",
+        "test.yaml:10: disturbances[0].force: expected a list of 3 numbers, got a list of 2",
+        "test.yaml:10: disturbances[0].when: expected either time or step, got neither",
+        "test.yaml:11: expect.no_fal: unknown key; did you mean 'no_fall'?",
+        "test.yaml:11: expect.checks[0].stat: expected one of rms, mean, min, max, p99, range",
+        "test.yaml:11: expect.checks[0]: expected min or max, got neither"}) {
+    EXPECT_PART(errors, part);
+  }
+}
+
+TEST(Scenario, RefusesContradictions) {
+  EXPECT_PART(errors_of(kHead + "commands: [{at: 11, stop: true}]\n"),
+              "commands[0].at: expected a time before the end of the scenario, got 11");
+  EXPECT_PART(errors_of(kHead + "disturbances: [{link: a, force: [1, 0, 0], duration: 1, when: "
+                                "{time: 12}}]\n"),
+              "when.time: expected a time before the end");
+  EXPECT_PART(errors_of(kHead + "terrain: {friction: 1}\n"), "ground_z or boxes, got neither");
+  EXPECT_PART(errors_of(kHead + "commands: [{at: 1, pause: false}]\n"), "expected true, got false");
+  EXPECT_PART(errors_of(kHead + "commands: [{at: 1, swap: {layer: toe_of, to: x}}]\n"),
+              "did you mean 'toe_off'?");
+  EXPECT_PART(errors_of(kHead + "expect: {final_pelvis: {x: 1, y: 1, tolerance: 1, "
+                                "yaw_tolerance: 1}}\n"),
+              "expected a yaw beside it");
+  EXPECT_PART(errors_of(kHead + "commands: [{at: 1, wlak: {steps: 1}}]\n"),
+              "commands[0].wlak: unknown key; did you mean 'walk'?");
+}
+
+TEST(Scenario, WarnsOfADisturbanceInAStepThatIsNeverCommanded) {
+  Issues issues;
+  Settings settings;
+  EXPECT_TRUE(
+      read(kHead + "commands: [{at: 1, walk: {steps: 2}}]\n"
+                   "disturbances: [{link: a, force: [1, 0, 0], duration: 1, when: {step: 4}}]\n",
+           &issues, &settings));
+  EXPECT_TRUE(issues.ok());
+  EXPECT_PART(issues.warning_text(), "step 4 of 3 that are commanded");
+}
+
+TEST(Scenario, TheCommandLineReplacesKeysOfTheScenario) {
+  Issues issues;
+  Settings settings;
+  for (const char* assignment :
+       {"seed=5", "duration=3", "sensors.noise=nominal", "actuators.model={bandwidth: 30}",
+        "terrain.friction=0.4", "model_error.mass_scale.utorso=1.05", "start.x=2",
+        "mode=walk-straight", "gait.swing_duration=0.7"}) {
+    ASSERT_TRUE(settings.set_assignment(assignment, &issues)) << issues.error_text();
+  }
+  const auto scenario =
+      read(kHead + "terrain: {ground_z: 0, friction: 0.8}\nsensors: {noise: none}\n", &issues,
+           &settings);
+  ASSERT_TRUE(scenario) << issues.error_text();
+  EXPECT_EQ(scenario->seed, 5u);
+  EXPECT_EQ(scenario->duration, 3.0);
+  EXPECT_EQ(scenario->sensors["noise"], "nominal");
+  EXPECT_EQ(scenario->actuators["model"]["bandwidth"], 30.0);
+  EXPECT_EQ(scenario->terrain["friction"], 0.4);
+  EXPECT_EQ(scenario->model_error["mass_scale"]["utorso"], 1.05);
+  EXPECT_EQ(scenario->start.position[0], 2.0);
+  EXPECT_EQ(scenario->mode, GAITD_MODE_WALK_STRAIGHT);
+  // Only what is no key of the scenario is left to be known by others.
+  settings.find("robot");
+  settings.report_unknown(&issues);
+  EXPECT_EQ(issues.error_count(), 1u) << issues.error_text();
+  EXPECT_PART(issues.error_text(), "gait.swing_duration: unknown key");
+}
+
+TEST(Scenario, ErrorsOfAnOverrideNameTheCommandLine) {
+  Issues issues;
+  Settings settings;
+  settings.set_assignment("seed=many", &issues);
+  EXPECT_FALSE(read(kHead, &issues, &settings));
+  EXPECT_PART(issues.error_text(), "--set seed=many: seed: expected a whole number");
+}
+
+TEST(Scenario, EveryOneThatIsShippedIsValidForItsRobot) {
+  const Paths paths = Paths::detect();
+  const std::vector<std::string> names = paths.scenarios();
+  EXPECT_GE(names.size(), 10u);
+  Issues robot_issues;
+  Settings robot_settings;
+  const auto robot = load_robot(paths.robot("atlas").value_or("").string(), Profile::kSimulation,
+                                &robot_settings, &robot_issues);
+  ASSERT_TRUE(robot) << robot_issues.error_text();
+  for (const std::string& name : names) {
+    Settings settings;
+    Issues issues;
+    const auto scenario = load_scenario(paths.scenario(name)->string(), &settings, &issues);
+    ASSERT_TRUE(scenario) << issues.error_text();
+    EXPECT_EQ(scenario->name, name);
+    if (scenario->robot == "atlas") check_scenario(*scenario, robot->model, &issues);
+    EXPECT_TRUE(issues.all().empty()) << issues.error_text() << issues.warning_text();
+  }
+}
+
+TEST(Scenario, LinksAreCheckedAgainstTheRobot) {
+  Issues issues;
+  Settings settings;
+  const auto robot = load_robot(Paths::detect().robot("atlas").value_or("").string(),
+                                Profile::kSimulation, &settings, &issues);
+  ASSERT_TRUE(robot) << issues.error_text();
+  const auto scenario =
+      read(kHead +
+               "commands: [{at: 1, push: {link: utorsoo, force: [1, 0, 0], duration: 1}}]\n"
+               "disturbances: [{link: pelvs, force: [1, 0, 0], duration: 1, when: {time: 1}}]\n"
+               "model_error: {mass_scale: {head1: 1.1}, friction: 0.5}\n",
+           &issues, &settings);
+  ASSERT_TRUE(scenario) << issues.error_text();
+  check_scenario(*scenario, robot->model, &issues);
+  EXPECT_EQ(issues.error_count(), 3u) << issues.error_text();
+  EXPECT_PART(issues.error_text(), "test.yaml:5: push.link");
+  EXPECT_PART(issues.error_text(), "did you mean 'utorso'?");
+  EXPECT_PART(issues.error_text(), "test.yaml:6: disturbances.link");
+  EXPECT_PART(issues.error_text(), "did you mean 'head'?");
+}
+
+}  // namespace
+}  // namespace gaitd::daemon

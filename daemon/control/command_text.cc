@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/command_text.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+
+namespace gaitd::daemon {
+namespace {
+
+constexpr const char* kNames[] = {"arm",    "disarm", "estop", "reset", "mode",
+                                  "walk",   "footsteps", "pause", "resume", "stop",
+                                  "abort",  "param.set", "sim.push", "sim.reset"};
+
+class Writer {
+ public:
+  Writer(char* buffer, std::size_t size) : buffer_(buffer), size_(size) {}
+  __attribute__((format(printf, 2, 3))) void add(const char* format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const int n = std::vsnprintf(buffer_ + length_, size_ - length_, format, arguments);
+    va_end(arguments);
+    if (n > 0) length_ = std::min(length_ + static_cast<std::size_t>(n), size_ - 1);
+  }
+  void add_quoted(const char* text) {
+    add("\"");
+    for (; *text != '\0'; ++text) add(*text == '"' || *text == '\\' ? "\\%c" : "%c", *text);
+    add("\"");
+  }
+  std::string_view text() const { return {buffer_, length_}; }
+
+ private:
+  char* buffer_;
+  std::size_t size_;
+  std::size_t length_ = 0;
+};
+
+}  // namespace
+
+std::string_view command_text(const Command& c, const CommandReply& reply, char* buffer,
+                              std::size_t size) {
+  Writer w(buffer, size);
+  w.add(R"({"command":"%s","request":%llu,"accepted":%s)", kNames[static_cast<int>(c.type)],
+        static_cast<unsigned long long>(c.request), reply.accepted ? "true" : "false");
+  if (c.type == CommandType::kMode) w.add(R"(,"mode":%d)", c.mode);
+  if (c.type == CommandType::kWalk) {
+    w.add(R"(,"steps":%d,"length":%.17g,"lateral":%.17g,"width":%.17g,"turn":%.17g)", c.walk.steps,
+          c.walk.length, c.walk.lateral, c.walk.width, c.walk.turn);
+    w.add(R"(,"swing":%.17g,"transfer":%.17g,"first":%d)", c.walk.swing_duration,
+          c.walk.transfer_duration, c.walk.first_side);
+  }
+  if (c.type == CommandType::kFootsteps) {
+    w.add(R"(,"count":%d,"replace":%s)", c.footstep_count, c.replace ? "true" : "false");
+  }
+  if (c.type == CommandType::kPush) {
+    w.add(R"(,"body":%d,"force":[%.17g,%.17g,%.17g],"duration":%.17g)", c.push.body,
+          c.push.force[0], c.push.force[1], c.push.force[2], c.push.duration);
+  }
+  if (!reply.accepted) {
+    w.add(R"(,"reason":)");
+    w.add_quoted(reply.message.data());
+  }
+  w.add("}");
+  return w.text();
+}
+
+}  // namespace gaitd::daemon

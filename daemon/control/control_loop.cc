@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/control_loop.h"
+
+#include <time.h>
+#include <xmmintrin.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "daemon/control/command_text.h"
+#include "daemon/control/signals.h"
+#include "daemon/control/stopwatch.h"
+
+namespace gaitd::daemon {
+namespace {
+
+std::int64_t now_ns() {
+  timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return std::int64_t{1000000000} * t.tv_sec + t.tv_nsec;
+}
+
+// Denormal numbers cost a hundred times a normal one: none on this thread.
+void flush_denormals() { _mm_setcsr(_mm_getcsr() | 0x8040); }
+
+}  // namespace
+
+ControlLoop::ControlLoop(const LoopOptions& options, const GaitdModel& model, Pipeline* pipeline,
+                         const GaitdBackendInstance& backend, Telemetry* telemetry,
+                         CommandBridge* bridge, ScenarioPlayer* scenario)
+    : options_(options),
+      model_(model),
+      pipeline_(pipeline),
+      backend_(backend),
+      telemetry_(telemetry),
+      bridge_(bridge),
+      scenario_(scenario),
+      command_(std::make_unique<Command>()) {}
+
+LoopReport ControlLoop::run() {
+  flush_denormals();
+  const Stopwatch watch;
+  next_wake_ns_ = now_ns();
+  if (options_.arm) pipeline_->safety().arm();
+  const bool lockstep = options_.clock == GAITD_CLOCK_LOCKSTEP;
+  while (!stop_.load(std::memory_order_relaxed)) {
+    if (lockstep) telemetry_->wait_for_space();
+    take_commands();
+    const Outcome outcome = tick();
+    if (outcome == Outcome::kTicked) {
+      ++tick_;
+      ++report_.ticks;
+      if (scenario_ != nullptr) {
+        report_.end = scenario_->update(options_.period, pipeline_->data());
+        if (report_.end != ScenarioPlayer::End::kRunning) break;
+      }
+      if (lockstep && backend_.vtable->advance(backend_.self) != GAITD_OK) {
+        pipeline_->safety().raise(kFaultBackend);
+        break;
+      }
+    } else if (outcome == Outcome::kNotReady) {
+      ++report_.late_backend;
+    } else if (lockstep) {
+      break;  // a simulation that cannot be read will not mend
+    }
+    if (!lockstep) wait_for_next_period();
+  }
+  report_.wall_seconds = 1e-6 * watch.microseconds();
+  return report_;
+}
+
+ControlLoop::Outcome ControlLoop::tick() {
+  TickData& data = pipeline_->data();
+  const GaitdStatus read = backend_.vtable->read(backend_.self, &data.sensors);
+  if (read == GAITD_NOT_READY) return Outcome::kNotReady;
+  if (read != GAITD_OK) {
+    if ((pipeline_->safety().faults() & kFaultBackend) == 0) {
+      pipeline_->safety().raise(kFaultBackend);
+      telemetry_->push_event(EventKind::kFault, tick_, tick_ * options_.period,
+                             R"({"fault":"backend","what":"read failed"})");
+    }
+    return Outcome::kBackendFailed;
+  }
+  pipeline_->run(tick_);
+  if (backend_.vtable->write(backend_.self, &data.commands) != GAITD_OK) {
+    pipeline_->safety().raise(kFaultBackend);
+  }
+  data.has_truth = backend_.vtable->truth != nullptr &&
+                   backend_.vtable->truth(backend_.self, &data.truth) == GAITD_OK;
+  record();
+  report_changes();
+  return Outcome::kTicked;
+}
+
+void ControlLoop::take_commands() {
+  if (scenario_ != nullptr) {
+    const double time = static_cast<double>(tick_) * options_.period;
+    while (const Command* command = scenario_->next_command(time)) execute(*command, false);
+    while (const GaitdDisturbance* push = scenario_->next_disturbance(pipeline_->data())) {
+      backend_.vtable->disturb(backend_.self, push);
+    }
+  }
+  while (bridge_ != nullptr && bridge_->try_pop(*command_)) execute(*command_, true);
+}
+
+void ControlLoop::execute(const Command& command, bool from_client) {
+  const bool simulation =
+      command.type == CommandType::kPush || command.type == CommandType::kSimReset;
+  const CommandReply reply = simulation ? simulate(command) : pipeline_->execute(command);
+  const double time = static_cast<double>(tick_) * options_.period;
+  char text[kMaxEventText];
+  telemetry_->push_event(EventKind::kCommand, tick_, time,
+                         command_text(command, reply, text, sizeof(text)));
+  if (from_client) bridge_->push(reply);
+}
+
+CommandReply ControlLoop::simulate(const Command& command) {
+  CommandReply reply;
+  reply.request = command.request;
+  reply.tick = tick_;
+  auto refuse = [&reply](const char* why) {
+    std::snprintf(reply.message.data(), reply.message.size(), "%s", why);
+  };
+  if (command.type == CommandType::kPush) {
+    const auto disturb = backend_.vtable->disturb;
+    if (disturb == nullptr) {
+      refuse("sim push: this backend is no simulation; start gaitd with --backend simbody");
+    } else if (disturb(backend_.self, &command.push) != GAITD_OK) {
+      refuse("sim push: the simulation refused the force; look at link, figures and duration");
+    } else {
+      reply.accepted = true;
+    }
+  } else if (backend_.vtable->reset == nullptr ||
+             backend_.vtable->reset(backend_.self) != GAITD_OK) {
+    refuse("sim reset: this backend is no simulation; start gaitd with --backend simbody");
+  } else {
+    pipeline_->reset();
+    reply.accepted = true;
+  }
+  return reply;
+}
+
+void ControlLoop::record() {
+  TickSlot* slot = telemetry_->begin_tick();
+  if (slot == nullptr) return;
+  const TickData& data = pipeline_->data();
+  slot->tick = data.time.tick;
+  slot->time = data.time.time;
+  record_signals(model_, data, slot->values);
+  *slot->sensors = data.sensors;
+  telemetry_->commit();
+}
+
+void ControlLoop::report_changes() {
+  const TickData& d = pipeline_->data();
+  if (d.safety == last_state_ && d.faults == last_faults_) return;
+  last_state_ = d.safety;
+  last_faults_ = d.faults;
+  constexpr const char* kStates[] = {"disarmed", "readying", "standing",
+                                     "walking",  "stopping", "fault"};
+  char text[kMaxEventText];
+  int length = std::snprintf(text, sizeof(text), R"({"state":"%s","faults":[)",
+                             kStates[static_cast<int>(d.safety)]);
+  const char* comma = "";
+  for (std::size_t i = 0; i < kFaultNames.size(); ++i) {
+    if ((d.faults >> i & 1u) == 0) continue;
+    length += std::snprintf(text + length, sizeof(text) - length, "%s\"%s\"", comma,
+                            kFaultNames[i]);
+    comma = ",";
+  }
+  length += std::snprintf(text + length, sizeof(text) - length, "]}");
+  telemetry_->push_event(d.safety == SafetyState::kFault ? EventKind::kFault : EventKind::kState,
+                         d.time.tick, d.time.time, std::string_view(text, length));
+}
+
+bool ControlLoop::wait_for_next_period() {
+  const std::int64_t period = std::llround(1e9 * options_.period);
+  const std::int64_t before = now_ns();
+  next_wake_ns_ += period;
+  const bool overrun = before > next_wake_ns_;
+  if (overrun) {
+    ++report_.overruns;
+    // Skip what was missed: a burst of catching up would run on old sensors.
+    next_wake_ns_ += (before - next_wake_ns_) / period * period + period;
+  }
+  time_overrun_ = overrun ? time_overrun_ + options_.period : 0.0;
+  if (options_.safe_stop_on_overrun && time_overrun_ > options_.overrun_run) {
+    pipeline_->safety().raise(kFaultOverrun);
+  }
+  const timespec wake{static_cast<time_t>(next_wake_ns_ / 1000000000),
+                      static_cast<long>(next_wake_ns_ % 1000000000)};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr) != 0) {
+    if (stop_.load(std::memory_order_relaxed)) return false;
+  }
+  pipeline_->data().times.jitter_us = 1e-3 * static_cast<double>(now_ns() - next_wake_ns_);
+  return true;
+}
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "daemon/control/pipeline.h"
+#include "daemon/control/scenario_player.h"
+#include "daemon/server/command_bridge.h"
+#include "daemon/telemetry/telemetry.h"
+
+namespace gaitd::daemon {
+
+struct LoopOptions {
+  int clock = GAITD_CLOCK_LOCKSTEP;
+  double period = 0.001;  // s
+  bool arm = true;        // by itself at the first tick: a simulated robot
+  bool safe_stop_on_overrun = false;
+  double overrun_run = 0.01;  // s of overruns in a row that count
+  int priority = 0;           // SCHED_FIFO; 0: ordinary
+};
+
+// What the loop found about time, for reports.
+struct LoopReport {
+  std::int64_t ticks = 0;
+  std::int64_t overruns = 0;
+  std::int64_t late_backend = 0;  // wake-ups without new sensors
+  double wall_seconds = 0.0;
+  ScenarioPlayer::End end = ScenarioPlayer::End::kRunning;
+};
+
+// The one control thread: read -> pipeline -> write, once per period, with commands taken at tick
+// boundaries. In realtime it wakes on an absolute clock; in lockstep the next tick starts when the
+// simulation has made the next sensors.
+class ControlLoop {
+ public:
+  ControlLoop(const LoopOptions& options, const GaitdModel& model, Pipeline* pipeline,
+              const GaitdBackendInstance& backend, Telemetry* telemetry, CommandBridge* bridge,
+              ScenarioPlayer* scenario);
+
+  // Runs until stop() or the end of the scenario. Call on a thread of its own.
+  LoopReport run();
+  void stop() { stop_.store(true, std::memory_order_relaxed); }
+
+ private:
+  enum class Outcome { kTicked, kNotReady, kBackendFailed };
+  Outcome tick();
+  void take_commands();
+  void execute(const Command& command, bool from_client);
+  CommandReply simulate(const Command& command);
+  void record();
+  void report_changes();
+  bool wait_for_next_period();
+
+  const LoopOptions options_;
+  const GaitdModel& model_;
+  Pipeline* pipeline_;
+  GaitdBackendInstance backend_;
+  Telemetry* telemetry_;
+  CommandBridge* bridge_;
+  ScenarioPlayer* scenario_;
+
+  std::atomic<bool> stop_{false};
+  std::unique_ptr<Command> command_;  // scratch: too large for the stack
+  LoopReport report_;
+  std::int64_t tick_ = 0;
+  std::int64_t next_wake_ns_ = 0;
+  double time_overrun_ = 0.0;
+  SafetyState last_state_ = SafetyState::kDisarmed;
+  std::uint32_t last_faults_ = 0;
+};
+
+}  // namespace gaitd::daemon

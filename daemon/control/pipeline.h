@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "daemon/command/command.h"
+#include "daemon/control/layer_chain.h"
+#include "daemon/control/safety.h"
+#include "daemon/control/tick_data.h"
+#include "gaitd/walking/gait_machine.h"
+#include "gaitd/walking/objectives.h"
+
+namespace gaitd::daemon {
+
+// One tick, from sensors to joint commands, in the fixed order of the stages. Runs on the one
+// real-time thread: nothing here allocates, locks, blocks or reads a clock (but for the report).
+class Pipeline {
+ public:
+  // `start`: where the middle of the feet stands at the beginning (W).
+  Pipeline(const GaitdModel& model, LayerChain::Layers layers, const GaitdStart& start,
+           const LimitsConfig& limits, double period);
+
+  // Between ticks.
+  CommandReply execute(const Command& command);
+  // Back to the first tick: for the reset of a simulation. Parameters stay.
+  void reset();
+
+  // data().sensors must hold the sensors of tick `tick`; data().commands holds the answer after.
+  void run(std::int64_t tick);
+
+  TickData& data() { return data_; }
+  const TickData& data() const { return data_; }
+  Safety& safety() { return safety_; }
+  walking::GaitMachine& gait() { return gait_; }
+  walking::ObjectiveBuilder& objectives() { return objectives_; }
+  LayerChain& layers() { return layers_; }
+
+ private:
+  void begin_control();
+  bool control(double dt);
+
+  const GaitdModel model_;
+  const GaitdStart start_;
+  const double period_;
+  LayerChain layers_;
+  walking::GaitMachine gait_;
+  walking::ObjectiveBuilder objectives_;
+  Safety safety_;
+  TickData data_;
+};
+
+}  // namespace gaitd::daemon

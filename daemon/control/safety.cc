@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/safety.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+
+namespace gaitd::daemon {
+
+using P = SafetyParameter;
+
+Safety::Safety(const GaitdModel& model, const LimitsConfig& limits)
+    : model_(model), limits_(limits) {}
+
+const char* Safety::arm() {
+  if (state_ == SafetyState::kFault) {
+    return "arm: a fault is latched; look at `gaitctl status`, mend it, then `gaitctl reset`";
+  }
+  if (state_ != SafetyState::kDisarmed) return nullptr;
+  state_ = SafetyState::kReadying;
+  time_in_state_ = 0.0;
+  time_settled_ = 0.0;
+  start_taken_ = false;
+  return nullptr;
+}
+
+const char* Safety::disarm() {
+  if (state_ == SafetyState::kWalking || state_ == SafetyState::kStopping) {
+    return "disarm: the robot is walking; stop it first: `gaitctl stop`, or `gaitctl estop`";
+  }
+  if (state_ != SafetyState::kFault) state_ = SafetyState::kDisarmed;
+  return nullptr;
+}
+
+const char* Safety::clear() {
+  if (state_ == SafetyState::kFault) {
+    state_ = SafetyState::kDisarmed;
+    faults_ = 0;
+  }
+  return nullptr;
+}
+
+void Safety::raise(std::uint32_t fault) {
+  if (state_ == SafetyState::kDisarmed && fault != kFaultEstop) return;
+  faults_ |= fault;
+  state_ = SafetyState::kFault;
+}
+
+void Safety::stopping() {
+  if (state_ == SafetyState::kWalking) state_ = SafetyState::kStopping;
+}
+
+bool Safety::stale(const GaitdSignalInfo& info) const {
+  return info.valid == 0 || info.age > p_[P::kSensorTimeout];
+}
+
+void Safety::check(const TickData& d, bool estimate_ok) {
+  if (state_ == SafetyState::kDisarmed || state_ == SafetyState::kFault) return;
+  for (int i = 0; i < d.sensors.joint_count; ++i) {
+    if (stale(d.sensors.joints[i].info)) raise(kFaultSensors);
+  }
+  bool imu = false;
+  for (int i = 0; i < d.sensors.imu_count; ++i) imu = imu || !stale(d.sensors.imus[i].info);
+  if (!imu) raise(kFaultSensors);
+  for (int i = 0; i < d.sensors.foot_count; ++i) {
+    if (stale(d.sensors.feet[i].info)) raise(kFaultSensors);
+  }
+  if (!estimate_ok) {
+    raise(kFaultEstimator);
+    return;
+  }
+  const Eigen::Vector3d up =
+      sdk::quaternion(d.robot.pelvis_orientation) * Eigen::Vector3d::UnitZ();
+  if (up.z() < std::cos(p_[P::kTiltLimit])) raise(kFaultTilt | kFaultFall);
+  const double lower = std::min(d.robot.feet[0].position[2], d.robot.feet[1].position[2]);
+  if (d.robot.pelvis_position[2] - lower < p_[P::kFallHeight] * model_.nominal_pelvis_height) {
+    raise(kFaultFall);
+  }
+}
+
+bool Safety::update(double dt, const TickData& d, bool walking) {
+  if (state_ == SafetyState::kStanding && walking) state_ = SafetyState::kWalking;
+  if ((state_ == SafetyState::kWalking || state_ == SafetyState::kStopping) && !walking) {
+    state_ = SafetyState::kStanding;
+  }
+  if (state_ != SafetyState::kReadying) return false;
+
+  if (!start_taken_) {
+    start_taken_ = true;
+    for (int i = 0; i < model_.joint_count; ++i) start_position_[i] = d.robot.joint_position[i];
+  }
+  time_in_state_ += dt;
+  bool in_posture = true;
+  for (int i = 0; i < model_.joint_count; ++i) {
+    in_posture = in_posture && std::abs(d.robot.joint_position[i] - model_.nominal_position[i]) <
+                                   p_[P::kReadyTolerance];
+  }
+  const double weight = model_.total_mass * model_.gravity;
+  const double left = d.robot.feet[GAITD_LEFT].normal_force;
+  const double right = d.robot.feet[GAITD_RIGHT].normal_force;
+  const bool loaded = left + right > p_[P::kReadyLoad] * weight &&
+                      std::min(left, right) > 0.25 * p_[P::kReadyLoad] * weight;
+  time_settled_ = in_posture && loaded ? time_settled_ + dt : 0.0;
+  if (time_settled_ >= p_[P::kReadySettle]) {
+    state_ = SafetyState::kStanding;
+    return true;
+  }
+  if (time_in_state_ > 2.0 * p_[P::kReadyDuration] + p_[P::kReadySettle]) raise(kFaultReadying);
+  return false;
+}
+
+void Safety::hold(const TickData& d, GaitdJointCommands& commands) const {
+  const double s = std::min(1.0, time_in_state_ / p_[P::kReadyDuration]);
+  const double smooth = s * s * (3.0 - 2.0 * s);
+  for (int i = 0; i < model_.joint_count; ++i) {
+    GaitdJointCommand& c = commands.joints[i];
+    const double effort = model_.joints[i].effort_limit;
+    c = {};
+    c.mode = GAITD_JOINT_MODE_TORQUE;
+    c.position = start_position_[i] + smooth * (model_.nominal_position[i] - start_position_[i]);
+    c.stiffness = p_[P::kReadyStiffness] * effort;
+    c.damping = p_[P::kReadyDamping] * effort;
+  }
+}
+
+void Safety::damp(GaitdJointCommands& commands) const {
+  for (int i = 0; i < model_.joint_count; ++i) {
+    GaitdJointCommand& c = commands.joints[i];
+    c = {};
+    c.mode = GAITD_JOINT_MODE_DAMPING;
+    c.damping = p_[P::kFaultDamping] * model_.joints[i].effort_limit;
+  }
+}
+
+void Safety::fall_back(double dt, TickData& d) {
+  // Last good torques, fading into joint damping; then the safe stop.
+  time_unsolved_ += dt;
+  const double patience = p_[P::kSolverPatience];
+  if (time_unsolved_ > patience) {
+    raise(kFaultSolver);
+    damp(d.commands);
+    return;
+  }
+  const double share = patience > 0.0 ? 1.0 - time_unsolved_ / patience : 0.0;
+  for (int i = 0; i < model_.joint_count; ++i) {
+    GaitdJointCommand& c = d.commands.joints[i];
+    c = {};
+    c.mode = GAITD_JOINT_MODE_TORQUE;
+    c.torque = share * last_torque_[i];
+    c.damping = (1.0 - share) * p_[P::kFaultDamping] * model_.joints[i].effort_limit;
+  }
+}
+
+void Safety::write(double dt, bool control_ok, TickData& d) {
+  d.commands.size = sizeof(d.commands);
+  d.commands.joint_count = model_.joint_count;
+  d.commands.tick = d.time.tick;
+  switch (state_) {
+    case SafetyState::kDisarmed:
+    case SafetyState::kFault:
+      damp(d.commands);
+      break;
+    case SafetyState::kReadying:
+      hold(d, d.commands);
+      break;
+    default:
+      if (control_ok) {
+        time_unsolved_ = 0.0;
+        for (int i = 0; i < model_.joint_count; ++i) d.commands.joints[i] = d.wbc.commands.joints[i];
+      } else {
+        fall_back(dt, d);
+      }
+      break;
+  }
+  clamp(dt, d, d.commands);
+  d.safety = state_;
+  d.faults = faults_;
+}
+
+void Safety::clamp(double dt, const TickData& d, GaitdJointCommands& commands) {
+  for (int i = 0; i < model_.joint_count; ++i) {
+    GaitdJointCommand& c = commands.joints[i];
+    const GaitdJoint& joint = model_.joints[i];
+    const double limit = limits_.torque_ratio * joint.effort_limit;
+    double torque = std::clamp(c.torque, -limit, limit);
+    if (controlled()) {
+      const double step = p_[P::kTorqueRate] * joint.effort_limit * dt;
+      torque = std::clamp(torque, last_torque_[i] - step, last_torque_[i] + step);
+    }
+    const double rate = d.robot.joint_velocity[i];
+    const double fastest = limits_.velocity_ratio * joint.velocity_limit;
+    if (rate > fastest) torque = std::min(torque, 0.0);
+    if (rate < -fastest) torque = std::max(torque, 0.0);
+    c.torque = torque;
+    c.position = std::clamp(c.position, joint.position_min + limits_.position_margin,
+                            joint.position_max - limits_.position_margin);
+    c.velocity = std::clamp(c.velocity, -fastest, fastest);
+    // While readying the drives make the torque: what they make now is where control takes over.
+    last_torque_[i] = state_ == SafetyState::kReadying ? d.sensors.joints[i].torque : torque;
+  }
+}
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/signals.h"
+
+#include <initializer_list>
+#include <string>
+
+#include "gaitd/sdk/views.h"
+
+namespace gaitd::daemon {
+namespace {
+
+using Words = std::initializer_list<const char*>;
+using Kind = SignalDescription::Kind;
+
+constexpr const char* kSides[] = {"left", "right"};
+constexpr const char* kAxes[] = {"x", "y", "z"};
+constexpr const char* kLayerTimes[] = {"estimator_us", "planner_us", "adjuster_us", "toe_off_us",
+                                       "wbc_us"};
+
+// Two visitors walk the same enumeration below: one writes down the names, the other the values.
+// A name comes in parts, so that recording does not have to put any together.
+class Describe {
+ public:
+  explicit Describe(SignalTable* table) : table_(table) {}
+  template <class... Parts>
+  void real(double, const char* unit, Parts... parts) {
+    add(Kind::kReal, unit, {}, parts...);
+  }
+  template <class... Parts>
+  void integer(double, Parts... parts) {
+    add(Kind::kInteger, "", {}, parts...);
+  }
+  template <class... Parts>
+  void boolean(bool, Parts... parts) {
+    add(Kind::kBoolean, "", {}, parts...);
+  }
+  template <class... Parts>
+  void word(int, Words words, Parts... parts) {
+    add(Kind::kEnumeration, "", words, parts...);
+  }
+
+ private:
+  template <class... Parts>
+  void add(Kind kind, const char* unit, Words words, Parts... parts) {
+    table_->push_back({(std::string() + ... + parts), unit, kind, {words.begin(), words.end()}});
+  }
+  SignalTable* table_;
+};
+
+class Record {
+ public:
+  explicit Record(std::span<double> values) : values_(values) {}
+  template <class... Parts>
+  void real(double value, const char*, Parts...) {
+    put(value);
+  }
+  template <class... Parts>
+  void integer(double value, Parts...) {
+    put(value);
+  }
+  template <class... Parts>
+  void boolean(bool value, Parts...) {
+    put(value ? 1.0 : 0.0);
+  }
+  template <class... Parts>
+  void word(int value, Words, Parts...) {
+    put(value);
+  }
+
+ private:
+  void put(double value) {
+    if (next_ < values_.size()) values_[next_++] = value;
+  }
+  std::span<double> values_;
+  std::size_t next_ = 0;
+};
+
+template <class V, class... Parts>
+void axes(V& v, const double* values, int count, const char* unit, Parts... prefix) {
+  for (int i = 0; i < count; ++i) v.real(values[i], unit, prefix..., kAxes[i]);
+}
+
+template <class V, class... Parts>
+void pose(V& v, const double* position, const double (&orientation)[4], Parts... prefix) {
+  axes(v, position, 3, "m", prefix...);
+  const Eigen::Vector3d rpy = sdk::roll_pitch_yaw(sdk::quaternion(orientation));
+  v.real(rpy.x(), "rad", prefix..., "roll");
+  v.real(rpy.y(), "rad", prefix..., "pitch");
+  v.real(rpy.z(), "rad", prefix..., "yaw");
+}
+
+template <class V>
+void visit_gait(V& v, const TickData& d) {
+  v.real(d.time.time, "s", "time");
+  v.integer(static_cast<double>(d.time.tick), "tick");
+  v.word(static_cast<int>(d.safety),
+         {"disarmed", "readying", "standing", "walking", "stopping", "fault"}, "safety/state");
+  v.integer(d.faults, "safety/faults");
+  v.word(d.gait.mode, {"stand", "walk_straight", "walk_bent"}, "gait/mode");
+  v.word(d.gait.phase, {"stand", "transfer", "swing"}, "gait/phase");
+  v.word(d.gait.support, {"left", "right", "both"}, "gait/support");
+  v.integer(d.gait.step_index, "gait/step_index");
+  v.boolean(d.gait.phase == GAITD_PHASE_SWING && d.gait.commanded[0].closing != 0, "gait/closing");
+  v.integer(d.gait.footstep_count, "gait/footsteps_ahead");
+  v.boolean(d.gait.paused != 0, "gait/paused");
+  v.boolean(d.gait.early_contact != 0, "gait/early_contact");
+  v.boolean(d.gait.late_contact != 0, "gait/late_contact");
+  v.real(d.gait.time_remaining, "s", "gait/time_remaining");
+}
+
+template <class V>
+void visit_balance(V& v, const TickData& d) {
+  axes(v, d.robot.com, 3, "m", "com/");
+  axes(v, d.robot.com_velocity, 3, "m/s", "com/velocity/");
+  v.real(d.objectives.height_target, "m", "com/height_target");
+  axes(v, d.robot.icp, 2, "m", "icp/");
+  axes(v, d.plan.icp, 2, "m", "icp/desired/");
+  axes(v, d.plan.ecmp, 2, "m", "ecmp/reference/");
+  axes(v, d.adjustment.ecmp, 2, "m", "ecmp/desired/");
+  axes(v, d.adjustment.cmp, 2, "m", "cmp/desired/");
+  v.real(d.adjustment.kappa, "", "cmp/kappa");
+  axes(v, d.robot.cop, 2, "m", "cop/");
+  pose(v, d.robot.pelvis_position, d.robot.pelvis_orientation, "pelvis/");
+}
+
+template <class V>
+void visit_foot(V& v, const TickData& d, int side) {
+  const char* name = kSides[side];
+  const GaitdFootState& foot = d.robot.feet[side];
+  pose(v, foot.position, foot.orientation, "foot/", name, "/");
+  const bool toe = d.gait.footholds[side].contact == GAITD_CONTACT_TOE;
+  v.word(foot.contact == GAITD_CONTACT_NONE ? 0 : (toe ? 1 : 2), {"none", "toe", "full"}, "foot/",
+         name, "/contact");
+  const Eigen::Vector3d force =
+      sdk::quaternion(foot.orientation) * sdk::view(foot.wrench).tail<3>();
+  axes(v, force.data(), 3, "N", "foot/", name, "/force/");
+  axes(v, d.wbc.info.foot_wrench[side] + 3, 3, "N", "foot/", name, "/force_desired/");
+  v.word(static_cast<int>(d.legs[side].state),
+         {"straighten", "straight", "collapsed", "bent", "extend"}, "leg/", name, "/state");
+  v.real(d.legs[side].knee, "rad", "leg/", name, "/knee_privileged");
+  // The foothold ahead of this foot if it has one, else the one it stands on.
+  const GaitdPose* goal = &d.gait.footholds[side].pose;
+  for (int i = 1; i >= 0; --i) {
+    if (i < d.gait.footstep_count && d.gait.adjusted[i].side == side) {
+      goal = &d.gait.adjusted[i].pose;
+    }
+  }
+  axes(v, goal->position, 3, "m", "footstep/", name, "/");
+  v.real(sdk::yaw_of(sdk::quaternion(goal->orientation)), "rad", "footstep/", name, "/yaw");
+}
+
+template <class V>
+void visit_layers(V& v, const TickData& d) {
+  v.boolean(d.toe_off.active != 0, "toe_off/active");
+  constexpr const char* kCriteria[] = {"icp", "icp_distance", "cop", "cmp", "ankle"};
+  for (int i = 0; i < GAITD_TOE_OFF_CRITERIA; ++i) {
+    v.real(d.toe_off.criterion[i], "", "toe_off/criterion/", kCriteria[i]);
+  }
+  v.real(d.adjustment.shift[0], "m", "step_adjust/dx");
+  v.real(d.adjustment.shift[1], "m", "step_adjust/dy");
+  v.real(d.adjustment.time_shift, "s", "step_adjust/time_shift");
+  const GaitdWbcInfo& wbc = d.wbc.info;
+  v.word(wbc.status, {"solved", "max_iterations", "infeasible", "non_finite"}, "wbc/status");
+  v.integer(wbc.iterations, "wbc/iterations");
+  v.real(d.times.layer_us[GAITD_LAYER_WHOLE_BODY_CONTROLLER], "us", "wbc/solve_us");
+  v.real(wbc.kkt_residual, "", "wbc/kkt_residual");
+  v.real(wbc.null_trace, "", "wbc/null_trace");
+  v.real(wbc.momentum_residual, "N", "wbc/momentum_residual");
+  v.real(d.times.total_us, "us", "tick/total_us");
+  for (int i = 0; i < GAITD_LAYER_COUNT; ++i) {
+    v.real(d.times.layer_us[i], "us", "tick/", kLayerTimes[i]);
+  }
+  v.real(d.times.jitter_us, "us", "tick/jitter_us");
+}
+
+template <class V>
+void visit_joints(V& v, const GaitdModel& model, const TickData& d) {
+  for (int i = 0; i < model.joint_count; ++i) {
+    const char* name = model.joints[i].name;
+    v.real(d.robot.joint_position[i], "rad", "joint/", name, "/position");
+    v.real(d.robot.joint_velocity[i], "rad/s", "joint/", name, "/velocity");
+    v.real(d.commands.joints[i].torque, "N m", "joint/", name, "/torque_desired");
+    v.real(d.sensors.joints[i].torque, "N m", "joint/", name, "/torque");
+  }
+}
+
+template <class V>
+void visit_truth(V& v, const GaitdTruth& t) {
+  pose(v, t.pelvis_position, t.pelvis_orientation, "truth/pelvis/");
+  axes(v, t.com, 3, "m", "truth/com/");
+  axes(v, t.com_velocity, 3, "m/s", "truth/com/velocity/");
+  v.boolean(t.body_contact != 0, "truth/body_contact");
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const GaitdFootTruth& foot = t.feet[side];
+    v.real(foot.slip, "m", "truth/foot/", kSides[side], "/slip");
+    v.real(foot.penetration, "m", "truth/foot/", kSides[side], "/penetration");
+    v.real(foot.side_force, "N", "truth/foot/", kSides[side], "/side_force");
+    axes(v, foot.force, 3, "N", "truth/foot/", kSides[side], "/force/");
+    axes(v, foot.position, 3, "m", "truth/foot/", kSides[side], "/position/");
+  }
+}
+
+template <class V>
+void visit(V&& v, const GaitdModel& model, const TickData& d, bool truth) {
+  visit_gait(v, d);
+  visit_balance(v, d);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) visit_foot(v, d, side);
+  visit_layers(v, d);
+  visit_joints(v, model, d);
+  if (truth) visit_truth(v, d.truth);
+}
+
+}  // namespace
+
+SignalTable make_signal_table(const GaitdModel& model, bool truth) {
+  SignalTable table;
+  TickData data{};
+  data.robot.pelvis_orientation[3] = 1.0;
+  visit(Describe(&table), model, data, truth);
+  return table;
+}
+
+void record_signals(const GaitdModel& model, const TickData& data, std::span<double> values) {
+  visit(Record(values), model, data, data.has_truth);
+}
+
+}  // namespace gaitd::daemon

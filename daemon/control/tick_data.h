@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "gaitd/abi/plugin.h"
+#include "gaitd/walking/leg_configuration.h"
+
+namespace gaitd::daemon {
+
+enum class SafetyState { kDisarmed = 0, kReadying, kStanding, kWalking, kStopping, kFault };
+
+// Bits of safety/faults. Latched in kFault until an operator resets.
+enum Fault : std::uint32_t {
+  kFaultEstop = 1u << 0,
+  kFaultFall = 1u << 1,
+  kFaultTilt = 1u << 2,
+  kFaultSensors = 1u << 3,
+  kFaultEstimator = 1u << 4,
+  kFaultLayer = 1u << 5,
+  kFaultSolver = 1u << 6,
+  kFaultBackend = 1u << 7,
+  kFaultOverrun = 1u << 8,
+  kFaultReadying = 1u << 9,
+};
+inline constexpr std::array<const char*, 10> kFaultNames = {
+    "estop", "fall",   "tilt",    "sensors", "estimator",
+    "layer", "solver", "backend", "overrun", "readying"};
+
+// Wall times of one tick. Reported, never acted on in lockstep.
+struct TickTimes {
+  double total_us = 0.0;
+  std::array<double, GAITD_LAYER_COUNT> layer_us{};
+  double jitter_us = 0.0;
+};
+
+// Everything one tick reads and writes, stage by stage, in the order of the pipeline.
+struct TickData {
+  GaitdLayerTime time{};
+  GaitdSensors sensors{};
+  GaitdRobotState robot{};
+  GaitdGaitState gait{};
+  GaitdIcpPlan plan{};
+  GaitdStepAdjustment adjustment{};
+  GaitdToeOff toe_off{};
+  GaitdObjectives objectives{};
+  GaitdWholeBodyControllerOutput wbc{};
+  GaitdJointCommands commands{};  // after safety: what the backend gets
+  SafetyState safety = SafetyState::kDisarmed;
+  std::uint32_t faults = 0;
+  std::array<walking::LegConfiguration::Reference, GAITD_MAX_FEET> legs{};
+  bool has_truth = false;
+  GaitdTruth truth{};
+  TickTimes times;
+};
+
+}  // namespace gaitd::daemon

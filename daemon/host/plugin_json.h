@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "daemon/host/plugin_directory.h"
+
+namespace gaitd::daemon {
+
+/// The answer to plugin.list: {"plugins": [{layer, variant, path, active, version, build,
+/// worst_case_us, parameters: [{name, type, unit, min, max, default, description}]} or {layer,
+/// variant, path, refused: text}]}. `active` maps a layer's name to the variant in use.
+nlohmann::json plugin_list_json(const std::vector<PluginEntry>& entries,
+                                const std::map<std::string, std::string>& active);
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "daemon/host/layers.h"
+#include "daemon/host/plugin_directory.h"
+#include "daemon/host/plugin_json.h"
+#include "daemon/host/test/test_files.h"
+
+namespace gaitd::daemon {
+namespace {
+
+TEST(Layers, HaveNamesBothWays) {
+  EXPECT_EQ(layer_name(GAITD_LAYER_STEP_ADJUSTER), "step_adjuster");
+  EXPECT_EQ(layer_name(99), "unknown");
+  EXPECT_EQ(layer_from_name("backend"), GAITD_LAYER_BACKEND);
+  EXPECT_FALSE(layer_from_name("unknown"));
+}
+
+TEST(Directory, FindsVariantsAndPathsAndNamesWhatThereIs) {
+  const PluginDirectory plugins({"/nowhere", GAITD_TEST_PLUGINS});
+  std::string error;
+  EXPECT_EQ(plugins.find(GAITD_LAYER_TOE_OFF, "good", &error), plugin_path("good"));
+  EXPECT_EQ(plugins.find(GAITD_LAYER_TOE_OFF, plugin_path("newer"), &error), plugin_path("newer"));
+  EXPECT_FALSE(plugins.find(GAITD_LAYER_TOE_OFF, "goood", &error));
+  EXPECT_NE(error.find("no variant 'goood' of toe_off in /nowhere"), std::string::npos) << error;
+  EXPECT_NE(error.find(" good"), std::string::npos) << error;
+  EXPECT_FALSE(plugins.find(GAITD_LAYER_TOE_OFF, "/nowhere/x.so", &error));
+  EXPECT_FALSE(plugins.find(GAITD_LAYER_ICP_PLANNER, "good", &error));
+  EXPECT_NE(error.find("there is: none"), std::string::npos) << error;
+}
+
+TEST(Directory, AnEarlierRootWins) {
+  const TemporaryDirectory first;
+  std::filesystem::create_directory(first.path() / "toe_off");
+  std::filesystem::copy_file(plugin_path("good"), first.path() / "toe_off" / "good.so");
+  const PluginDirectory plugins({first.path(), GAITD_TEST_PLUGINS});
+  std::string error;
+  EXPECT_EQ(plugins.find(GAITD_LAYER_TOE_OFF, "good", &error),
+            first.path() / "toe_off" / "good.so");
+}
+
+TEST(Directory, ListsEveryLibraryWithoutLoadingIt) {
+  const std::vector<PluginEntry> entries = PluginDirectory({GAITD_TEST_PLUGINS}).list();
+  const auto entry = [&](const std::string& name) {
+    return *std::find_if(entries.begin(), entries.end(),
+                         [&](const PluginEntry& e) { return e.variant == name; });
+  };
+  EXPECT_GT(entries.size(), 15u);  // hang_at_load and exit_at_load among them
+  ASSERT_TRUE(entry("good").descriptor);
+  EXPECT_TRUE(entry("good").refusal.empty());
+  EXPECT_FALSE(entry("wrong_major").descriptor);
+  EXPECT_NE(entry("wrong_major").refusal.text().find("abi"), std::string::npos);
+  // Its descriptor says "good": a variant is found by the name of its file.
+  EXPECT_FALSE(entry("crash_at_load").descriptor);
+}
+
+TEST(Directory, IsShownAsJson) {
+  const nlohmann::json list =
+      plugin_list_json(PluginDirectory({GAITD_TEST_PLUGINS}).list(), {{"toe_off", "newer"}});
+  int active = 0;
+  for (const nlohmann::json& plugin : list["plugins"]) {
+    EXPECT_EQ(plugin["layer"], "toe_off");
+    if (plugin.value("active", false)) {
+      ++active;
+      EXPECT_EQ(plugin["variant"], "newer");
+      EXPECT_EQ(plugin["parameters"][0]["unit"], "1/s");
+    }
+  }
+  EXPECT_EQ(active, 1);
+}
+
+}  // namespace
+}  // namespace gaitd::daemon

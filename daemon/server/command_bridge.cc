@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/server/command_bridge.h"
+
+#include <cstring>
+#include <utility>
+#include <vector>
+
+namespace gaitd::daemon {
+
+CommandBridge::CommandBridge(Clock::duration timeout) : timeout_(timeout) {
+  // Through every slot once, so that the control thread never meets a page for the first time.
+  Command command{};
+  CommandReply reply{};
+  for (std::size_t i = 0; i <= 4 * kCapacity; ++i) {
+    commands_.push(command);
+    commands_.pop(command);
+    replies_.push(reply);
+    replies_.pop(reply);
+  }
+}
+
+void CommandBridge::submit(Command command, Respond respond) {
+  command.request = next_request_;
+  if (!commands_.push(command)) {
+    respond(RpcError{rpc_code::kBusy, "busy: " + std::to_string(kCapacity) +
+                                          " commands wait for the control thread already; send "
+                                          "fewer at a time"});
+    return;
+  }
+  pending_[next_request_++] = {std::move(respond), Clock::now() + timeout_};
+}
+
+void CommandBridge::poll(Clock::time_point now) {
+  // A responder may submit again: take the entry out first.
+  CommandReply reply;
+  while (replies_.pop(reply)) {
+    auto entry = pending_.extract(reply.request);
+    if (entry.empty()) continue;  // timed out before
+    if (reply.accepted) {
+      entry.mapped().respond(nlohmann::json{{"accepted", true}, {"tick", reply.tick}});
+      continue;
+    }
+    const char* text = reply.message.data();
+    std::string message(text, strnlen(text, reply.message.size()));
+    if (message.empty()) message = "refused without a reason";
+    entry.mapped().respond(RpcError{rpc_code::kRefused, message, {{"tick", reply.tick}}});
+  }
+  std::vector<Respond> late;
+  while (!pending_.empty() && pending_.begin()->second.deadline <= now) {
+    late.push_back(std::move(pending_.begin()->second.respond));
+    pending_.erase(pending_.begin());
+  }
+  for (const Respond& respond : late) {
+    const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(timeout_).count();
+    respond(RpcError{rpc_code::kNoAnswer,
+                     "the control thread did not answer within " + std::to_string(ms) +
+                         " ms; the command may still take effect, check `gaitctl status`"});
+  }
+}
+
+void CommandBridge::abandon() {
+  auto pending = std::exchange(pending_, {});
+  for (auto& [request, entry] : pending) {
+    entry.respond(RpcError{rpc_code::kStopping,
+                           "gaitd is stopping; the command may not have been "
+                           "carried out"});
+  }
+}
+
+void add_command_methods(Methods* methods, CommandBridge* bridge, CommandParser parser) {
+  for (const char* name : {"arm", "disarm", "estop", "reset", "mode", "walk", "footsteps", "pause",
+                           "resume", "stop", "abort", "sim.push", "sim.reset"}) {
+    methods->add_async(name, [bridge, parser, method = std::string(name)](
+                                 const nlohmann::json& params, Respond respond) {
+      auto parsed = parser(method, params);
+      if (auto* error = std::get_if<RpcError>(&parsed)) return respond(std::move(*error));
+      bridge->submit(std::get<Command>(parsed), std::move(respond));
+    });
+  }
+}
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <memory>
+#include <string>
+
+namespace gaitd::daemon {
+
+/// A listening Unix socket of mode 0660 that belongs to one process: a lock on `<path>.lock` keeps
+/// a second daemon out even while the first is starting.
+class ListeningSocket {
+ public:
+  /// Replaces a socket that nobody listens on. Null with the reason in `error`.
+  static std::unique_ptr<ListeningSocket> open(const std::string& path, std::string* error);
+  /// Removes the socket if it is still the one that was made here.
+  ~ListeningSocket();
+  ListeningSocket(const ListeningSocket&) = delete;
+  ListeningSocket& operator=(const ListeningSocket&) = delete;
+
+  const std::string& path() const { return path_; }
+  /// Hands the descriptor over; the caller closes it.
+  int release();
+
+ private:
+  explicit ListeningSocket(std::string path) : path_(std::move(path)) {}
+  bool lock(std::string* error);
+  bool clear_path(std::string* error) const;
+  bool listen(std::string* error);
+
+  std::string path_;
+  int lock_fd_ = -1;
+  int fd_ = -1;
+  dev_t device_ = 0;
+  ino_t inode_ = 0;  // 0: nothing was made
+};
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/server/rpc.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace gaitd::daemon {
+namespace {
+
+using nlohmann::json;
+
+std::string dump(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+json answer(const json& id, RpcResult result) {
+  json out = {{"jsonrpc", "2.0"}, {"id", id}};
+  if (auto* error = std::get_if<RpcError>(&result)) {
+    out["error"] = {{"code", error->code}, {"message", std::move(error->message)}};
+    if (!error->data.is_null()) out["error"]["data"] = std::move(error->data);
+  } else {
+    out["result"] = std::move(std::get<json>(result));
+  }
+  return out;
+}
+
+// The deepest nesting of arrays and objects in a text, JSON or not: looked at before parsing, so
+// that nothing deep is ever built.
+int nesting(std::string_view text) {
+  int depth = 0;
+  int deepest = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '[' || c == '{') {
+      deepest = std::max(deepest, ++depth);
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
+// One request, taken apart. The error is set if it is none.
+struct Request {
+  json id = nullptr;
+  bool notification = false;
+  std::string method;
+  json params = nullptr;
+  std::optional<RpcError> error;
+};
+
+Request invalid(json id, const std::string& what) {
+  Request request;
+  request.id = std::move(id);
+  request.error = RpcError{rpc_code::kInvalidRequest,
+                           "invalid request: " + what +
+                               "; expected {\"jsonrpc\": \"2.0\", \"id\": 1, \"method\": "
+                               "\"status\", \"params\": {}} on one line"};
+  return request;
+}
+
+Request read_request(json value) {
+  if (!value.is_object()) return invalid(nullptr, std::string("got ") + value.type_name());
+  json id = value.value("id", json());
+  if (!id.is_null() && !id.is_string() && !id.is_number()) {
+    return invalid(nullptr, std::string("id is ") + id.type_name() + ", not a number or string");
+  }
+  if (value.value("jsonrpc", json()) != "2.0") return invalid(id, "jsonrpc is not \"2.0\"");
+  const auto method = value.find("method");
+  if (method == value.end() || !method->is_string()) return invalid(id, "method is no string");
+  for (const auto& [key, unused] : value.items()) {
+    if (key != "jsonrpc" && key != "id" && key != "method" && key != "params") {
+      return invalid(id, "unknown member \"" + key + "\"");
+    }
+  }
+  Request request;
+  request.notification = !value.contains("id");
+  request.id = std::move(id);
+  request.method = method->get<std::string>();
+  if (value.contains("params")) {
+    request.params = std::move(value["params"]);
+    if (!request.params.is_structured()) return invalid(request.id, "params is no object or array");
+  }
+  return request;
+}
+
+// Runs the request; `respond` gets the answer now or later, at most once.
+void run(const Methods& methods, const Request& request, Respond respond) {
+  if (request.error) return respond(*request.error);
+  const Methods::AsyncHandler* handler = methods.find(request.method);
+  if (handler == nullptr) {
+    return respond(RpcError{rpc_code::kMethodNotFound,
+                            "no method \"" + request.method + "\"; there is: " + methods.names()});
+  }
+  std::string failure = "unknown exception";
+  try {
+    return (*handler)(request.params, respond);
+  } catch (const std::exception& e) {
+    failure = e.what();
+  } catch (...) {
+    // Reported below like any other.
+  }
+  respond(RpcError{rpc_code::kInternalError, request.method + ": internal error: " + failure +
+                                                 "; please report it with the request"});
+}
+
+// Collects the answers of one line and sends them when the last has come. Shared by the responders.
+struct Collector {
+  std::function<void(std::string)> send;
+  bool batch = false;
+  std::vector<json> answers;  // null: none (yet, or never)
+  std::size_t open = 0;
+
+  void finish() {
+    if (open > 0) return;
+    json out = json::array();
+    for (json& one : answers) {
+      if (!one.is_null()) out.push_back(std::move(one));
+    }
+    if (out.empty()) return;
+    send(dump(batch ? out : out[0]));
+  }
+};
+
+void run_all(const Methods& methods, std::vector<Request> requests, bool batch,
+             std::function<void(std::string)> send) {
+  auto collector = std::make_shared<Collector>();
+  collector->send = std::move(send);
+  collector->batch = batch;
+  collector->answers.resize(requests.size());
+  // One more than requests: nothing is sent before all of them have been started.
+  collector->open = requests.size() + 1;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    const auto done = std::make_shared<bool>(false);
+    run(methods, requests[i],
+        [collector, done, i, id = requests[i].id,
+         silent = requests[i].notification](RpcResult result) {
+          if (std::exchange(*done, true)) return;
+          if (!silent) collector->answers[i] = answer(id, std::move(result));
+          --collector->open;
+          collector->finish();
+        });
+  }
+  --collector->open;
+  collector->finish();
+}
+
+}  // namespace
+
+void Methods::add(const std::string& name, Handler handler) {
+  handlers_[name] = [handler = std::move(handler)](const json& params, Respond respond) {
+    respond(handler(params));
+  };
+}
+
+void Methods::add_snapshot(const std::string& name, std::function<json()> snapshot) {
+  add(name, [name, snapshot = std::move(snapshot)](const json& params) -> RpcResult {
+    if (!params.empty()) {
+      return RpcError{rpc_code::kInvalidParams, name + ": takes no params, got " + dump(params)};
+    }
+    return snapshot();
+  });
+}
+
+const Methods::AsyncHandler* Methods::find(const std::string& name) const {
+  const auto found = handlers_.find(name);
+  return found == handlers_.end() ? nullptr : &found->second;
+}
+
+std::string Methods::names() const {
+  std::string out;
+  for (const auto& [name, unused] : handlers_) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+void handle_line(const Methods& methods, const RpcLimits& limits, std::string_view line,
+                 std::function<void(std::string)> send) {
+  if (nesting(line) > limits.max_depth) {
+    return send(
+        error_line({rpc_code::kInvalidRequest, "invalid request: nested deeper than " +
+                                                   std::to_string(limits.max_depth) + " levels"}));
+  }
+  json value;
+  try {
+    value = json::parse(line);
+  } catch (const json::exception& e) {
+    return send(
+        error_line({rpc_code::kParseError, std::string("not JSON: ") + e.what() +
+                                               "; expected one JSON object or array per line"}));
+  }
+  std::vector<Request> requests;
+  const bool batch = value.is_array();
+  if (!batch) {
+    requests.push_back(read_request(std::move(value)));
+  } else if (value.empty() || value.size() > static_cast<std::size_t>(limits.max_batch)) {
+    return send(error_line(
+        {rpc_code::kInvalidRequest, "invalid request: a batch of " + std::to_string(value.size()) +
+                                        ", expected 1 to " + std::to_string(limits.max_batch)}));
+  } else {
+    for (json& one : value) requests.push_back(read_request(std::move(one)));
+  }
+  run_all(methods, std::move(requests), batch, std::move(send));
+}
+
+std::string error_line(const RpcError& error) { return dump(answer(nullptr, error)); }
+
+}  // namespace gaitd::daemon

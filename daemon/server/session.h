@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <boost/asio/local/stream_protocol.hpp>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace gaitd::daemon {
+
+/// One connected client: cuts what it sends into lines and writes the answers back. On the server
+/// thread only. Lives as long as an operation of it or an answer to it is under way: a client that
+/// has closed its sending side still gets its answers, and the last of them closes the connection.
+class Session : public std::enable_shared_from_this<Session> {
+ public:
+  using Socket = boost::asio::local::stream_protocol::socket;
+  struct Limits {
+    std::size_t max_line = 0;    // bytes without the newline
+    std::size_t max_output = 0;  // bytes that the client has not read yet
+  };
+  using OnLine = std::function<void(const std::shared_ptr<Session>&, std::string_view line)>;
+  /// Nothing more will be read.
+  using OnEnd = std::function<void(const std::shared_ptr<Session>&)>;
+
+  Session(Socket socket, Limits limits, OnLine on_line, OnEnd on_end);
+
+  void start() { read(); }
+  /// Queues a line for writing, newline added. A client that lets too much pile up is dropped.
+  void send(std::string line);
+  /// Reads nothing more, and closes when what is queued has been written.
+  void close();
+
+ private:
+  void read();
+  void take_lines(std::size_t searched);
+  void end_reading();
+  void write();
+  void drop();
+
+  Socket socket_;
+  Limits limits_;
+  OnLine on_line_;
+  OnEnd on_end_;
+  std::array<char, 16384> chunk_;
+  std::string input_;
+  std::deque<std::string> output_;
+  std::size_t output_bytes_ = 0;
+  bool reading_ = true;
+  bool closing_ = false;
+};
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/server/command_server.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "daemon/server/test/raw_client.h"
+
+namespace gaitd::daemon {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kStatus = R"({"jsonrpc":"2.0","id":1,"method":"status"})";
+constexpr const char* kArm = R"({"jsonrpc":"2.0","id":2,"method":"arm"})";
+
+// A server whose control thread accepts everything, at tick 42, while `answering_`.
+class Server : public ::testing::Test {
+ protected:
+  Server() { options_.socket_path = directory_.file(); }
+  ~Server() override {
+    server_.reset();
+    stop_ = true;
+    if (control_.joinable()) control_.join();
+  }
+  void start(CommandBridge::Clock::duration timeout = std::chrono::milliseconds(200)) {
+    bridge_ = std::make_unique<CommandBridge>(timeout);
+    control_ = std::thread([this] {
+      const auto command = std::make_unique<Command>();
+      while (!stop_) {
+        while (answering_ && bridge_->try_pop(*command)) {
+          ++taken_;
+          bridge_->push({command->request, true, 42, {}});
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+    });
+    Methods methods;
+    methods.add_snapshot("status", [] { return json{{"state", "standing"}}; });
+    methods.add("large", [](const json&) -> RpcResult { return std::string(100000, 'x'); });
+    add_command_methods(&methods, bridge_.get(),
+                        [](const std::string&, const json&) -> std::variant<Command, RpcError> {
+                          return Command{};
+                        });
+    std::string error;
+    server_ = CommandServer::start(options_, std::move(methods), bridge_.get(), &error);
+    ASSERT_TRUE(server_) << error;
+  }
+  void expect_alive() {
+    RawClient client(directory_.file());
+    EXPECT_EQ(client.ask(kStatus)["result"]["state"], "standing");
+  }
+
+  SocketDirectory directory_;
+  ServerOptions options_;
+  std::unique_ptr<CommandBridge> bridge_;
+  std::atomic<bool> answering_{true};
+  std::atomic<bool> stop_{false};
+  std::atomic<int> taken_{0};
+  std::thread control_;
+  std::unique_ptr<CommandServer> server_;
+};
+
+TEST_F(Server, AnswersQueriesAndCommands) {
+  start();
+  EXPECT_EQ(server_->socket_path(), directory_.file());
+  RawClient client(directory_.file());
+  EXPECT_EQ(client.ask(kStatus)["result"]["state"], "standing");
+  EXPECT_EQ(client.ask(kArm)["result"], (json{{"accepted", true}, {"tick", 42}}));
+}
+
+TEST_F(Server, ServesSeveralClientsEachItsOwnAnswers) {
+  start();
+  std::vector<std::thread> threads;
+  std::atomic<int> right{0};
+  for (int i = 0; i < 8; ++i) {
+    threads.emplace_back([&, i] {
+      RawClient client(directory_.file());
+      for (int j = 0; j < 20; ++j) {
+        const int id = 100 * i + j;
+        const json answer =
+            client.ask(json{{"jsonrpc", "2.0"}, {"id", id}, {"method", "arm"}}.dump());
+        if (answer["id"] == id && answer["result"]["accepted"] == true) ++right;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(right, 160);
+}
+
+TEST_F(Server, TakesLinesInPiecesAndSeveralAtOnce) {
+  start();
+  RawClient client(directory_.file());
+  for (const char c : std::string(kStatus)) client.send(std::string(1, c));
+  EXPECT_FALSE(client.line(50));
+  client.send("\r\n\n");
+  EXPECT_TRUE(client.answer()["result"].is_object());
+  client.send(std::string(kStatus) + "\n" + kStatus + "\n" + kStatus + "\n");
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(client.answer()["result"].is_object());
+}
+
+TEST_F(Server, AnswersAfterTheClientEndedItsSide) {
+  start();
+  RawClient client(directory_.file());
+  client.send(std::string(kArm) + "\n" + R"({"jsonrpc":)");
+  client.end_sending();
+  json first = client.answer();
+  json second = client.answer();
+  if (first.contains("error")) std::swap(first, second);
+  EXPECT_EQ(first["result"]["tick"], 42);
+  EXPECT_EQ(second["error"]["code"], -32700);
+  EXPECT_TRUE(client.ended());
+}
+
+TEST_F(Server, MalformedLinesCostOnlyAnError) {
+  start();
+  RawClient client(directory_.file());
+  EXPECT_EQ(client.ask("{")["error"]["code"], -32700);
+  EXPECT_EQ(client.ask(std::string(5000, '['))["error"]["code"], -32600);
+  EXPECT_EQ(client.ask(std::string("\0\0", 2))["error"]["code"], -32700);
+  EXPECT_TRUE(client.ask(kStatus)["result"].is_object());
+}
+
+TEST_F(Server, ALineOverTheLimitEndsTheConnection) {
+  start();
+  const std::string padding(options_.max_request - std::string(kStatus).size(), ' ');
+  RawClient fits(directory_.file());
+  EXPECT_TRUE(fits.ask(kStatus + padding)["result"].is_object());
+  for (const char* end : {" \n", " "}) {
+    RawClient client(directory_.file());
+    client.send(kStatus + padding + end);
+    EXPECT_EQ(client.answer()["error"]["code"], -32600);
+    EXPECT_TRUE(client.ended());
+  }
+  expect_alive();
+}
+
+TEST_F(Server, AClientThatDoesNotReadIsDropped) {
+  options_.max_unread_output = 1 << 20;
+  start();
+  RawClient slow(directory_.file());
+  const std::string request = R"({"jsonrpc":"2.0","id":1,"method":"large"})"
+                              "\n";
+  int sent = 0;
+  while (sent < 2000 && slow.send(request)) ++sent;
+  EXPECT_TRUE(slow.ended());
+  expect_alive();
+}
+
+TEST_F(Server, ClientsThatVanishLeaveNothingBehind) {
+  answering_ = false;
+  start();
+  for (int i = 0; i < 30; ++i) {
+    RawClient client(directory_.file());
+    client.send(std::string(kArm) + "\n" + kStatus + "\n{\"half");
+  }
+  answering_ = true;
+  for (int i = 0; i < 200 && taken_ < 30; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(taken_, 30);
+  expect_alive();
+}
+
+TEST_F(Server, ANotificationIsCarriedOutSilently) {
+  start();
+  RawClient client(directory_.file());
+  client.send("{\"jsonrpc\":\"2.0\",\"method\":\"stop\"}\n");
+  EXPECT_EQ(client.ask(kStatus)["result"]["state"], "standing");
+  for (int i = 0; i < 200 && taken_ < 1; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(taken_, 1);
+  EXPECT_FALSE(client.line(20));
+}
+
+TEST_F(Server, SaysThatTheControlThreadDoesNotAnswer) {
+  answering_ = false;
+  start();
+  RawClient client(directory_.file());
+  const json error = client.ask(kArm)["error"];
+  EXPECT_EQ(error["code"], -32001);
+  EXPECT_NE(error["message"].get<std::string>().find("did not answer within 200 ms"),
+            std::string::npos);
+}
+
+TEST_F(Server, TurnsClientsAwayBeyondTheLimit) {
+  options_.max_clients = 2;
+  start();
+  RawClient first(directory_.file());
+  auto second = std::make_unique<RawClient>(directory_.file());
+  EXPECT_TRUE(first.ask(kStatus)["result"].is_object());
+  EXPECT_TRUE(second->ask(kStatus)["result"].is_object());
+  RawClient third(directory_.file());
+  EXPECT_EQ(third.answer()["error"]["code"], -32002);
+  EXPECT_TRUE(third.ended());
+  second.reset();
+  json answer;
+  for (int i = 0; i < 100 && !answer.contains("result"); ++i) {
+    RawClient next(directory_.file());
+    answer = next.ask(kStatus);
+  }
+  EXPECT_TRUE(answer.contains("result"));
+}
+
+TEST_F(Server, EndsPromptlyAndTellsThoseWhoWait) {
+  answering_ = false;
+  start(std::chrono::hours(1));
+  RawClient waiting(directory_.file());
+  RawClient idle(directory_.file());
+  waiting.send(std::string(kArm) + "\n");
+  EXPECT_TRUE(idle.ask(kStatus)["result"].is_object());
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const auto begin = std::chrono::steady_clock::now();
+  server_.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  EXPECT_EQ(waiting.answer()["error"]["code"], -32003);
+  EXPECT_TRUE(waiting.ended());
+  EXPECT_TRUE(idle.ended());
+  EXPECT_FALSE(std::filesystem::exists(directory_.file()));
+}
+
+TEST_F(Server, ASecondServerOnTheSameSocketIsRefused) {
+  start();
+  std::string error;
+  EXPECT_FALSE(CommandServer::start(options_, Methods(), nullptr, &error));
+  EXPECT_NE(error.find("another gaitd"), std::string::npos) << error;
+  expect_alive();
+}
+
+}  // namespace
+}  // namespace gaitd::daemon

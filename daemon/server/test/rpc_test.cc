@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/server/rpc.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+namespace gaitd::daemon {
+namespace {
+
+using nlohmann::json;
+
+class Rpc : public ::testing::Test {
+ protected:
+  Rpc() {
+    methods_.add("echo", [](const json& params) -> RpcResult { return params; });
+    methods_.add("throw", [](const json&) -> RpcResult { throw std::runtime_error("oh"); });
+    methods_.add_async(
+        "later", [this](const json&, Respond respond) { waiting_.push_back(std::move(respond)); });
+    methods_.add_snapshot("status", [] { return json{{"state", "standing"}}; });
+  }
+  // Everything that is sent for one line.
+  std::vector<json> all(const std::string& line) {
+    sent_.clear();
+    handle_line(methods_, limits_, line, [this](std::string text) {
+      EXPECT_EQ(text.find('\n'), std::string::npos);
+      sent_.push_back(json::parse(text));
+    });
+    return sent_;
+  }
+  json one(const std::string& line) {
+    const std::vector<json> sent = all(line);
+    EXPECT_EQ(sent.size(), 1u) << line;
+    return sent.empty() ? json() : sent[0];
+  }
+  int error_code(const std::string& line) { return one(line)["error"]["code"]; }
+
+  Methods methods_;
+  RpcLimits limits_;
+  std::vector<Respond> waiting_;
+  std::vector<json> sent_;
+};
+
+TEST_F(Rpc, AnswersWithTheIdOfTheRequest) {
+  const json answer = one(R"({"jsonrpc":"2.0","id":"a","method":"echo","params":{"x":[1]}})");
+  EXPECT_EQ(answer, json::parse(R"({"jsonrpc":"2.0","id":"a","result":{"x":[1]}})"));
+  EXPECT_EQ(one(R"({"jsonrpc":"2.0","id":null,"method":"echo"})")["id"], nullptr);
+}
+
+TEST_F(Rpc, RefusesWhatIsNoJson) {
+  for (const char* line : {"{", "hello", "{\"a\":}", "\"\\ud800\"", "{\"a\":\"\xff\"}", "1e999",
+                           "[1,2", "{} {}", "nul"}) {
+    EXPECT_EQ(error_code(line), -32700) << line;
+    EXPECT_TRUE(one(line)["id"].is_null());
+  }
+}
+
+TEST_F(Rpc, RefusesWhatIsNoRequest) {
+  for (const char* line :
+       {"1", "\"x\"", "null", "{}", R"({"id":1,"method":"echo"})",
+        R"({"jsonrpc":"1.0","id":1,"method":"echo"})", R"({"jsonrpc":"2.0","id":1})",
+        R"({"jsonrpc":"2.0","id":1,"method":7})", R"({"jsonrpc":"2.0","id":[],"method":"echo"})",
+        R"({"jsonrpc":"2.0","id":1,"method":"echo","params":3})",
+        R"({"jsonrpc":"2.0","id":1,"method":"echo","parms":{}})"}) {
+    EXPECT_EQ(error_code(line), -32600) << line;
+  }
+}
+
+TEST_F(Rpc, NamesTheMethodsThereAre) {
+  const json error = one(R"({"jsonrpc":"2.0","id":1,"method":"fly"})")["error"];
+  EXPECT_EQ(error["code"], -32601);
+  EXPECT_EQ(error["message"], "no method \"fly\"; there is: echo, later, status, throw");
+}
+
+TEST_F(Rpc, NeverAnswersANotification) {
+  EXPECT_TRUE(all(R"({"jsonrpc":"2.0","method":"echo"})").empty());
+  EXPECT_TRUE(all(R"({"jsonrpc":"2.0","method":"nothing"})").empty());
+  EXPECT_TRUE(
+      all(R"([{"jsonrpc":"2.0","method":"echo"},{"jsonrpc":"2.0","method":"throw"}])").empty());
+}
+
+TEST_F(Rpc, AnExceptionOfAHandlerBecomesAnError) {
+  const json error = one(R"({"jsonrpc":"2.0","id":1,"method":"throw"})")["error"];
+  EXPECT_EQ(error["code"], -32603);
+  EXPECT_EQ(error["message"], "throw: internal error: oh; please report it with the request");
+}
+
+TEST_F(Rpc, SnapshotsTakeNoParams) {
+  EXPECT_EQ(one(R"({"jsonrpc":"2.0","id":1,"method":"status"})")["result"]["state"], "standing");
+  EXPECT_EQ(one(R"({"jsonrpc":"2.0","id":1,"method":"status","params":{}})")["result"]["state"],
+            "standing");
+  EXPECT_EQ(error_code(R"({"jsonrpc":"2.0","id":1,"method":"status","params":{"a":1}})"), -32602);
+}
+
+TEST_F(Rpc, ABatchIsAnsweredTogetherWhenTheLastAnswerIsThere) {
+  EXPECT_TRUE(all(R"([{"jsonrpc":"2.0","id":1,"method":"later"},
+                      {"jsonrpc":"2.0","id":2,"method":"echo","params":[5]},
+                      {"jsonrpc":"2.0","method":"echo"}, 7])")
+                  .empty());
+  ASSERT_EQ(waiting_.size(), 1u);
+  waiting_[0](json("done"));
+  ASSERT_EQ(sent_.size(), 1u);
+  ASSERT_EQ(sent_[0].size(), 3u);
+  EXPECT_EQ(sent_[0][0]["result"], "done");
+  EXPECT_EQ(sent_[0][1]["result"], json::array({5}));
+  EXPECT_EQ(sent_[0][2]["error"]["code"], -32600);
+  waiting_[0](json("again"));  // only the first answer counts
+  EXPECT_EQ(sent_.size(), 1u);
+}
+
+TEST_F(Rpc, BatchesHaveBounds) {
+  EXPECT_EQ(error_code("[]"), -32600);
+  std::string many = "[1";
+  for (int i = 0; i < limits_.max_batch; ++i) many += ",1";
+  const json answer = one(many + "]");
+  EXPECT_TRUE(answer.is_object());
+  EXPECT_EQ(answer["error"]["code"], -32600);
+}
+
+TEST_F(Rpc, DeepNestingIsRefusedBeforeParsing) {
+  const std::string deep(200000, '[');
+  EXPECT_EQ(error_code(deep), -32600);
+  EXPECT_EQ(error_code(R"({"jsonrpc":"2.0","id":1,"method":"echo","params":)" +
+                       std::string(40, '[') + std::string(40, ']') + "}"),
+            -32600);
+  // Brackets in a text do not nest.
+  const json answer = one(R"({"jsonrpc":"2.0","id":1,"method":"echo","params":["\")" +
+                          std::string(100, '[') + R"("]})");
+  EXPECT_TRUE(answer.contains("result"));
+}
+
+TEST_F(Rpc, AnswersThatAreNoUtf8AreStillJson) {
+  methods_.add("bytes", [](const json&) -> RpcResult { return json("a\xff"); });
+  EXPECT_TRUE(one(R"({"jsonrpc":"2.0","id":1,"method":"bytes"})")["result"].is_string());
+}
+
+TEST_F(Rpc, AnyBytesAreAnswered) {
+  const std::string good = R"([{"jsonrpc":"2.0","id":1,"method":"echo","params":{"x":[1,"a"]}}])";
+  std::mt19937 random(3);
+  for (int i = 0; i < 20000; ++i) {
+    std::string line = good;
+    for (int j = 0; j < 1 + i % 4; ++j) {
+      line[random() % line.size()] = static_cast<char>(random() % 256);
+    }
+    all(line);  // parses what is sent, and a crash or an exception fails
+  }
+}
+
+}  // namespace
+}  // namespace gaitd::daemon

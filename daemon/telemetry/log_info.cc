@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/telemetry/log_info.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+
+namespace gaitd::daemon {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxShownEvents = 20;
+constexpr std::size_t kMaxShownText = 100;
+
+std::string dump(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+struct TimeRange {
+  double start = 0.0;
+  double end = 0.0;
+};
+
+TimeRange time_range(const LogReader& log) {
+  TimeRange range;
+  bool first = true;
+  for (const double time : log.column("time")) {
+    if (!std::isfinite(time)) continue;
+    range.start = first ? time : std::min(range.start, time);
+    range.end = first ? time : std::max(range.end, time);
+    first = false;
+  }
+  return range;
+}
+
+Json describe_signals(const LogReader& log) {
+  Json signals = Json::array();
+  for (const SignalDescription& signal : log.signals()) {
+    Json entry = {{"name", signal.name}, {"unit", signal.unit}};
+    if (!signal.words.empty()) entry["words"] = signal.words;
+    signals.push_back(std::move(entry));
+  }
+  return signals;
+}
+
+std::map<std::string, std::size_t> count_by_kind(const LogReader& log) {
+  std::map<std::string, std::size_t> counts;
+  for (const Event& event : log.events()) ++counts[event.kind];
+  return counts;
+}
+
+std::string shorten(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  const std::size_t size = text.size();
+  if (size <= kMaxShownText) return text;
+  return text.substr(0, kMaxShownText) + "... (" + std::to_string(size) + " bytes)";
+}
+
+template <class... Arguments>
+std::string format(const char* pattern, Arguments... arguments) {
+  char text[200];
+  std::snprintf(text, sizeof(text), pattern, arguments...);
+  return text;
+}
+
+void append_metadata(const char* title, const LogMetadata& metadata, std::string* text) {
+  if (metadata.empty()) return;
+  *text += title;
+  *text += "\n";
+  for (const auto& [key, value] : metadata) *text += "  " + key + ": " + shorten(value) + "\n";
+}
+
+}  // namespace
+
+std::string log_info_json(const LogReader& log) {
+  const TimeRange range = time_range(log);
+  Json json;
+  json["file"] = log.path();
+  json["written_by"] = log.library();
+  json["size"] = log.file_size();
+  json["finished"] = log.finished();
+  if (!log.finished()) json["break"] = log.break_reason();
+  json["ticks"] = log.tick_count();
+  json["start_time"] = range.start;
+  json["end_time"] = range.end;
+  json["duration"] = range.end - range.start;
+  json["dropouts"] = log.dropouts();
+  json["event_dropouts"] = log.event_dropouts();
+  json["damaged"] = log.damaged();
+  json["topics"] = {{kSignalsTopic, log.tick_count()},
+                    {kSensorsTopic, log.sensors_count()},
+                    {kEventsTopic, log.events().size()}};
+  json["metadata"] = log.metadata();
+  json["end_metadata"] = log.end_metadata();
+  json["signals"] = describe_signals(log);
+  Json events = Json::array();
+  for (const Event& event : log.events()) {
+    Json entry = {{"tick", event.tick}, {"time", event.time}, {"kind", event.kind}};
+    const Json text = Json::parse(event.text, nullptr, false);
+    entry["text"] = text.is_discarded() ? Json(event.text) : text;
+    if (event.truncated) entry["truncated"] = true;
+    events.push_back(std::move(entry));
+  }
+  json["events"] = std::move(events);
+  return dump(json, 2);
+}
+
+std::string log_info_text(const LogReader& log) {
+  const TimeRange range = time_range(log);
+  std::string text = log.path() + "\n";
+  text += "  written by  " + log.library() + "\n";
+  text += format("  size        %.3f MB\n", static_cast<double>(log.file_size()) * 1e-6);
+  text += "  state       " + (log.finished() ? "finished" : "unfinished, " + log.break_reason());
+  text += format("\n  duration    %.3f s (%.3f to %.3f)\n", range.end - range.start, range.start,
+                 range.end);
+  text += format("  ticks       %llu, %llu dropped\n",
+                 static_cast<unsigned long long>(log.tick_count()),
+                 static_cast<unsigned long long>(log.dropouts()));
+  if (log.damaged() > 0) {
+    text += format("  damaged     %llu chunks or messages left out\n",
+                   static_cast<unsigned long long>(log.damaged()));
+  }
+  text += "topics\n";
+  text += format("  %-16s %llu messages, %zu signals\n", kSignalsTopic,
+                 static_cast<unsigned long long>(log.tick_count()), log.signals().size());
+  text += format("  %-16s %llu messages\n", kSensorsTopic,
+                 static_cast<unsigned long long>(log.sensors_count()));
+  text += format("  %-16s %zu messages, %llu dropped\n", kEventsTopic, log.events().size(),
+                 static_cast<unsigned long long>(log.event_dropouts()));
+  append_metadata("metadata", log.metadata(), &text);
+  append_metadata("metadata of the end", log.end_metadata(), &text);
+  text += "events\n";
+  for (const auto& [kind, count] : count_by_kind(log)) {
+    text += format("  %-10s %zu\n", kind.c_str(), count);
+  }
+  const std::size_t shown = std::min(kMaxShownEvents, log.events().size());
+  for (std::size_t i = 0; i < shown; ++i) {
+    const Event& event = log.events()[i];
+    text +=
+        format("  %10.3f s  %-10s ", event.time, event.kind.c_str()) + shorten(event.text) + "\n";
+  }
+  if (shown < log.events().size()) {
+    text += format("  ... and %zu more (--json lists all)\n", log.events().size() - shown);
+  }
+  return text;
+}
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "daemon/telemetry/event.h"
+#include "daemon/telemetry/mcap_writer.h"
+#include "daemon/telemetry/signal.h"
+#include "gaitd/abi/types.h"
+
+namespace gaitd::daemon {
+
+// Names inside the file, shared by writer and reader.
+inline constexpr char kSignalsTopic[] = "/gaitd/signals";
+inline constexpr char kSensorsTopic[] = "/gaitd/sensors";
+inline constexpr char kEventsTopic[] = "/gaitd/events";
+inline constexpr char kStartMetadata[] = "gaitd";    // given when the file is opened
+inline constexpr char kEndMetadata[] = "gaitd.end";  // given when it is closed
+inline constexpr char kTableKey[] = "signal_table";  // of the metadata of the signals channel
+inline constexpr char kLayoutKey[] = "layout";
+inline constexpr char kLayoutVersion[] = "1";
+
+using LogMetadata = std::map<std::string, std::string>;
+
+// Writes one log file: MCAP with protobuf messages whose schema is in the file. Not thread-safe;
+// not for the real-time thread. Once writing fails (disk full) it stops for good: every later call
+// does nothing, ok() is false and error() says why. What had been written stays readable.
+class LogWriter {
+ public:
+  // The table must be valid.
+  explicit LogWriter(SignalTable table);
+  ~LogWriter();  // closes
+  LogWriter(const LogWriter&) = delete;
+  LogWriter& operator=(const LogWriter&) = delete;
+
+  // Creates or empties the file and writes its header. False with `error` if that is not possible.
+  // `metadata`: all that a replay needs besides the sensors; see docs of the log format.
+  bool open(const std::string& path, const LogMetadata& metadata, const McapOptions& options,
+            std::string* error);
+
+  // `values` in table order. `sensors` may be null.
+  void write_tick(std::int64_t tick, double time, std::span<const double> values,
+                  const GaitdSensors* sensors);
+  void write_event(const Event& event);
+
+  // Ticks and events that never reached this writer, for the end of the file.
+  void set_dropouts(std::uint64_t ticks, std::uint64_t events);
+
+  // Closes the chunk that is being filled, so that all so far is in the file.
+  void flush();
+
+  // Writes the end of the file with `metadata` (e.g. realtime_factor) and closes it. True if the
+  // file is complete; error() otherwise.
+  bool close(const LogMetadata& metadata = {});
+
+  bool is_open() const;
+  bool ok() const;
+  const std::string& error() const;
+  std::uint64_t bytes_written() const;
+  std::uint64_t ticks_written() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace gaitd::daemon {
+
+// A file that is written from start to end without a buffer of its own, so that all that was
+// written survives a crash of the process. Remembers the first failure and writes nothing after it.
+class OutputFile {
+ public:
+  OutputFile() = default;
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  bool open(const std::string& path);  // creates or empties it
+  bool write(std::string_view bytes);
+  bool close();
+
+  bool is_open() const { return descriptor_ >= 0; }
+  std::uint64_t size() const { return size_; }         // bytes written
+  const std::string& error() const { return error_; }  // empty: none so far
+
+ private:
+  bool fail(const char* action, int code);
+
+  std::string path_;
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;
+  std::string error_;
+};
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/telemetry/telemetry.h"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "daemon/telemetry/ring.h"
+
+namespace gaitd::daemon {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kFlushPeriod = std::chrono::seconds(1);
+constexpr auto kWaitForSpace = std::chrono::microseconds(100);
+
+struct EventSlot {
+  EventKind kind = EventKind::kNote;
+  bool truncated = false;
+  std::uint16_t size = 0;
+  std::int64_t tick = 0;
+  double time = 0.0;
+  std::array<char, kMaxEventText> text{};
+};
+
+std::size_t ring_ticks(const TelemetryOptions& options) {
+  return static_cast<std::size_t>(std::max(2.0, std::ceil(options.ring_seconds / options.period)));
+}
+
+}  // namespace
+
+struct Telemetry::Impl {
+  Impl(SignalTable signals, const TelemetryOptions& telemetry_options)
+      : table(std::move(signals)),
+        options(telemetry_options),
+        tick_ring(ring_ticks(options)),
+        event_ring(std::max<std::size_t>(2, options.ring_events)),
+        values(tick_ring.capacity() * table.size()),
+        sensors(tick_ring.capacity()),
+        slots(tick_ring.capacity()),
+        event_slots(event_ring.capacity()),
+        newest(table.size()),
+        log(table) {
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      slots[i].values = std::span(values).subspan(i * table.size(), table.size());
+      slots[i].sensors = &sensors[i];
+    }
+  }
+
+  void run();
+  bool drain();
+  void drain_events();
+  bool drain_ticks();
+  void report_dropouts();
+
+  const SignalTable table;
+  const TelemetryOptions options;
+
+  // Control thread and telemetry thread.
+  RingIndexes tick_ring;
+  RingIndexes event_ring;
+  std::vector<double> values;
+  std::vector<GaitdSensors> sensors;
+  std::vector<TickSlot> slots;
+  std::vector<EventSlot> event_slots;
+  std::atomic<std::uint64_t> dropouts{0};
+  std::atomic<std::uint64_t> event_dropouts{0};
+  std::atomic<bool> running{false};
+  std::atomic<bool> stopping{false};
+
+  // Telemetry thread and any other but the control thread.
+  mutable std::mutex newest_mutex;
+  std::vector<double> newest;
+  bool has_newest = false;
+  mutable std::mutex log_mutex;
+  LogWriter log;
+  std::mutex pending_mutex;
+  std::vector<Event> pending;
+
+  std::thread thread;
+};
+
+void Telemetry::Impl::run() {
+  pthread_setname_np(pthread_self(), "gaitd-telemetry");
+  auto last_flush = Clock::now();
+  while (!stopping.load(std::memory_order_acquire)) {
+    const bool busy = drain();
+    if (Clock::now() - last_flush >= kFlushPeriod) {
+      report_dropouts();
+      const std::scoped_lock lock(log_mutex);
+      log.flush();
+      last_flush = Clock::now();
+    }
+    if (!busy) std::this_thread::sleep_for(std::chrono::duration<double>(options.poll_period));
+  }
+  drain();
+}
+
+// False if there was no tick.
+bool Telemetry::Impl::drain() {
+  drain_events();
+  return drain_ticks();
+}
+
+void Telemetry::Impl::drain_events() {
+  std::vector<Event> batch;
+  {
+    const std::scoped_lock lock(pending_mutex);
+    batch.swap(pending);
+  }
+  for (; !event_ring.empty(); event_ring.release()) {
+    const EventSlot& slot = event_slots[event_ring.read_slot()];
+    batch.push_back({.tick = slot.tick,
+                     .time = slot.time,
+                     .kind = event_kind_name(slot.kind),
+                     .text = std::string(slot.text.data(), slot.size),
+                     .truncated = slot.truncated});
+  }
+  const std::scoped_lock lock(log_mutex);
+  for (const Event& event : batch) log.write_event(event);
+}
+
+bool Telemetry::Impl::drain_ticks() {
+  if (tick_ring.empty()) return false;
+  const std::scoped_lock lock(log_mutex);
+  // One round of the ring at most, so that events and status queries get their turn.
+  for (std::size_t i = 0; i < tick_ring.capacity() && !tick_ring.empty(); ++i) {
+    const TickSlot& slot = slots[tick_ring.read_slot()];
+    log.write_tick(slot.tick, slot.time, slot.values, slot.sensors);
+    {
+      const std::scoped_lock newest_lock(newest_mutex);
+      std::copy(slot.values.begin(), slot.values.end(), newest.begin());
+      has_newest = true;
+    }
+    tick_ring.release();
+  }
+  return true;
+}
+
+void Telemetry::Impl::report_dropouts() {
+  const std::scoped_lock lock(log_mutex);
+  log.set_dropouts(dropouts.load(std::memory_order_relaxed),
+                   event_dropouts.load(std::memory_order_relaxed));
+}
+
+Telemetry::Telemetry(SignalTable table, const TelemetryOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(table), options)) {}
+
+Telemetry::~Telemetry() { close(); }
+
+bool Telemetry::open_log(const std::string& path, const LogMetadata& metadata,
+                         const McapOptions& options, std::string* error) {
+  const std::scoped_lock lock(impl_->log_mutex);
+  return impl_->log.open(path, metadata, options, error);
+}
+
+void Telemetry::start() {
+  if (impl_->thread.joinable()) return;
+  impl_->stopping.store(false);
+  impl_->running.store(true);
+  impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
+}
+
+TickSlot* Telemetry::begin_tick() noexcept {
+  Impl& impl = *impl_;
+  if (impl.tick_ring.free() == 0) {
+    impl.dropouts.fetch_add(1, std::memory_order_relaxed);
+    return nullptr;
+  }
+  return &impl.slots[impl.tick_ring.write_slot()];
+}
+
+void Telemetry::commit() noexcept { impl_->tick_ring.commit(); }
+
+bool Telemetry::push_event(EventKind kind, std::int64_t tick, double time,
+                           std::string_view text) noexcept {
+  Impl& impl = *impl_;
+  if (impl.event_ring.free() == 0) {
+    impl.event_dropouts.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+  EventSlot& slot = impl.event_slots[impl.event_ring.write_slot()];
+  slot.kind = kind;
+  slot.tick = tick;
+  slot.time = time;
+  slot.size = static_cast<std::uint16_t>(std::min(text.size(), kMaxEventText));
+  slot.truncated = text.size() > kMaxEventText;
+  std::memcpy(slot.text.data(), text.data(), slot.size);
+  impl.event_ring.commit();
+  return true;
+}
+
+bool Telemetry::wait_for_space(std::size_t events) {
+  Impl& impl = *impl_;
+  const std::size_t wanted = std::min(events, impl.event_ring.capacity());
+  while (impl.tick_ring.free() == 0 || impl.event_ring.free() < wanted) {
+    if (!impl.running.load(std::memory_order_acquire)) return false;
+    std::this_thread::sleep_for(kWaitForSpace);
+  }
+  return impl.running.load(std::memory_order_acquire);
+}
+
+void Telemetry::record_event(EventKind kind, std::int64_t tick, double time, std::string text) {
+  const std::scoped_lock lock(impl_->pending_mutex);
+  impl_->pending.push_back(
+      {.tick = tick, .time = time, .kind = event_kind_name(kind), .text = std::move(text)});
+}
+
+bool Telemetry::latest(std::vector<double>& values) const {
+  const std::scoped_lock lock(impl_->newest_mutex);
+  if (impl_->has_newest) values = impl_->newest;
+  return impl_->has_newest;
+}
+
+const SignalTable& Telemetry::table() const { return impl_->table; }
+
+std::uint64_t Telemetry::dropouts() const noexcept {
+  return impl_->dropouts.load(std::memory_order_relaxed);
+}
+
+std::uint64_t Telemetry::event_dropouts() const noexcept {
+  return impl_->event_dropouts.load(std::memory_order_relaxed);
+}
+
+Telemetry::LogStatus Telemetry::log_status() const {
+  const std::scoped_lock lock(impl_->log_mutex);
+  const LogWriter& log = impl_->log;
+  return {log.is_open(), log.error(), log.ticks_written(), log.bytes_written()};
+}
+
+bool Telemetry::close(const LogMetadata& metadata, std::string* error) {
+  Impl& impl = *impl_;
+  impl.stopping.store(true, std::memory_order_release);
+  if (impl.thread.joinable()) impl.thread.join();
+  impl.running.store(false, std::memory_order_release);
+  while (impl.drain()) {
+  }
+  impl.report_dropouts();
+  const std::scoped_lock lock(impl.log_mutex);
+  const bool complete = impl.log.close(metadata);
+  if (error != nullptr) *error = impl.log.error();
+  return complete;
+}
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/telemetry/event.h"
+#include "daemon/telemetry/log_writer.h"
+#include "daemon/telemetry/signal.h"
+#include "gaitd/abi/types.h"
+
+namespace gaitd::daemon {
+
+// Where the control thread writes one tick.
+struct TickSlot {
+  std::int64_t tick = 0;
+  double time = 0.0;                // s, tick clock
+  std::span<double> values;         // in table order
+  GaitdSensors* sensors = nullptr;  // never null
+};
+
+struct TelemetryOptions {
+  double period = 0.001;      // s, of the tick
+  double ring_seconds = 2.0;  // what the ring of ticks holds
+  std::size_t ring_events = 1024;
+  double poll_period = 0.002;  // s, sleep of the telemetry thread when there is nothing to do
+};
+
+inline constexpr std::size_t kMaxEventText = 480;  // bytes, of an event from the control thread
+
+// Carries ticks and events from the control thread to the log file and to status queries. The
+// control thread only touches wait-free single-producer rings whose memory exists and is touched
+// beforehand; a thread of its own empties them. Works without a log file too.
+class Telemetry {
+ public:
+  // The table must be valid (validate_signal_table).
+  Telemetry(SignalTable table, const TelemetryOptions& options);
+  ~Telemetry();  // closes
+  Telemetry(const Telemetry&) = delete;
+  Telemetry& operator=(const Telemetry&) = delete;
+
+  // [main] Opens the log, before start(). False with `error`: what, where and what to do.
+  bool open_log(const std::string& path, const LogMetadata& metadata, const McapOptions& options,
+                std::string* error);
+
+  // [main] Starts the thread, of ordinary priority.
+  void start();
+
+  // [rt] The next slot to fill, or null if the ring is full: the tick is then a dropout, and
+  // counted. Values keep what an earlier tick left there: fill all. commit() hands the slot over.
+  TickSlot* begin_tick() noexcept;
+  void commit() noexcept;
+
+  // [rt] False if the ring was full, and counted. Text beyond kMaxEventText is cut off and marked.
+  bool push_event(EventKind kind, std::int64_t tick, double time, std::string_view text) noexcept;
+
+  // [control thread, outside the guarded section] In lockstep, before each tick: sleeps until the
+  // next tick and `events` events are certain to find room, so that nothing is ever dropped. False
+  // if the thread is not running, so that waiting is of no use.
+  bool wait_for_space(std::size_t events = 64);
+
+  // [any thread but rt] An event of any length. Ordered by its tick when read, not by its call.
+  void record_event(EventKind kind, std::int64_t tick, double time, std::string text);
+
+  // [any thread but rt] The newest tick that the thread has seen. False before the first one.
+  bool latest(std::vector<double>& values) const;
+
+  const SignalTable& table() const;
+  std::uint64_t dropouts() const noexcept;  // ticks
+  std::uint64_t event_dropouts() const noexcept;
+
+  // [any thread but rt] Of the log; `error` is empty while it is being written.
+  struct LogStatus {
+    bool open = false;
+    std::string error;  // first one; the log is not written any more, the robot walks on
+    std::uint64_t ticks = 0;
+    std::uint64_t bytes = 0;
+  };
+  LogStatus log_status() const;
+
+  // [main, after the last commit] Writes all that is left, stops the thread and completes the file
+  // with `metadata`. False with `error` if the file is not complete.
+  bool close(const LogMetadata& metadata = {}, std::string* error = nullptr);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/verdict/run_figures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/verdict/statistics.h"
+
+namespace gaitd::daemon {
+
+namespace {
+
+constexpr double kAtLimit = 0.999;  // of the effort limit
+
+void compute_icp_error(const RunData& run, RunFigures* figures) {
+  const Column* x = run.find("icp/x");
+  const Column* y = run.find("icp/y");
+  const Column* desired_x = run.find("icp/desired/x");
+  const Column* desired_y = run.find("icp/desired/y");
+  if (x == nullptr || y == nullptr || desired_x == nullptr || desired_y == nullptr) return;
+  Column error;
+  for (std::size_t tick = 0; tick < run.ticks(); ++tick) {
+    if (!run.is_during(tick, During::kWalk)) continue;
+    error.push_back(std::hypot((*x)[tick] - (*desired_x)[tick], (*y)[tick] - (*desired_y)[tick]));
+  }
+  figures->icp_error_rms = compute_statistic(Statistic::kRms, error);
+  figures->icp_error_max = compute_statistic(Statistic::kMax, error);
+}
+
+// The signal starts again from zero whenever the foot is loaded, so its maximum is that of the
+// worst support.
+void compute_slip(const RunData& run, RunFigures* figures) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Column* slip = run.find(std::string("truth/foot/") + kSides[side] + "/slip");
+    if (slip != nullptr) figures->slip[side] = compute_statistic(Statistic::kMax, *slip);
+  }
+  figures->foot_slip = std::isnan(figures->slip[0]) || std::isnan(figures->slip[1])
+                           ? kNotMeasured
+                           : std::max(figures->slip[0], figures->slip[1]);
+}
+
+double stance_knee_mean(const RunData& run) {
+  Column knee;
+  for (int side = 0; side < 2; ++side) {
+    const LegDescription& leg = run.robot().legs[static_cast<std::size_t>(side)];
+    const Column* position = run.find("joint/" + leg.knee + "/position");
+    if (leg.knee.empty() || position == nullptr) return kNotMeasured;
+    for (std::size_t tick = 0; tick < run.ticks(); ++tick) {
+      if (run.is_during(tick, During::kSwing) && run.support()[tick] == side) {
+        knee.push_back(leg.knee_bend_sign * (*position)[tick]);
+      }
+    }
+  }
+  return compute_statistic(Statistic::kMean, knee);
+}
+
+double saturation(const RunData& run) {
+  std::vector<bool> saturated(run.ticks());
+  bool any_joint = false;
+  for (const LegDescription& leg : run.robot().legs) {
+    for (const std::string& joint : leg.joints) {
+      const Column* torque = run.find("joint/" + joint + "/torque_desired");
+      const auto limit = run.robot().effort_limits.find(joint);
+      if (torque == nullptr || limit == run.robot().effort_limits.end()) return kNotMeasured;
+      any_joint = true;
+      for (std::size_t tick = 0; tick < run.ticks(); ++tick) {
+        // Torques that are not numbers count as saturated.
+        if (!(std::abs((*torque)[tick]) < kAtLimit * limit->second)) saturated[tick] = true;
+      }
+    }
+  }
+  if (!any_joint || run.ticks() == 0) return kNotMeasured;
+  return static_cast<double>(std::count(saturated.begin(), saturated.end(), true)) /
+         static_cast<double>(run.ticks());
+}
+
+WorstJoint chatter(const RunData& run) {
+  WorstJoint worst;
+  for (const auto& [joint, limit] : run.robot().effort_limits) {
+    const Column* torque = run.find("joint/" + joint + "/torque_desired");
+    if (torque == nullptr || torque->size() < 2 || !(limit > 0.0)) continue;
+    double squares = 0.0;
+    for (std::size_t tick = 1; tick < torque->size(); ++tick) {
+      const double change = ((*torque)[tick] - (*torque)[tick - 1]) / limit;
+      squares += change * change;
+    }
+    const double rms = std::sqrt(squares / static_cast<double>(torque->size() - 1));
+    if (std::isnan(rms)) return {rms, joint};
+    if (worst.joint.empty() || rms > worst.value) worst = {rms, joint};
+  }
+  return worst;
+}
+
+double contact_lost_ticks(const RunData& run) {
+  const std::vector<bool> left = run.has_word("foot/left/contact", "none");
+  const std::vector<bool> right = run.has_word("foot/right/contact", "none");
+  if (left.empty() || right.empty()) return kNotMeasured;
+  bool stood = false;
+  std::size_t lost = 0;
+  for (std::size_t tick = 0; tick < run.ticks(); ++tick) {
+    stood = stood || (!left[tick] && !right[tick]);
+    if (stood && run.is_during(tick, During::kStand) && (left[tick] || right[tick])) ++lost;
+  }
+  return static_cast<double>(lost);
+}
+
+double last_of(const RunData& run, const char* axis) {
+  const Column* column =
+      run.find_first({std::string("truth/pelvis/") + axis, std::string("pelvis/") + axis});
+  return column == nullptr || column->empty() ? kNotMeasured : column->back();
+}
+
+}  // namespace
+
+RunFigures compute_run_figures(const RunData& run) {
+  RunFigures figures;
+  figures.fall = find_fall(run);
+  figures.steps = find_steps(run, figures.fall);
+  for (const Step& step : figures.steps) {
+    if (step.completed && !step.closing) ++figures.steps_taken;
+    if (step.toe_off) ++figures.toe_off_steps;
+  }
+  compute_icp_error(run, &figures);
+  compute_slip(run, &figures);
+  figures.stance_knee_mean = stance_knee_mean(run);
+  figures.saturation = saturation(run);
+  figures.chatter = chatter(run);
+  figures.contact_lost_ticks = contact_lost_ticks(run);
+  figures.final_pelvis = {last_of(run, "x"), last_of(run, "y"), last_of(run, "yaw")};
+  return figures;
+}
+
+double pelvis_drift(const RunData& run, double start) {
+  const Column* x = run.find_first({"truth/pelvis/x", "pelvis/x"});
+  const Column* y = run.find_first({"truth/pelvis/y", "pelvis/y"});
+  if (x == nullptr || y == nullptr) return kNotMeasured;
+  std::optional<std::size_t> reference;
+  Column distance;
+  for (std::size_t tick = 0; tick < run.ticks(); ++tick) {
+    if (!reference && run.time()[tick] >= start) reference = tick;
+    if (!reference) continue;
+    distance.push_back(std::hypot((*x)[tick] - (*x)[*reference], (*y)[tick] - (*y)[*reference]));
+  }
+  return compute_statistic(Statistic::kMax, distance);
+}
+
+}  // namespace gaitd::daemon

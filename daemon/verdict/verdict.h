@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/telemetry/log_reader.h"
+#include "daemon/verdict/expectations.h"
+
+namespace gaitd::daemon {
+
+// What the log must supply besides the signals, in its metadata:
+//   joints      JSON [{"name": "l_leg_kny", "effort_limit": 890.0}, ...]
+//   legs        JSON {"left": {"knee": "l_leg_kny", "knee_bend_sign": 1, "joints": [names]},
+//                     "right": {...}}; "knee" null or absent if the leg has none
+//   fault_bits  JSON {"fall": 3, ...}: bit numbers of the signal safety/faults
+//   realtime_factor, wall_seconds   numbers as text, optional, at the end of the file
+// and, where the run has closing steps, the boolean signal gait/closing: true during their swing.
+
+// One expectation, judged.
+struct Judgement {
+  std::string name;    // as in the scenario file; of a check: its signal, statistic and phase
+  std::string figure;  // what was measured, for people
+  double value = 0.0;  // the same; NaN if it could not be measured
+  std::string bound;   // what was expected, e.g. "<= 0.03 m"
+  bool pass = false;
+  std::string note;  // why it could not be measured, or which signal was the worst
+};
+
+// One measured figure.
+struct Figure {
+  std::string name;
+  double value = 0.0;  // NaN: not measurable in this log
+  std::string unit;
+};
+
+struct Verdict {
+  bool pass = false;  // every expectation holds
+  std::vector<Judgement> judgements;
+  std::vector<Figure> figures;
+
+  // NaN if there is no figure of that name.
+  double figure(const std::string& name) const;
+};
+
+// Everything comes from the log alone. Truth is used where the log has it, the estimate otherwise.
+Verdict compute_verdict(const LogReader& log, const Expectations& expectations);
+
+std::string verdict_text(const Verdict& verdict);
+std::string verdict_json(const Verdict& verdict);
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "daemon/verdict/number_text.h"
+#include "daemon/verdict/verdict.h"
+
+namespace gaitd::daemon {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string pad(std::string text, std::size_t width) {
+  if (text.size() < width) text.append(width - text.size(), ' ');
+  return text;
+}
+
+// JSON has neither NaN nor infinity.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+}  // namespace
+
+std::string number_text(double value, const std::string& unit) {
+  if (std::isnan(value)) return "-";
+  char text[40];
+  const bool whole = value == std::floor(value) && std::abs(value) < 1e9;
+  std::snprintf(text, sizeof(text), whole ? "%.0f" : "%.4g", value);
+  return unit.empty() ? text : std::string(text) + " " + unit;
+}
+
+std::string verdict_text(const Verdict& verdict) {
+  std::size_t name_width = 0;
+  std::size_t figure_width = 0;
+  std::size_t bound_width = 0;
+  for (const Judgement& judgement : verdict.judgements) {
+    name_width = std::max(name_width, judgement.name.size());
+    figure_width = std::max(figure_width, judgement.figure.size());
+    bound_width = std::max(bound_width, judgement.bound.size());
+  }
+  std::string text;
+  for (const Judgement& judgement : verdict.judgements) {
+    std::string line = judgement.pass ? "  ok    " : "  FAIL  ";
+    line += pad(judgement.name, name_width + 2) + pad(judgement.figure, figure_width + 2) +
+            pad(judgement.bound, bound_width + 2) + judgement.note;
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  text += "figures\n";
+  std::size_t width = 0;
+  for (const Figure& figure : verdict.figures) width = std::max(width, figure.name.size());
+  for (const Figure& figure : verdict.figures) {
+    text += "  " + pad(figure.name, width + 2) + number_text(figure.value, figure.unit) + "\n";
+  }
+  text += verdict.pass ? "verdict: pass\n" : "verdict: FAIL\n";
+  return text;
+}
+
+std::string verdict_json(const Verdict& verdict) {
+  Json json;
+  json["pass"] = verdict.pass;
+  json["expectations"] = Json::array();
+  for (const Judgement& judgement : verdict.judgements) {
+    Json entry = {{"name", judgement.name},
+                  {"pass", judgement.pass},
+                  {"value", number(judgement.value)},
+                  {"figure", judgement.figure},
+                  {"bound", judgement.bound}};
+    if (!judgement.note.empty()) entry["note"] = judgement.note;
+    json["expectations"].push_back(std::move(entry));
+  }
+  json["figures"] = Json::object();
+  json["units"] = Json::object();
+  for (const Figure& figure : verdict.figures) {
+    json["figures"][figure.name] = number(figure.value);
+    if (!figure.unit.empty()) json["units"][figure.name] = figure.unit;
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace gaitd::daemon

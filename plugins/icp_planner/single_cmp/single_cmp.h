@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "gaitd/sdk/layer.h"
+#include "gaitd/walking/icp_reference.h"
+
+namespace gaitd::plugins {
+
+// ICP plan with one CMP per foothold, constant during swing (Englsberger et al. 2013): the simplest
+// plan there is, for comparison and for robots with small feet.
+class SingleCmp {
+ public:
+  enum class P { kInwards, kDecay, kFit, kCount };
+  static constexpr std::array<GaitdParameter, 3> kParameters = {
+      sdk::real_parameter("inwards", "half widths", -1, 1, 0.1,
+                          "CMP towards the other foot, from the middle of the foothold"),
+      sdk::real_parameter("decay", "1/s", 0, 20, 4, "of what is left of the old plan"),
+      sdk::real_parameter("fit_limit", "m", 0, 0.5, 0.08,
+                          "furthest that the start of a first transfer is moved"),
+  };
+
+  explicit SingleCmp(const GaitdModel& model) : reference_(model) {}
+  void set_parameter(int index, double value) { p_.set(index, value); }
+  GaitdStatus process(const GaitdIcpPlannerInput& in, GaitdIcpPlan& out);
+  void reset() { reference_.reset(); }
+  void get_state(GaitdIcpPlannerState& s) const { reference_.get_state(s); }
+  void set_state(const GaitdIcpPlannerState& s) { reference_.set_state(s); }
+
+ private:
+  sdk::Parameters<P> p_{kParameters};
+  walking::IcpReference reference_;
+};
+
+}  // namespace gaitd::plugins

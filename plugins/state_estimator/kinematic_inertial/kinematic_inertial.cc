@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinematic_inertial.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gaitd::plugins {
+namespace {
+
+using sdk::view;
+
+// While the robot has just been switched on, gravity is believed more: this many times the rate,
+// decaying with this time constant (s).
+constexpr double kStartBoost = 20.0;
+constexpr double kStartTime = 0.5;
+
+double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * hertz * dt); }
+
+// Smallest rotation that takes the measured specific force to the vertical.
+Eigen::Quaterniond level(const Eigen::Vector3d& specific_force) {
+  return Eigen::Quaterniond::FromTwoVectors(specific_force, Eigen::Vector3d::UnitZ());
+}
+
+}  // namespace
+
+KinematicInertial::KinematicInertial(const GaitdModel& model)
+    : model_(model), weight_(model.total_mass * model.gravity), kinematics_(model) {}
+
+void KinematicInertial::reset() {
+  initialised_ = false;
+  joints_seen_ = false;
+  orientation_.setIdentity();
+  position_.setZero();
+  velocity_W_.setZero();
+  gyro_bias_.setZero();
+  accelerometer_bias_.setZero();
+  time_since_start_ = 0.0;
+  feet_ = {};
+}
+
+void KinematicInertial::get_state(GaitdStateEstimatorState& s) const {
+  s.initialised = initialised_ ? 1 : 0;
+  view(s.pelvis_position) = position_;
+  sdk::store(orientation_, s.pelvis_orientation);
+  view(s.pelvis_velocity) = velocity_W_;
+  view(s.gyro_bias) = gyro_bias_;
+  view(s.accelerometer_bias) = accelerometer_bias_;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    s.contact[side] = feet_[side].contact;
+    view(s.anchor[side]) = feet_[side].anchor;
+    s.anchor_yaw[side] = sdk::yaw_of(feet_[side].anchor_orientation);
+  }
+}
+
+void KinematicInertial::set_state(const GaitdStateEstimatorState& s) {
+  reset();
+  initialised_ = s.initialised != 0;
+  position_ = view(s.pelvis_position);
+  orientation_ = sdk::quaternion(s.pelvis_orientation);
+  velocity_W_ = view(s.pelvis_velocity);
+  gyro_bias_ = view(s.gyro_bias);
+  accelerometer_bias_ = view(s.accelerometer_bias);
+  time_since_start_ = 100.0 * kStartTime;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) feet_[side].contact = s.contact[side];
+}
+
+const GaitdImuSensor* KinematicInertial::imu(const GaitdSensors& sensors, int& index) const {
+  for (int i = 0; i < sensors.imu_count && i < model_.imu_count; ++i) {
+    if (sensors.imus[i].info.valid != 0) {
+      index = i;
+      return &sensors.imus[i];
+    }
+  }
+  return nullptr;
+}
+
+void KinematicInertial::read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
+  const double blend = joints_seen_ ? low_pass(p_[P::kVelocityFilter], in.time.period) : 1.0;
+  for (int i = 0; i < model_.joint_count; ++i) {
+    const GaitdJointSensor& joint = in.sensors->joints[i];
+    // An invalid joint keeps its last position; the host decides what the fault means.
+    if (joint.info.valid != 0) {
+      out.joint_position[i] = joint.position;
+      velocity_[i] += blend * (joint.velocity - velocity_[i]);
+    } else {
+      velocity_[i] = 0.0;
+    }
+    out.joint_velocity[i] = velocity_[i];
+  }
+  joints_seen_ = true;
+}
+
+void KinematicInertial::update_kinematics(const GaitdRobotState& joints) {
+  sdk::Vector6d twist;
+  twist << rate_, orientation_.conjugate() * velocity_W_;
+  kinematics_.update(position_, orientation_, twist,
+                     sdk::head(joints.joint_position, model_.joint_count),
+                     sdk::head(joints.joint_velocity, model_.joint_count));
+}
+
+Eigen::Quaterniond KinematicInertial::sole_orientation(int side) const {
+  const GaitdFoot& foot = model_.feet[side];
+  return Eigen::Quaterniond(kinematics_.R_WB(foot.body)) *
+         sdk::quaternion(foot.sole.orientation);
+}
+
+Eigen::Vector3d KinematicInertial::sole_point(int side, const Eigen::Vector3d& in_sole) const {
+  const GaitdFoot& foot = model_.feet[side];
+  return kinematics_.frame_position(
+      foot.body, view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole);
+}
+
+void KinematicInertial::initialise(const GaitdStateEstimatorInput& in,
+                                   const GaitdRobotState& joints) {
+  int index = 0;
+  if (const GaitdImuSensor* sensor = imu(*in.sensors, index)) {
+    const Eigen::Quaterniond mount = sdk::quaternion(model_.imus[index].orientation);
+    orientation_ = level(mount * view(sensor->specific_force));
+  }
+  update_kinematics(joints);
+  // The heading and the place come from the operator: the middle of the feet.
+  const double left = sdk::yaw_of(sole_orientation(GAITD_LEFT));
+  const double right = sdk::yaw_of(sole_orientation(GAITD_RIGHT));
+  const double yaw = left + 0.5 * std::remainder(right - left, 2.0 * M_PI);
+  orientation_ = (sdk::from_yaw(in.start.yaw - yaw) * orientation_).normalized();
+  update_kinematics(joints);
+  const Eigen::Vector3d middle =
+      0.5 * (sole_point(GAITD_LEFT, Eigen::Vector3d::Zero()) +
+             sole_point(GAITD_RIGHT, Eigen::Vector3d::Zero()));
+  position_ += view(in.start.position) - middle;
+  update_kinematics(joints);
+  initialised_ = true;
+}
+
+void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in, double dt) {
+  int index = 0;
+  const GaitdImuSensor* sensor = imu(*in.sensors, index);
+  if (sensor == nullptr) return;  // coast on the last rate
+  const GaitdFrame& frame = model_.imus[index];
+  const Eigen::Quaterniond mount = sdk::quaternion(frame.orientation);
+  rate_ = mount * view(sensor->angular_rate) - gyro_bias_;
+  // Acceleration of the pelvis origin: the lever arm of the IMU taken out.
+  const Eigen::Vector3d lever = view(frame.origin);
+  const Eigen::Vector3d turning = lever.squaredNorm() > 0.0 && dt > 0.0
+                                      ? Eigen::Vector3d((rate_ - last_rate_) / dt)
+                                      : Eigen::Vector3d::Zero();
+  specific_force_ = mount * view(sensor->specific_force) - turning.cross(lever) -
+                    rate_.cross(rate_.cross(lever));
+  last_rate_ = rate_;
+
+  orientation_ = (orientation_ * sdk::exp_so3(rate_ * dt)).normalized();
+  const double boost = 1.0 + kStartBoost * std::exp(-time_since_start_ / kStartTime);
+  Eigen::Vector3d tilt;
+  if (sensor->has_orientation != 0) {
+    const Eigen::Quaterniond measured =
+        sdk::quaternion(sensor->orientation) * mount.conjugate();
+    tilt = sdk::log_so3(measured * orientation_.conjugate());
+  } else {
+    const Eigen::Vector3d up = orientation_ * specific_force_;
+    tilt = up.cross(Eigen::Vector3d::UnitZ()) / model_.gravity;
+  }
+  tilt.z() = 0.0;
+  orientation_ =
+      (sdk::exp_so3(std::min(1.0, p_[P::kTiltRate] * boost * dt) * tilt) * orientation_)
+          .normalized();
+}
+
+void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
+  const double blend = low_pass(p_[P::kForceFilter], in.time.period);
+  Eigen::Vector2d weighted = Eigen::Vector2d::Zero();
+  double total = 0.0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const GaitdFoot& foot = model_.feet[side];
+    const GaitdFootForceSensor& sensor = in.sensors->feet[side];
+    GaitdFootState& state = out.feet[side];
+    Foot& f = feet_[side];
+    // From the sensor frame to the sole frame, both fixed to the foot.
+    const Eigen::Quaterniond sole = sdk::quaternion(foot.sole.orientation);
+    const Eigen::Quaterniond turn =
+        sole.conjugate() * sdk::quaternion(foot.force_sensor.orientation);
+    const Eigen::Vector3d lever =
+        sole.conjugate() * (view(foot.force_sensor.origin) - view(foot.sole.origin));
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+    if (sensor.info.valid != 0) {
+      force = turn * view(sensor.force);
+      moment = turn * view(sensor.moment) + lever.cross(force);
+    }
+    view(state.wrench).head<3>() = moment;
+    view(state.wrench).tail<3>() = force;
+    f.normal_force += blend * (std::max(0.0, force.z()) - f.normal_force);
+    state.normal_force = f.normal_force;
+    const double threshold =
+        p_[f.contact == GAITD_CONTACT_NONE ? P::kContactOn : P::kContactOff] * weight_;
+    f.contact = f.normal_force > threshold ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
+    state.contact = f.contact;
+    state.cop_valid = f.contact != GAITD_CONTACT_NONE && force.z() > 0.01 * weight_ ? 1 : 0;
+    if (state.cop_valid != 0) {
+      state.cop[0] = -moment.y() / force.z();
+      state.cop[1] = moment.x() / force.z();
+    }
+    view(state.cop_world) = sole_point(side, {state.cop[0], state.cop[1], 0.0});
+    if (state.cop_valid != 0) {
+      weighted += f.normal_force * view(state.cop_world).head<2>();
+      total += f.normal_force;
+    }
+  }
+  if (total > 0.0) last_cop_ = weighted / total;
+  view(out.cop) = last_cop_;
+}
+
+void KinematicInertial::update_trust(const GaitdStateEstimatorInput& in, double dt) {
+  const double total = feet_[0].normal_force + feet_[1].normal_force;
+  const double least = 0.2 * weight_;  // in flight no share means anything
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    Foot& f = feet_[side];
+    const double share = f.normal_force / std::max(total, least);
+    const bool swinging = in.gait->phase == GAITD_PHASE_SWING && in.gait->next_side == side;
+    f.time_above = share > p_[P::kTrustOn] && !swinging ? f.time_above + dt : 0.0;
+    const bool was = f.trusted;
+    if (!f.trusted) f.trusted = f.time_above >= p_[P::kTrustDelay];
+    if (share < p_[P::kTrustOff] || swinging) f.trusted = false;
+    f.time_trusted = f.trusted && was ? f.time_trusted + dt : 0.0;
+    if (f.trusted && !was) {
+      f.anchored_point.setZero();
+      f.anchor = sole_point(side, f.anchored_point);
+      f.orientation_anchored = false;
+    }
+  }
+}
+
+void KinematicInertial::update_anchors(const GaitdStateEstimatorInput& in, double dt) {
+  Eigen::Vector3d error = Eigen::Vector3d::Zero();
+  double total = 0.0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    Foot& f = feet_[side];
+    if (!f.trusted) continue;
+    const bool toe = in.gait->footholds[side].contact == GAITD_CONTACT_TOE;
+    const Eigen::Vector3d point =
+        toe ? Eigen::Vector3d(view(model_.feet[side].toe_point)) : Eigen::Vector3d::Zero();
+    if (point != f.anchored_point) {  // the foot begins to roll over its toe, or comes down again
+      f.anchored_point = point;
+      f.anchor = sole_point(side, point);
+    }
+    if (toe) f.orientation_anchored = false;
+    if (toe || f.time_trusted < p_[P::kAnchorDelay]) continue;
+    const Eigen::Quaterniond now = sole_orientation(side);
+    if (!f.orientation_anchored) {
+      f.orientation_anchored = true;
+      f.anchor_orientation = now;
+    }
+    error += f.normal_force * sdk::log_so3(f.anchor_orientation * now.conjugate());
+    total += f.normal_force;
+  }
+  if (total <= 0.0) return;
+  error /= total;
+  orientation_ = (sdk::exp_so3(p_[P::kAnchorRate] * dt * error) * orientation_).normalized();
+  gyro_bias_ -= p_[P::kBiasRate] * dt * (orientation_.conjugate() * error);
+}
+
+void KinematicInertial::update_position(const GaitdStateEstimatorInput& in, double dt) {
+  const Eigen::Vector3d acceleration =
+      orientation_ * (specific_force_ - accelerometer_bias_) -
+      model_.gravity * Eigen::Vector3d::UnitZ();
+  position_ += dt * velocity_W_ + 0.5 * dt * dt * acceleration;
+  velocity_W_ += dt * acceleration;
+
+  Eigen::Vector3d correction = Eigen::Vector3d::Zero();
+  double total = 0.0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const Foot& f = feet_[side];
+    if (!f.trusted) continue;
+    correction += f.normal_force * (f.anchor - sole_point(side, f.anchored_point));
+    total += f.normal_force;
+  }
+  if (total <= 0.0) return;
+  // sole_point() still belongs to the position before this tick's prediction.
+  correction = correction / total - dt * velocity_W_;
+  const double pole = p_[P::kPositionRate];
+  position_ += 3.0 * pole * dt * correction;
+  velocity_W_ += 3.0 * pole * pole * dt * correction;
+  accelerometer_bias_ -= pole * pole * pole * dt * (orientation_.conjugate() * correction);
+  const double limit = p_[P::kBiasLimit];
+  accelerometer_bias_ = accelerometer_bias_.cwiseMax(-limit).cwiseMin(limit);
+}
+
+void KinematicInertial::write(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
+  update_kinematics(out);
+  out.joint_count = model_.joint_count;
+  out.valid = 1;
+  view(out.pelvis_position) = position_;
+  sdk::store(orientation_, out.pelvis_orientation);
+  view(out.pelvis_twist) << rate_, orientation_.conjugate() * velocity_W_;
+  view(out.com) = kinematics_.com();
+  view(out.com_velocity) = kinematics_.com_velocity();
+  view(out.icp) = kinematics_.com().head<2>() + kinematics_.com_velocity().head<2>() / in.omega;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    GaitdFootState& state = out.feet[side];
+    view(state.position) = sole_point(side, Eigen::Vector3d::Zero());
+    sdk::store(sole_orientation(side), state.orientation);
+    view(state.twist) = kinematics_.frame_velocity(model_.feet[side].body,
+                                                   view(model_.feet[side].sole.origin));
+  }
+  const double sigma = 0.01;  // m/s, what the observer reaches with nominal sensors
+  for (int i = 0; i < 9; ++i) out.pelvis_velocity_covariance[i] = i % 4 == 0 ? sigma * sigma : 0.0;
+  for (double& w : out.external_wrench) w = 0.0;
+}
+
+GaitdStatus KinematicInertial::process(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
+  if (in.sensors->joint_count != model_.joint_count) return GAITD_INVALID_ARGUMENT;
+  const double dt = in.time.period;
+  read_joints(in, out);
+  if (!initialised_) {
+    initialise(in, out);
+  }
+  update_attitude(in, dt);
+  update_kinematics(out);
+  read_feet(in, out);
+  update_trust(in, dt);
+  update_anchors(in, dt);
+  update_kinematics(out);
+  update_position(in, dt);
+  write(in, out);
+  time_since_start_ += dt;
+  return GAITD_OK;
+}
+
+}  // namespace gaitd::plugins

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "gaitd/dynamics/kinematics.h"
+#include "gaitd/sdk/layer.h"
+#include "gaitd/sdk/views.h"
+
+namespace gaitd::plugins {
+
+// Kinematic-inertial fusion from IMU, encoders and foot forces (theory section 7).
+//
+// Attitude: the gyroscope is integrated and corrected by gravity (slowly), and by the orientation
+// that each foot in contact had when it came to rest (which also shows the gyroscope's bias and
+// keeps the heading). Position and velocity: a third-order observer that integrates the
+// accelerometer and is corrected by where the anchored feet put the pelvis; its third state is the
+// bias of the accelerometer. Feet are trusted by the share of the load they carry.
+class KinematicInertial {
+ public:
+  enum class P {
+    kTrustOn,
+    kTrustOff,
+    kTrustDelay,
+    kContactOn,
+    kContactOff,
+    kForceFilter,
+    kVelocityFilter,
+    kPositionRate,
+    kTiltRate,
+    kAnchorRate,
+    kBiasRate,
+    kAnchorDelay,
+    kBiasLimit,
+    kCount
+  };
+  static constexpr std::array<GaitdParameter, 13> kParameters = {
+      sdk::real_parameter("trust_on", "load", 0, 1, 0.35, "share that makes a foot an anchor"),
+      sdk::real_parameter("trust_off", "load", 0, 1, 0.30, "share below which it is none"),
+      sdk::real_parameter("trust_delay", "s", 0, 0.5, 0.02, "that the share must last"),
+      sdk::real_parameter("contact_on", "weight", 0, 1, 0.05, "normal force of a contact"),
+      sdk::real_parameter("contact_off", "weight", 0, 1, 0.03, "normal force of no contact"),
+      sdk::real_parameter("force_filter", "Hz", 1, 500, 80, "low-pass of the normal force"),
+      sdk::real_parameter("velocity_filter", "Hz", 1, 1000, 1000, "low-pass of joint rates"),
+      sdk::real_parameter("position_rate", "1/s", 0.5, 200, 12,
+                          "pole of the observer of position, velocity and bias"),
+      sdk::real_parameter("tilt_rate", "1/s", 0, 10, 0.15, "correction of the tilt by gravity"),
+      sdk::real_parameter("anchor_rate", "1/s", 0, 50, 2, "correction by feet at rest"),
+      sdk::real_parameter("bias_rate", "1/s^2", 0, 50, 0.5, "gyroscope bias from feet at rest"),
+      sdk::real_parameter("anchor_delay", "s", 0, 1, 0.1,
+                          "after which an anchored foot is taken to be at rest"),
+      sdk::real_parameter("bias_limit", "m/s^2", 0, 5, 0.4, "of the accelerometer bias"),
+  };
+
+  explicit KinematicInertial(const GaitdModel& model);
+  void set_parameter(int index, double value) { p_.set(index, value); }
+  GaitdStatus process(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
+  void reset();
+  void get_state(GaitdStateEstimatorState& s) const;
+  void set_state(const GaitdStateEstimatorState& s);
+
+ private:
+  struct Foot {
+    bool trusted = false;
+    double time_above = 0.0;    // s, load share above the threshold
+    double time_trusted = 0.0;  // s
+    int contact = GAITD_CONTACT_NONE;
+    double normal_force = 0.0;  // N, filtered
+    Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  // m, W: the anchored point of the sole
+    Eigen::Vector3d anchored_point = Eigen::Vector3d::Zero();  // m, sole frame
+    Eigen::Quaterniond anchor_orientation = Eigen::Quaterniond::Identity();
+    bool orientation_anchored = false;
+  };
+
+  const GaitdImuSensor* imu(const GaitdSensors& sensors, int& index) const;
+  void read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
+  void initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
+  void update_attitude(const GaitdStateEstimatorInput& in, double dt);
+  void read_feet(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
+  void update_trust(const GaitdStateEstimatorInput& in, double dt);
+  void update_anchors(const GaitdStateEstimatorInput& in, double dt);
+  void update_position(const GaitdStateEstimatorInput& in, double dt);
+  void write(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
+  void update_kinematics(const GaitdRobotState& joints);
+  Eigen::Quaterniond sole_orientation(int side) const;
+  Eigen::Vector3d sole_point(int side, const Eigen::Vector3d& in_sole) const;
+
+  const GaitdModel model_;
+  double weight_;  // N
+  sdk::Parameters<P> p_{kParameters};
+  dynamics::Kinematics kinematics_;
+
+  bool initialised_ = false;
+  bool joints_seen_ = false;
+  std::array<double, GAITD_MAX_JOINTS> velocity_{};  // rad/s, filtered joint rates
+  Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();  // pelvis in W
+  Eigen::Vector3d position_ = Eigen::Vector3d::Zero();               // pelvis, W
+  Eigen::Vector3d velocity_W_ = Eigen::Vector3d::Zero();             // pelvis, W
+  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();                   // rad/s, pelvis frame
+  Eigen::Vector3d gyro_bias_ = Eigen::Vector3d::Zero();              // pelvis frame
+  Eigen::Vector3d accelerometer_bias_ = Eigen::Vector3d::Zero();     // pelvis frame
+  Eigen::Vector3d specific_force_ = Eigen::Vector3d::Zero();         // at the pelvis, its frame
+  Eigen::Vector3d last_rate_ = Eigen::Vector3d::Zero();
+  double time_since_start_ = 0.0;
+  std::array<Foot, GAITD_MAX_FEET> feet_;
+  Eigen::Vector2d last_cop_ = Eigen::Vector2d::Zero();
+};
+
+}  // namespace gaitd::plugins

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "com_height_qp.h"
+
+namespace gaitd::plugins {
+
+ComHeightQp::ComHeightQp(const GaitdModel& model) : joints_(model.joint_count), qp_(model) {}
+
+GaitdStatus ComHeightQp::process(const GaitdWholeBodyControllerInput& in,
+                                 GaitdWholeBodyControllerOutput& out) {
+  const GaitdObjectives& objectives = *in.objectives;
+  constexpr std::uint32_t kLinearRows = 0b111000;
+  const InverseDynamicsQp::Limits limits{.joint_rate_gain = p_[P::kJointRateGain],
+                                         .horizon = p_[P::kHorizon],
+                                         .joint_acceleration = p_[P::kJointAcceleration],
+                                         .base_acceleration = p_[P::kBaseAcceleration],
+                                         .torque_scale = p_[P::kTorqueScale]};
+  qp_.begin(*in.robot, objectives, objectives.momentum_mask | kLinearRows, limits);
+  for (int i = 0; i < joints_; ++i) {
+    const double weight = p_[P::kPrivilegedScale] * objectives.privileged_weight[i];
+    if (weight > 0.0) qp_.add_joint(i, objectives.privileged_acceleration[i], weight);
+  }
+  qp_.solve(static_cast<int>(p_[P::kMaxIterations]));
+  qp_.write(in.time.period, *in.robot, objectives, out);
+  return GAITD_OK;
+}
+
+}  // namespace gaitd::plugins

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_qp.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+
+namespace gaitd::plugins {
+
+using sdk::view;
+
+InverseDynamicsQp::InverseDynamicsQp(const GaitdModel& model)
+    : model_(model),
+      nv_(6 + model.joint_count),
+      joints_(model.joint_count),
+      dynamics_(model),
+      solver_({nv_ + kMaxRho, 6, model.joint_count}) {
+  const int n = nv_ + kMaxRho;
+  rows_.resize(kMaxRows, nv_);
+  targets_.resize(kMaxRows);
+  weights_.resize(kMaxRows);
+  weighted_.resize(kMaxRows, nv_);
+  jacobian_.resize(6, nv_);
+  edges_.resize(3, kMaxRho);
+  wrench_.resize(6, kMaxRho);
+  contact_.resize(nv_, kMaxRho);
+  H_.resize(n, n);
+  A_.resize(6, n);
+  C_.resize(joints_, n);
+  g_.resize(n);
+  b_.resize(6);
+  l_.resize(joints_);
+  u_.resize(joints_);
+  lb_.resize(n);
+  ub_.resize(n);
+  acceleration_.setZero(nv_);
+  rho_.setZero(kMaxRho);
+  torque_.setZero(nv_);
+  reset();
+}
+
+void InverseDynamicsQp::reset() {
+  state_ = {};
+  state_.size = sizeof(state_);
+  acceleration_.setZero();
+  rho_.setZero();
+  solver_.reset_warm_start();
+}
+
+void InverseDynamicsQp::get_state(GaitdWholeBodyControllerState& state) const { state = state_; }
+void InverseDynamicsQp::set_state(const GaitdWholeBodyControllerState& state) {
+  state_ = state;
+  solver_.reset_warm_start();
+}
+
+void InverseDynamicsQp::begin(const GaitdRobotState& robot, const GaitdObjectives& objectives,
+                              std::uint32_t mask, const Limits& limits) {
+  dynamics_.update(view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
+                   view(robot.pelvis_twist), sdk::head(robot.joint_position, joints_),
+                   sdk::head(robot.joint_velocity, joints_));
+  momentum_mask_ = mask;
+  add_contacts(objectives);
+  size_ = nv_ + rho_count_;
+  row_count_ = 0;
+  add_rows(objectives, mask);
+  add_costs(objectives);
+  add_equalities(objectives);
+  add_limits(robot, objectives, limits);
+}
+
+void InverseDynamicsQp::add_contacts(const GaitdObjectives& objectives) {
+  rho_count_ = kEdges * std::min<int>(objectives.contact_count, GAITD_MAX_CONTACTS);
+  for (int i = 0; i < rho_count_ / kEdges; ++i) {
+    const GaitdContactPoint& c = objectives.contacts[i];
+    const Eigen::Vector3d normal = view(c.normal);
+    const Eigen::Vector3d tangent = view(c.tangent);
+    const Eigen::Vector3d side = normal.cross(tangent);
+    const Eigen::Vector3d arm =
+        dynamics_.frame_position(c.body, view(c.point)) - dynamics_.com();
+    dynamics_.frame_jacobian(c.body, view(c.point), jacobian_);
+    for (int k = 0; k < kEdges; ++k) {
+      const int j = kEdges * i + k;
+      const Eigen::Vector3d across = k % 2 == 0 ? tangent : side;
+      edges_.col(j) = (normal + (k < 2 ? c.friction : -c.friction) * across).normalized();
+      wrench_.col(j) << arm.cross(edges_.col(j).head<3>()), edges_.col(j);
+    }
+    contact_.middleCols(kEdges * i, kEdges).noalias() =
+        jacobian_.bottomRows<3>().transpose() * edges_.middleCols(kEdges * i, kEdges);
+  }
+}
+
+void InverseDynamicsQp::add_rows(const GaitdObjectives& objectives, std::uint32_t mask) {
+  for (int t = 0; t < objectives.task_count; ++t) {
+    const GaitdTask& task = objectives.tasks[t];
+    if (task.type == GAITD_TASK_JOINT) {
+      rows_.row(row_count_).setZero();
+      rows_(row_count_, 6 + task.index) = 1.0;
+      targets_[row_count_] = task.acceleration[0];
+      weights_[row_count_++] = task.weight[0];
+      continue;
+    }
+    dynamics_.frame_jacobian(task.index, view(task.point), jacobian_);
+    const dynamics::Vector6d bias =
+        dynamics_.frame_bias_acceleration(task.index, view(task.point));
+    const Eigen::Matrix3d axes = sdk::quaternion(task.axes).toRotationMatrix();
+    for (int row = 0; row < 6; ++row) {
+      if ((task.row_mask >> row & 1u) == 0) continue;
+      const int block = row < 3 ? 0 : 3;
+      const Eigen::Vector3d axis = axes.col(row % 3);
+      rows_.row(row_count_).noalias() =
+          axis.transpose() * (block == 0 ? jacobian_.topRows<3>() : jacobian_.bottomRows<3>());
+      targets_[row_count_] = task.acceleration[row] - axis.dot(bias.segment<3>(block));
+      weights_[row_count_++] = task.weight[row];
+    }
+  }
+  for (int row = 0; row < 6; ++row) {
+    if ((mask >> row & 1u) == 0) continue;
+    rows_.row(row_count_) = dynamics_.centroidal_momentum_matrix().row(row);
+    targets_[row_count_] = objectives.momentum_rate[row] - dynamics_.centroidal_bias()[row];
+    weights_[row_count_++] = objectives.momentum_weight[row];
+  }
+}
+
+double InverseDynamicsQp::previous_rho(const GaitdObjectives& objectives, int contact,
+                                       int edge) const {
+  // Contacts are matched by body and by their place among the contacts of that body.
+  const int body = objectives.contacts[contact].body;
+  int place = 0;
+  for (int i = 0; i < contact; ++i) place += objectives.contacts[i].body == body ? 1 : 0;
+  for (int i = 0; i < state_.contact_count; ++i) {
+    if (state_.contact_body[i] == body && place-- == 0) return state_.rho[i][edge];
+  }
+  return 0.0;
+}
+
+void InverseDynamicsQp::add_costs(const GaitdObjectives& objectives) {
+  auto H = H_.topLeftCorner(size_, size_);
+  H.setZero();
+  auto g = g_.head(size_);
+  g.setZero();
+  const auto rows = rows_.topRows(row_count_);
+  auto weighted = weighted_.topRows(row_count_);
+  weighted.noalias() = weights_.head(row_count_).asDiagonal() * rows;
+  H.topLeftCorner(nv_, nv_).triangularView<Eigen::Lower>() = rows.transpose() * weighted;
+  g.head(nv_).noalias() = -weighted.transpose() * targets_.head(row_count_);
+  H.diagonal().head(nv_).array() += objectives.acceleration_weight;
+  for (int i = 0; i < joints_; ++i) {
+    if (objectives.posture_weight[i] > 0.0) {
+      add_joint(i, objectives.posture_acceleration[i], objectives.posture_weight[i]);
+    }
+  }
+  const double rate = state_.contact_count > 0 ? objectives.rho_rate_weight : 0.0;
+  for (int i = 0; i < rho_count_ / kEdges; ++i) {
+    for (int k = 0; k < kEdges; ++k) {
+      const int j = nv_ + kEdges * i + k;
+      H(j, j) += objectives.rho_weight + rate;
+      g[j] -= rate * previous_rho(objectives, i, k);
+    }
+  }
+}
+
+void InverseDynamicsQp::add_joint(int joint, double acceleration, double weight) {
+  H_(6 + joint, 6 + joint) += weight;
+  g_[6 + joint] -= weight * acceleration;
+}
+
+void InverseDynamicsQp::add_equalities(const GaitdObjectives& objectives) {
+  A_.leftCols(nv_) = dynamics_.centroidal_momentum_matrix();
+  A_.middleCols(nv_, rho_count_) = -wrench_.leftCols(rho_count_);
+  b_ = view(objectives.external_wrench) - dynamics_.centroidal_bias();
+  b_[5] -= dynamics_.total_mass() * dynamics_.gravity();
+}
+
+void InverseDynamicsQp::add_limits(const GaitdRobotState& robot, const GaitdObjectives& objectives,
+                                   const Limits& limits) {
+  C_.leftCols(nv_) = dynamics_.mass_matrix().bottomRows(joints_);
+  C_.middleCols(nv_, rho_count_) = -contact_.bottomRows(joints_).leftCols(rho_count_);
+  for (int i = 0; i < joints_; ++i) {
+    const GaitdJoint& joint = model_.joints[i];
+    const double rate = robot.joint_velocity[i];
+    const double bias = dynamics_.bias()[6 + i] + joint.damping * rate;
+    const double effort = limits.torque_scale * joint.effort_limit;
+    l_[i] = -effort - bias;
+    u_[i] = effort - bias;
+    // Rates that still stop before the position limits, reached within the horizon.
+    const double q = robot.joint_position[i];
+    const double up = std::clamp(limits.joint_rate_gain * (joint.position_max - q),
+                                 -joint.velocity_limit, joint.velocity_limit);
+    const double down = std::clamp(limits.joint_rate_gain * (joint.position_min - q),
+                                   -joint.velocity_limit, joint.velocity_limit);
+    const double a = limits.joint_acceleration;
+    ub_[6 + i] = std::clamp((up - rate) / limits.horizon, -0.5 * a, a);
+    lb_[6 + i] = std::clamp((down - rate) / limits.horizon, -a, 0.5 * a);
+    if (lb_[6 + i] > ub_[6 + i]) lb_[6 + i] = ub_[6 + i] = 0.5 * (lb_[6 + i] + ub_[6 + i]);
+  }
+  lb_.head<6>().setConstant(-limits.base_acceleration);
+  ub_.head<6>().setConstant(limits.base_acceleration);
+  for (int i = 0; i < rho_count_; ++i) {
+    lb_[nv_ + i] = objectives.contacts[i / kEdges].rho_min;
+    ub_[nv_ + i] = objectives.contacts[i / kEdges].rho_max;
+  }
+}
+
+void InverseDynamicsQp::solve(int max_iterations) {
+  qp::Problem problem;
+  problem.H = H_.topLeftCorner(size_, size_);
+  problem.g = g_.head(size_);
+  problem.A = A_.leftCols(size_);
+  problem.b = b_;
+  problem.C = C_.leftCols(size_);
+  problem.l = l_;
+  problem.u = u_;
+  problem.lb = lb_.head(size_);
+  problem.ub = ub_.head(size_);
+  qp::Options options;
+  options.max_iterations = max_iterations;
+  result_ = solver_.solve(problem, options);
+  if (!result_.solved()) return;
+  for (int i = 0; i < nv_; ++i) acceleration_[i] = result_.x[i];
+  for (int i = 0; i < rho_count_; ++i) rho_[i] = result_.x[nv_ + i];
+}
+
+void InverseDynamicsQp::remember(const GaitdObjectives& objectives) {
+  state_.contact_count = rho_count_ / kEdges;
+  for (int i = 0; i < state_.contact_count; ++i) {
+    state_.contact_body[i] = objectives.contacts[i].body;
+    for (int k = 0; k < kEdges; ++k) state_.rho[i][k] = rho_[kEdges * i + k];
+  }
+  view(state_.pelvis_acceleration) = acceleration_.head<6>();
+  sdk::head(state_.joint_acceleration, joints_) = acceleration_.tail(joints_);
+}
+
+void InverseDynamicsQp::write(double dt, const GaitdRobotState& robot,
+                              const GaitdObjectives& objectives,
+                              GaitdWholeBodyControllerOutput& out) {
+  GaitdWbcInfo& info = out.info;
+  switch (result_.status) {
+    case qp::Status::solved:
+      info.status = GAITD_WBC_SOLVED;
+      break;
+    case qp::Status::infeasible:
+      info.status = GAITD_WBC_INFEASIBLE;
+      break;
+    case qp::Status::max_iterations:
+      info.status = GAITD_WBC_MAX_ITERATIONS;
+      break;
+    default:
+      info.status = GAITD_WBC_NON_FINITE;
+      break;
+  }
+  info.iterations = result_.iterations;
+  info.kkt_residual = result_.residuals.scaled.max();
+  info.null_trace = 0.0;
+  if (info.status != GAITD_WBC_SOLVED) {
+    // The next problem must not lean on the forces of this one; the host falls back.
+    state_.contact_count = 0;
+    solver_.reset_warm_start();
+    return;
+  }
+  remember(objectives);
+
+  torque_.noalias() = dynamics_.mass_matrix() * acceleration_;
+  torque_ += dynamics_.bias();
+  torque_.noalias() -= contact_.leftCols(rho_count_) * rho_.head(rho_count_);
+  out.commands.size = sizeof(out.commands);
+  out.commands.joint_count = joints_;
+  for (int i = 0; i < joints_; ++i) {
+    GaitdJointCommand& command = out.commands.joints[i];
+    const double acceleration = acceleration_[6 + i];
+    command.mode = GAITD_JOINT_MODE_TORQUE;
+    command.torque = torque_[6 + i] + model_.joints[i].damping * robot.joint_velocity[i];
+    command.velocity = robot.joint_velocity[i] + acceleration * dt;
+    command.position =
+        robot.joint_position[i] + (robot.joint_velocity[i] + 0.5 * acceleration * dt) * dt;
+    command.stiffness = objectives.joint_stiffness[i];
+    command.damping = objectives.joint_damping[i];
+    state_.position_reference[i] = command.position;
+    state_.velocity_reference[i] = command.velocity;
+    info.joint_acceleration[i] = acceleration;
+  }
+  view(info.pelvis_acceleration) = acceleration_.head<6>();
+
+  const dynamics::Vector6d rate =
+      dynamics_.centroidal_momentum_matrix() * acceleration_ + dynamics_.centroidal_bias();
+  double residual = 0.0;
+  for (int row = 3; row < 6; ++row) {
+    if ((momentum_mask_ >> row & 1u) == 0) continue;
+    const double miss = objectives.momentum_rate[row] - rate[row];
+    residual += miss * miss;
+  }
+  info.momentum_residual = std::sqrt(residual);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) view(info.foot_wrench[side]).setZero();
+  for (int i = 0; i < rho_count_; ++i) {
+    const GaitdContactPoint& c = objectives.contacts[i / kEdges];
+    const GaitdFoot& foot = model_.feet[c.side];
+    const Eigen::Vector3d force = edges_.col(i) * rho_[i];
+    const Eigen::Vector3d arm = dynamics_.frame_position(c.body, view(c.point)) -
+                                dynamics_.frame_position(foot.body, view(foot.sole.origin));
+    view(info.foot_wrench[c.side]).head<3>() += arm.cross(force);
+    view(info.foot_wrench[c.side]).tail<3>() += force;
+  }
+}
+
+}  // namespace gaitd::plugins

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "gaitd/abi/plugin.h"
+#include "gaitd/dynamics/dynamics.h"
+#include "gaitd/qp/dense_solver.h"
+
+namespace gaitd::plugins {
+
+// The quadratic program that every whole-body controller here solves (theory section 4):
+//   unknowns   z = [vdot (6+n); rho], rho the multipliers of the friction-pyramid edges
+//   min        sum |P (J vdot - p)|^2 + |P_h (A vdot - b)|^2 + |P_rho rho|^2 + |P_v vdot|^2 + …
+//   s.t.       A vdot + Adot v = W_gravity + B rho + W_external       (six centroidal rows)
+//              tau_min <= M_a vdot + c_a - J_c,a' f <= tau_max        (every joint)
+//              vdot_min <= vdot <= vdot_max,  rho_min <= rho <= rho_max
+// Call begin(), add what is special to the variant, then solve() and write().
+class InverseDynamicsQp {
+ public:
+  static constexpr int kEdges = 4;  // of a friction pyramid
+  static constexpr int kMaxRho = kEdges * GAITD_MAX_CONTACTS;
+  static constexpr int kMaxRows = 6 * GAITD_MAX_TASKS + 6;
+
+  struct Limits {
+    double joint_rate_gain;     // 1/s, allowed rate per distance to a position limit
+    double horizon;             // s, in which a limit may be reached
+    double joint_acceleration;  // rad/s^2
+    double base_acceleration;   // rad/s^2, m/s^2
+    double torque_scale;        // share of the effort limits that may be used
+  };
+
+  explicit InverseDynamicsQp(const GaitdModel& model);
+
+  // Forgets forces, accelerations and the warm start.
+  void reset();
+  void get_state(GaitdWholeBodyControllerState& state) const;
+  void set_state(const GaitdWholeBodyControllerState& state);
+
+  // Takes the state, the contacts, all tasks of the objectives and the momentum rows of `mask`.
+  void begin(const GaitdRobotState& robot, const GaitdObjectives& objectives, std::uint32_t mask,
+             const Limits& limits);
+  // Adds weight * (vdot_joint - acceleration)^2.
+  void add_joint(int joint, double acceleration, double weight);
+  // Rows and targets of everything that was added so far, without weights: what no task claims is
+  // the null space of these. velocity_size() columns.
+  Eigen::Ref<const Eigen::MatrixXd> task_rows() const { return rows_.topRows(row_count_); }
+
+  void solve(int max_iterations);
+  // Torques, references and figures of the last solve, for a tick of `dt` seconds.
+  void write(double dt, const GaitdRobotState& robot, const GaitdObjectives& objectives,
+             GaitdWholeBodyControllerOutput& out);
+
+  int velocity_size() const { return nv_; }
+
+ private:
+  void add_rows(const GaitdObjectives& objectives, std::uint32_t mask);
+  void add_contacts(const GaitdObjectives& objectives);
+  void add_costs(const GaitdObjectives& objectives);
+  void add_equalities(const GaitdObjectives& objectives);
+  void add_limits(const GaitdRobotState& robot, const GaitdObjectives& objectives,
+                  const Limits& limits);
+  double previous_rho(const GaitdObjectives& objectives, int contact, int edge) const;
+  void remember(const GaitdObjectives& objectives);
+
+  const GaitdModel model_;
+  const int nv_;
+  const int joints_;
+  dynamics::Dynamics dynamics_;
+  qp::DenseSolver solver_;
+  qp::Result result_;
+
+  int row_count_ = 0;
+  int rho_count_ = 0;
+  int size_ = 0;                // unknowns
+  std::uint32_t momentum_mask_ = 0;
+  Eigen::MatrixXd rows_;        // kMaxRows x nv, task rows
+  Eigen::VectorXd targets_;     // kMaxRows
+  Eigen::VectorXd weights_;     // kMaxRows
+  Eigen::MatrixXd weighted_;    // kMaxRows x nv
+  dynamics::Matrix6X jacobian_;  // 6 x nv, scratch
+  Eigen::MatrixXd edges_;        // 3 x kMaxRho, unit forces in W
+  Eigen::MatrixXd wrench_;       // 6 x kMaxRho, about the CoM, moment first
+  Eigen::MatrixXd contact_;      // nv x kMaxRho, generalised force of each unit rho
+  Eigen::MatrixXd H_, A_, C_;
+  Eigen::VectorXd g_, b_, l_, u_, lb_, ub_;
+  Eigen::VectorXd acceleration_;  // nv, solution
+  Eigen::VectorXd rho_;           // kMaxRho, solution
+  Eigen::VectorXd torque_;        // nv
+
+  GaitdWholeBodyControllerState state_{};
+};
+
+}  // namespace gaitd::plugins

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The simulated robot in its world, advanced one control period at a time.
+#ifndef GAITD_SIM_PLANT_H_
+#define GAITD_SIM_PLANT_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gaitd/abi/backend.h"
+#include "gaitd/sim/actuators.h"
+#include "gaitd/sim/config.h"
+#include "gaitd/sim/contact_model.h"
+#include "gaitd/sim/dynamics_terms.h"
+#include "gaitd/sim/integrator.h"
+#include "gaitd/sim/multibody.h"
+#include "gaitd/sim/sensors.h"
+#include "gaitd/sim/truth.h"
+
+namespace gaitd::sim {
+
+// Not thread-safe; one thread at a time. The same configuration and commands give the same bits.
+class Plant {
+ public:
+  // `period`: control period (s), a whole multiple of config.time_step. `model` is the
+  // controller's; the errors of `config` are applied here. Throws std::invalid_argument if it
+  // cannot be simulated.
+  Plant(const GaitdModel& model, const Config& config, double period);
+
+  // Back to the start state, time 0 and the first random number. Disturbances end.
+  void reset();
+
+  // One control period under `commands`. False: the simulation diverged; only reset() helps.
+  bool advance(const GaitdJointCommands& commands);
+
+  // A force from the next plant step on; any number at once. False: it is not valid().
+  bool disturb(const GaitdDisturbance& disturbance);
+
+  // Is there such a body, are the figures finite and the duration positive?
+  static bool valid(const GaitdDisturbance& disturbance, int body_count);
+
+  int64_t tick() const { return tick_; }
+  double time() const;  // s since the start
+  const State& state() const { return state_; }
+  const GaitdModel& model() const { return model_; }  // as simulated
+  const Multibody& multibody() const { return multibody_; }
+  const ContactModel& contacts() const { return contacts_; }
+  const Integrator& integrator() const { return integrator_; }
+
+  // J, relative to the height of W's origin; rotors included. Contacts and stops are not.
+  double energy() const;
+
+  void read(GaitdSensors* sensors) const;
+  void read(GaitdTruth* truth) const;
+
+  // Puts the robot into `state` at rest of all else (contacts, drives, sensors start over there);
+  // reset() returns to the configured start. For tests.
+  void place(const State& state);
+
+ private:
+  struct Push {
+    GaitdDisturbance force;
+    double remaining;  // s
+  };
+
+  bool step();
+  void add_disturbances();
+
+  GaitdModel model_;
+  Config config_;
+  double period_;
+  int steps_per_period_;
+  Multibody multibody_;
+  DynamicsTerms terms_;
+  ContactModel contacts_;
+  Actuators actuators_;
+  Integrator integrator_;
+  Sensors sensors_;
+  Truth truth_;
+  State start_;
+  State state_;
+  std::vector<Push> pushes_;
+  Eigen::VectorXd external_;
+  int64_t step_ = 0;
+  int64_t tick_ = 0;
+  bool diverged_ = false;
+};
+
+// Commands that a plant cannot take: "" if it can, else what is wrong (wrong joint count, unknown
+// mode, figures that are not finite, negative gains). Returns constant text; does not allocate.
+const char* check_commands(const GaitdJointCommands& commands, int joint_count);
+
+}  // namespace gaitd::sim
+
+#endif  // GAITD_SIM_PLANT_H_

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Seeded random numbers that are the same with every standard library.
+#ifndef GAITD_SIM_RANDOM_H_
+#define GAITD_SIM_RANDOM_H_
+
+#include <cstdint>
+#include <random>
+
+namespace gaitd::sim {
+
+// What a stream of random numbers is for: each purpose draws from its own stream, so that one more
+// draw here changes nothing there.
+enum class RandomPurpose : uint64_t {
+  kBias = 1,
+  kGyro = 2,
+  kAccelerometer = 3,
+  kEncoder = 4,
+  kFootForce = 5,
+  kTorque = 6,
+};
+
+class RandomStream {
+ public:
+  RandomStream(uint64_t seed, RandomPurpose purpose);
+
+  double uniform();  // in (0, 1]
+  double normal();   // mean 0, standard deviation 1
+
+ private:
+  std::mt19937_64 engine_;
+  double spare_ = 0;
+  bool has_spare_ = false;
+};
+
+}  // namespace gaitd::sim
+
+#endif  // GAITD_SIM_RANDOM_H_

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the robot stands at the beginning.
+#ifndef GAITD_SIM_START_STATE_H_
+#define GAITD_SIM_START_STATE_H_
+
+#include "gaitd/abi/types.h"
+#include "gaitd/sim/config.h"
+#include "gaitd/sim/multibody.h"
+
+namespace gaitd::sim {
+
+// The nominal posture at rest with a level pelvis: the middle of the soles at x, y and yaw of
+// `config.start`, the lower sole `penetration` metres below start.z (or the ground). Leaves
+// `multibody` in that state.
+State make_start_state(const GaitdModel& model, const Config& config, double penetration,
+                       Multibody* multibody);
+
+}  // namespace gaitd::sim
+
+#endif  // GAITD_SIM_START_STATE_H_

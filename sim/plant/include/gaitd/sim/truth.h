@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What really happened: for the log and for the verdicts of scenarios.
+#ifndef GAITD_SIM_TRUTH_H_
+#define GAITD_SIM_TRUTH_H_
+
+#include <Eigen/Core>
+
+#include "gaitd/abi/types.h"
+#include "gaitd/sim/contact_model.h"
+#include "gaitd/sim/multibody.h"
+
+namespace gaitd::sim {
+
+// Follows the feet over the plant steps and fills GaitdTruth.
+//
+// Slip is the horizontal path of the material point of contact (of the loaded points, weighted by
+// their normal forces, so that turning about the toe is none) while the foot carries more than
+// 50 N; it starts at zero with every new loading. Side force is the sum of the normal forces on
+// the foot that are more horizontal than vertical.
+class Truth {
+ public:
+  explicit Truth(const GaitdModel& model);
+
+  void reset();
+
+  // After a plant step that ContactModel::finish() closed.
+  void update(const ContactModel& contacts);
+
+  void read(double time, const State& state, const Multibody& multibody,
+            const Eigen::VectorXd& torque, GaitdTruth* truth) const;
+
+ private:
+  struct Foot {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    double slip = 0;
+    double penetration = 0;
+    double side_force = 0;
+    bool loaded = false;
+  };
+  GaitdModel model_;
+  Foot feet_[GAITD_MAX_FEET];
+  bool body_contact_ = false;
+};
+
+}  // namespace gaitd::sim
+
+#endif  // GAITD_SIM_TRUTH_H_

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/sim/config.h"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "json_reader.h"
+
+namespace gaitd::sim {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr Range kAny{-kInfinity, kInfinity};
+constexpr Range kPlace{-1e4, 1e4};
+constexpr Range kNotNegative{0, kInfinity};
+constexpr Range kFriction{0, 10};
+constexpr Range kDelay{0, 0.1};
+
+void read_start(const json& value, std::vector<std::string>* errors, StartConfig* start) {
+  JsonReader reader(value, "start", errors);
+  reader.allow({"x", "y", "z", "yaw"});
+  reader.number("x", kPlace, &start->x);
+  reader.number("y", kPlace, &start->y);
+  reader.number("z", kPlace, &start->z);
+  reader.number("yaw", kAny, &start->yaw);
+}
+
+void read_terrain(const json& value, std::vector<std::string>* errors, TerrainConfig* terrain) {
+  JsonReader reader(value, "terrain", errors);
+  reader.allow({"friction", "ground_z", "boxes"});
+  reader.number("friction", kFriction, &terrain->friction);
+  reader.number("ground_z", kPlace, &terrain->ground_z);
+  if (!reader.has("boxes")) return;
+  if (!reader.at("boxes").is_array()) {
+    reader.error("terrain.boxes", "a list of boxes", reader.at("boxes"));
+    return;
+  }
+  size_t index = 0;
+  for (const json& item : reader.at("boxes")) {
+    const std::string path = "terrain.boxes[" + std::to_string(index++) + "]";
+    JsonReader box_reader(item, path, errors);
+    box_reader.allow({"center", "size", "rpy", "friction"});
+    BoxConfig box;
+    box.friction = terrain->friction;
+    for (const char* key : {"center", "size"}) {
+      if (!box_reader.has(key)) box_reader.error(box_reader.path(key), "three numbers", nullptr);
+    }
+    box_reader.vector("center", kPlace, &box.center);
+    box_reader.vector("size", {0, 1e4, true}, &box.size);
+    box_reader.vector("rpy", kAny, &box.rpy);
+    box_reader.number("friction", kFriction, &box.friction);
+    terrain->boxes.push_back(box);
+  }
+}
+
+void read_sensors(const json& value, std::vector<std::string>* errors, SensorFigures* figures) {
+  JsonReader reader(value, "sensors", errors);
+  reader.allow({"noise"});
+  if (!reader.has("noise")) return;
+  const json& noise = reader.at("noise");
+  if (noise == "none") return;
+  if (noise == "nominal") {
+    *figures = SensorFigures::nominal();
+    return;
+  }
+  if (!noise.is_object()) {
+    reader.error("sensors.noise", "none, nominal or a map of figures", noise);
+    return;
+  }
+  JsonReader map(noise, "sensors.noise", errors);
+  map.allow({"gyro_noise", "gyro_bias", "accelerometer_noise", "accelerometer_bias",
+             "encoder_bits", "encoder_noise", "velocity_filter", "force_noise", "force_offset",
+             "moment_noise", "delay"});
+  map.number("gyro_noise", kNotNegative, &figures->gyro_noise);
+  map.number("gyro_bias", kNotNegative, &figures->gyro_bias);
+  map.number("accelerometer_noise", kNotNegative, &figures->accelerometer_noise);
+  map.number("accelerometer_bias", kNotNegative, &figures->accelerometer_bias);
+  map.number("encoder_bits", {0, 48}, &figures->encoder_bits);
+  map.number("encoder_noise", kNotNegative, &figures->encoder_noise);
+  map.number("velocity_filter", kNotNegative, &figures->velocity_filter);
+  map.number("force_noise", kNotNegative, &figures->force_noise);
+  map.number("force_offset", kNotNegative, &figures->force_offset);
+  map.number("moment_noise", kNotNegative, &figures->moment_noise);
+  map.number("delay", kDelay, &figures->delay);
+}
+
+void read_actuators(const json& value, std::vector<std::string>* errors,
+                    ActuatorFigures* figures) {
+  JsonReader reader(value, "actuators", errors);
+  reader.allow({"model"});
+  if (!reader.has("model")) return;
+  const json& model = reader.at("model");
+  if (model == "ideal") return;
+  if (model == "nominal") {
+    *figures = ActuatorFigures::nominal();
+    return;
+  }
+  if (!model.is_object()) {
+    reader.error("actuators.model", "ideal, nominal or a map of figures", model);
+    return;
+  }
+  JsonReader map(model, "actuators.model", errors);
+  map.allow({"command_delay", "bandwidth", "torque_noise", "coulomb_friction", "speed_derating"});
+  map.number("command_delay", kDelay, &figures->command_delay);
+  map.number("bandwidth", kNotNegative, &figures->bandwidth);
+  map.number("torque_noise", {0, 1}, &figures->torque_noise);
+  map.number("coulomb_friction", {0, 1}, &figures->coulomb_friction);
+  map.number("speed_derating", kNotNegative, &figures->speed_derating);
+  if (figures->speed_derating != 0 && figures->speed_derating <= 1) {
+    map.error("actuators.model.speed_derating", "0 or a number > 1", map.at("speed_derating"));
+  }
+}
+
+std::string body_names(const GaitdModel& model) {
+  std::string names;
+  for (int i = 0; i < model.body_count; ++i) names += (i ? ", " : "") + std::string(model.bodies[i].name);
+  return names;
+}
+
+// Index of the body called `name`, or -1 and an error.
+int find_body(const GaitdModel& model, const std::string& path, const std::string& name,
+              std::vector<std::string>* errors) {
+  for (int i = 0; i < model.body_count; ++i) {
+    if (name == model.bodies[i].name) return i;
+  }
+  errors->push_back(path + ": expected a moving link of the robot (" + body_names(model) +
+                    "), got \"" + name + "\"");
+  return -1;
+}
+
+void read_model_error(const json& value, const GaitdModel& model, std::vector<std::string>* errors,
+                      Config* config) {
+  JsonReader reader(value, "model_error", errors);
+  reader.allow({"mass_scale", "com_offset", "inertia_scale", "friction"});
+  reader.number("friction", {0, 100}, &config->friction_scale);
+  for (const char* key : {"mass_scale", "com_offset", "inertia_scale"}) {
+    if (!reader.has(key)) continue;
+    JsonReader map(reader.at(key), reader.path(key), errors);
+    for (const auto& [name, figure] : map.object().items()) {
+      const int body = find_body(model, map.path(name), name, errors);
+      BodyError unused;
+      BodyError& error = body < 0 ? unused : config->body_errors[static_cast<size_t>(body)];
+      if (key == std::string("com_offset")) {
+        map.vector(name.c_str(), {-10, 10}, &error.com_offset);
+      } else if (key == std::string("mass_scale")) {
+        map.number(name.c_str(), {0, 100, true}, &error.mass_scale);
+      } else {
+        map.number(name.c_str(), {0, 100, true}, &error.inertia_scale);
+      }
+    }
+  }
+}
+
+void read_top(const json& root, const GaitdModel& model, double period,
+              std::vector<std::string>* errors, Config* config) {
+  JsonReader reader(root, "", errors);
+  reader.allow({"start", "seed", "time_step", "terrain", "sensors", "actuators", "model_error"});
+  if (reader.has("seed")) {
+    const json& seed = reader.at("seed");
+    if (seed.is_number_integer() && (seed.is_number_unsigned() || seed.get<int64_t>() >= 0)) {
+      config->seed = seed.get<uint64_t>();
+    } else {
+      reader.error("seed", "an integer >= 0", seed);
+    }
+  }
+  reader.number("time_step", {1e-5, 2e-3}, &config->time_step);
+  const double steps = period / config->time_step;
+  if (std::abs(steps - std::round(steps)) > 1e-6 || steps < 0.5) {
+    errors->push_back("time_step: expected a whole fraction of the control period " +
+                      json(period).dump() + " s, got " + json(config->time_step).dump());
+  }
+  if (reader.has("start")) read_start(reader.at("start"), errors, &config->start);
+  if (reader.has("terrain")) read_terrain(reader.at("terrain"), errors, &config->terrain);
+  if (!config->terrain.ground_z && !config->start.z) {
+    errors->push_back("start.z: expected the height of the soles, as there is no "
+                      "terrain.ground_z, got nothing");
+  }
+  if (reader.has("sensors")) read_sensors(reader.at("sensors"), errors, &config->sensors);
+  if (reader.has("actuators")) read_actuators(reader.at("actuators"), errors, &config->actuators);
+  if (reader.has("model_error")) {
+    read_model_error(reader.at("model_error"), model, errors, config);
+  }
+}
+
+}  // namespace
+
+SensorFigures SensorFigures::nominal() {
+  SensorFigures f;
+  f.gyro_noise = 0.005;
+  f.gyro_bias = 0.002;
+  f.accelerometer_noise = 0.05;
+  f.accelerometer_bias = 0.05;
+  f.encoder_bits = 20;
+  f.encoder_noise = 1e-4;
+  f.velocity_filter = 100;
+  f.force_noise = 5;
+  f.force_offset = 15;
+  f.moment_noise = 0.5;
+  f.delay = 0.001;
+  return f;
+}
+
+ActuatorFigures ActuatorFigures::nominal() {
+  ActuatorFigures f;
+  f.command_delay = 0.001;
+  f.bandwidth = 60;
+  f.torque_noise = 0.005;
+  f.coulomb_friction = 0.01;
+  f.speed_derating = 1.5;
+  return f;
+}
+
+Config parse_config(const std::string& text, const GaitdModel& model, double period,
+                    std::vector<std::string>* errors) {
+  Config config;
+  config.body_errors.resize(static_cast<size_t>(model.body_count));
+  if (!(period > 0) || !std::isfinite(period)) {
+    errors->push_back("period: expected a number > 0, got " + json(period).dump());
+    return config;
+  }
+  try {
+    read_top(json::parse(text), model, period, errors, &config);
+  } catch (const json::parse_error& error) {
+    errors->push_back("configuration: expected JSON text, got: " + std::string(error.what()));
+  }
+  return config;
+}
+
+}  // namespace gaitd::sim

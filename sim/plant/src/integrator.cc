@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/sim/integrator.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace gaitd::sim {
+namespace {
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+void integrate(double h, const Eigen::VectorXd& u, State* state) {
+  state->u = u;
+  state->p_WB += h * u.segment<3>(3);
+  const Eigen::Vector3d turn = h * u.head<3>();
+  const double angle = turn.norm();
+  // The axis does not matter for a turn of nothing.
+  const Eigen::Vector3d axis = angle > 0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX();
+  state->R_WB = Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)) * state->R_WB;
+  state->R_WB.normalize();
+  state->q += h * u.tail(u.size() - 6);
+}
+
+}  // namespace
+
+Integrator::Integrator(const GaitdModel& model, double h)
+    : h_(h), damping_(model.joint_count), stops_(model) {
+  for (int j = 0; j < model.joint_count; ++j) damping_[j] = model.joints[j].damping;
+  const int dof = 6 + model.joint_count;
+  bias_.setZero(dof);
+  constant_.setZero(dof);
+  solution_.setZero(dof);
+  matrix_.setZero(dof, dof);
+  joint_rate_.setZero(model.joint_count);
+}
+
+void Integrator::add_contacts(const DynamicsTerms& terms, const std::vector<Contact>& contacts) {
+  // Contacts come body by body, so those of one body are summed up before they go through its
+  // Jacobian.
+  size_t i = 0;
+  while (i < contacts.size()) {
+    const int body = contacts[i].body;
+    Matrix6 stiffness = Matrix6::Zero();
+    Vector6 wrench = Vector6::Zero();
+    for (; i < contacts.size() && contacts[i].body == body; ++i) {
+      if (contacts[i].mode == ContactMode::kApart) continue;
+      Eigen::Vector3d f0;
+      Eigen::Matrix3d g;
+      contacts[i].linearise(h_, &f0, &g);
+      const Eigen::Vector3d arm = contacts[i].p_W - terms.origin();
+      const Eigen::Matrix3d across = cross_matrix(arm);
+      const Eigen::Matrix3d moment = across * g;
+      stiffness.topLeftCorner<3, 3>() -= moment * across;
+      stiffness.topRightCorner<3, 3>() += moment;
+      stiffness.bottomLeftCorner<3, 3>() -= g * across;
+      stiffness.bottomRightCorner<3, 3>() += g;
+      wrench.head<3>() += arm.cross(f0);
+      wrench.tail<3>() += f0;
+    }
+    terms.add_stiffness(body, stiffness, h_, &matrix_);
+    terms.add_wrench(body, wrench, h_, &solution_);
+  }
+}
+
+void Integrator::solve(const DynamicsTerms& terms, const std::vector<Contact>& contacts,
+                       const Actuators& actuators) {
+  ++solves_;
+  matrix_ = terms.mass_matrix();
+  solution_ = constant_;
+  for (int j = 0; j < damping_.size(); ++j) {
+    matrix_(6 + j, 6 + j) += h_ * (damping_[j] + actuators.slope(j) + stops_.slope(j));
+    solution_[6 + j] += h_ * (actuators.constant(j) + stops_.constant(j));
+  }
+  add_contacts(terms, contacts);
+  const bool slides = std::any_of(contacts.begin(), contacts.end(), [](const Contact& contact) {
+    return contact.mode == ContactMode::kSlide;
+  });
+  if (slides) {
+    sliding_factor_.compute(matrix_);
+    solution_ = sliding_factor_.solve(solution_).eval();
+  } else {
+    factor_.compute(matrix_);
+    factor_.solveInPlace(solution_);
+  }
+}
+
+bool Integrator::update_contacts(const DynamicsTerms& terms,
+                                 std::vector<Contact>* contacts) const {
+  int body = -1;
+  Vector6 twist = Vector6::Zero();
+  bool slips = false;
+  for (Contact& contact : *contacts) {
+    if (contact.body != body) {
+      body = contact.body;
+      twist = terms.twist(body, solution_);
+    }
+    const Eigen::Vector3d angular = twist.head<3>();
+    contact.update_force(
+        h_, twist.tail<3>() + angular.cross(contact.p_W - terms.origin()));
+    slips |= contact.slips() && !contact.pulls();
+  }
+  // Points that stick where they should slide press and pull others that should not: let them
+  // slide first, and then see who still pulls.
+  bool changed = false;
+  for (Contact& contact : *contacts) {
+    if (slips && contact.slips()) {
+      contact.slide();
+      changed = true;
+    } else if (!slips && contact.pulls()) {
+      contact.release();
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+bool Integrator::update_modes(const DynamicsTerms& terms, std::vector<Contact>* contacts,
+                              Actuators* actuators) {
+  bool changed = update_contacts(terms, contacts);
+  joint_rate_ = solution_.tail(damping_.size());
+  changed |= actuators->update_limits(joint_rate_);
+  changed |= stops_.update(joint_rate_);
+  return changed;
+}
+
+bool Integrator::step(const Multibody& multibody, const DynamicsTerms& terms,
+                      const Eigen::VectorXd& external, std::vector<Contact>* contacts,
+                      Actuators* actuators, State* state) {
+  multibody.compute_bias(&bias_);
+  constant_.noalias() = terms.mass_matrix() * state->u;
+  constant_ += h_ * (external - bias_);
+  stops_.begin_step(h_, state->q);
+  solves_ = 0;
+  do {
+    solve(terms, *contacts, *actuators);
+    if (!solution_.allFinite()) return false;
+  } while (update_modes(terms, contacts, actuators) && solves_ < kMaxSolves);
+  actuators->end_step(joint_rate_);
+  integrate(h_, solution_, state);
+  return true;
+}
+
+}  // namespace gaitd::sim
