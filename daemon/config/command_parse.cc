@@ -143,9 +143,8 @@ void read_push(MapReader* map, const GaitdModel* model, GaitdDisturbance* push) 
   if (const auto link = map->text("link"); link && model) {
     push->body = body_index(*model, *link);
     if (push->body < 0) {
-      std::vector<std::string> names;
-      for (int i = 0; i < model->body_count; ++i) names.emplace_back(model->bodies[i].name);
-      map->fail("link", "a link of the robot that moves", *link, suggestion(*link, names));
+      map->fail("link", "a link of the robot that moves", *link,
+                suggestion(*link, body_names(*model)));
     }
   }
   map->numbers("force", push->force, {-1e5, 1e5, "N"});
@@ -224,6 +223,12 @@ int body_index(const GaitdModel& model, std::string_view name) {
     if (name == model.bodies[i].name) return i;
   }
   return -1;
+}
+
+std::vector<std::string> body_names(const GaitdModel& model) {
+  std::vector<std::string> names(model.body_count);
+  for (int i = 0; i < model.body_count; ++i) names[i] = model.bodies[i].name;
+  return names;
 }
 
 int joint_index(const GaitdModel& model, std::string_view name) {

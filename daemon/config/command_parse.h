@@ -39,6 +39,7 @@ std::string_view mode_name(int mode);
 
 // Index of a body by name, -1 when there is none.
 int body_index(const GaitdModel& model, std::string_view name);
+std::vector<std::string> body_names(const GaitdModel& model);
 int joint_index(const GaitdModel& model, std::string_view name);
 
 }  // namespace gaitd::daemon

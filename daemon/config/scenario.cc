@@ -57,9 +57,8 @@ std::string robot_from(const std::string& scenario_file, const std::string& robo
 void check_link(const std::string& link, const GaitdModel& model, const Location& where,
                 const std::string& path, Issues* issues) {
   if (body_index(model, link) >= 0) return;
-  std::vector<std::string> names;
-  for (int i = 0; i < model.body_count; ++i) names.emplace_back(model.bodies[i].name);
-  issues->add(where, path, "a link of the robot that moves", link, suggestion(link, names));
+  issues->add(where, path, "a link of the robot that moves", link,
+              suggestion(link, body_names(model)));
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -195,7 +194,7 @@ bool Telemetry::push_event(EventKind kind, std::int64_t tick, double time,
   slot.time = time;
   slot.size = static_cast<std::uint16_t>(std::min(text.size(), kMaxEventText));
   slot.truncated = text.size() > kMaxEventText;
-  std::memcpy(slot.text.data(), text.data(), slot.size);
+  std::copy_n(text.data(), slot.size, slot.text.data());
   impl.event_ring.commit();
   return true;
 }

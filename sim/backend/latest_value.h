@@ -18,9 +18,7 @@ class LatestValue {
 
   // Writer: the slot to fill; publish() makes it the newest.
   T& back() { return (*slots_)[back_]; }
-  void publish() {
-    back_ = middle_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex;
-  }
+  void publish() { back_ = middle_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex; }
 
   // Reader: takes the newest value as front(). False: there is none newer than front().
   bool take() {

@@ -125,8 +125,18 @@ GaitdStatus stop(void* self) {
 void destroy(void* self) { delete static_cast<Backend*>(self); }
 
 constexpr GaitdBackendVtable kVtable = {
-    sizeof(GaitdBackendVtable), 0,     init,    start, read, write, advance,
-    truth,                      disturb, reset, stop,  destroy,
+    sizeof(GaitdBackendVtable),
+    0,
+    init,
+    start,
+    read,
+    write,
+    advance,
+    truth,
+    disturb,
+    reset,
+    stop,
+    destroy,
 };
 
 }  // namespace

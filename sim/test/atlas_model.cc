@@ -50,7 +50,8 @@ void add_leg(GaitdModel* model, int side) {
   model->nominal_position[leg.hip_pitch] = -0.3;
   model->nominal_position[leg.knee] = 0.6;
   model->nominal_position[leg.ankle_pitch] = -0.3;
-  model->nominal_position[joint_index(*model, prefix + "arm_shx")] = side == GAITD_LEFT ? -1.3 : 1.3;
+  model->nominal_position[joint_index(*model, prefix + "arm_shx")] =
+      side == GAITD_LEFT ? -1.3 : 1.3;
 }
 
 }  // namespace

@@ -9,10 +9,10 @@
 
 namespace gaitd::sim::test {
 
-constexpr double kBlockMass = 40;       // kg
-constexpr double kBlockHeight = 0.2;    // m, CoM (the body origin) above the soles
-constexpr double kBlockLength = 0.13;   // m, half length of the soles, in x
-constexpr double kBlockOffset = 0.1;    // m, of the sole centres in y
+constexpr double kBlockMass = 40;         // kg
+constexpr double kBlockHeight = 0.2;      // m, CoM (the body origin) above the soles
+constexpr double kBlockLength = 0.13;     // m, half length of the soles, in x
+constexpr double kBlockOffset = 0.1;      // m, of the sole centres in y
 constexpr double kBlockSoleWidth = 0.06;  // m, half
 
 // One body, two soles of 0.26 x 0.12 m, no joint, one IMU at the CoM.

@@ -13,6 +13,7 @@ namespace {
 using sdk::view;
 
 constexpr double kHeightRate = 8.0;  // 1/s, of the reference filter of the CoM height
+constexpr double kTouchdownTime = 0.05;  // s, in which the touchdown damping fades
 constexpr double kYawRate = 6.0;     // 1/s, of the reference filter of the heading
 constexpr std::uint32_t kAngularRows = 0b000111;
 constexpr std::uint32_t kLinearRows = 0b111000;
@@ -232,8 +233,10 @@ void ObjectiveBuilder::add_stance_foot(int side, const GaitdRobotState& robot,
   const GaitdFoot& foot = model_.feet[side];
   GaitdTask& task = add_task(out, GAITD_TASK_FRAME, foot.body, kAllRows);
   view(task.point) = view(foot.sole.origin);
-  view(task.acceleration) =
-      -parameters_[Objective::kStanceDamping] * view(robot.feet[side].twist);
+  const double settled = parameters_[Objective::kStanceDamping];
+  const double extra = std::max(0.0, parameters_[Objective::kTouchdownDamping] - settled);
+  const double rate = settled + extra * std::exp(-time_in_contact_[side] / kTouchdownTime);
+  view(task.acceleration) = -rate * view(robot.feet[side].twist);
   view(task.weight).setConstant(parameters_[Objective::kStanceWeight]);
 }
 

@@ -126,7 +126,7 @@ void destroy(void* self) { delete static_cast<Self*>(self); }
 #ifdef TEST_NO_DESTROY
                                                    nullptr,
 #else
-                                                    destroy,
+                                                   destroy,
 #endif
                                                    nullptr};
 

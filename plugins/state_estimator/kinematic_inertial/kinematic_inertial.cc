@@ -11,8 +11,8 @@ using sdk::view;
 
 // While the robot has just been switched on, gravity is believed more: this many times the rate,
 // decaying with this time constant (s).
-constexpr double kStartBoost = 20.0;
-constexpr double kStartTime = 0.5;
+constexpr double kStartBoost = 6.0;
+constexpr double kStartTime = 1.0;
 
 double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * hertz * dt); }
 
@@ -24,7 +24,11 @@ Eigen::Quaterniond level(const Eigen::Vector3d& specific_force) {
 }  // namespace
 
 KinematicInertial::KinematicInertial(const GaitdModel& model)
-    : model_(model), weight_(model.total_mass * model.gravity), kinematics_(model) {}
+    : model_(model), weight_(model.total_mass * model.gravity), kinematics_(model) {
+  for (const GaitdLeg& leg : model_.legs) {
+    for (int i = 0; i < leg.joint_count; ++i) leg_joint_[leg.joints[i]] = true;
+  }
+}
 
 void KinematicInertial::reset() {
   initialised_ = false;
@@ -75,17 +79,28 @@ const GaitdImuSensor* KinematicInertial::imu(const GaitdSensors& sensors, int& i
 }
 
 void KinematicInertial::read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
-  const double blend = joints_seen_ ? low_pass(p_[P::kVelocityFilter], in.time.period) : 1.0;
+  const double dt = in.time.period;
+  const double decays[] = {std::exp(-p_[P::kUpperBodyPole] * dt), std::exp(-p_[P::kLegPole] * dt)};
   for (int i = 0; i < model_.joint_count; ++i) {
     const GaitdJointSensor& joint = in.sensors->joints[i];
-    // An invalid joint keeps its last position; the host decides what the fault means.
-    if (joint.info.valid != 0) {
-      out.joint_position[i] = joint.position;
-      velocity_[i] += blend * (joint.velocity - velocity_[i]);
+    if (joint.info.valid == 0) {
+      // Keeps its last position; the host decides what the fault means.
+      joint_rate_[i] = 0.0;
+    } else if (!joints_seen_ || p_[leg_joint_[i] ? P::kLegPole : P::kUpperBodyPole] <= 0.0) {
+      joint_[i] = joint.position;
+      joint_rate_[i] = joint.velocity;
     } else {
-      velocity_[i] = 0.0;
+      // Critically damped, both poles of the discrete observer at `decay`.
+      const double decay = decays[leg_joint_[i] ? 1 : 0];
+      const double expected = leg_joint_[i] ? 0.0 : in.commands->joints[i].acceleration;
+      joint_[i] += dt * (joint_rate_[i] + 0.5 * dt * expected);
+      joint_rate_[i] += dt * expected;
+      const double error = joint.position - joint_[i];
+      joint_[i] += (1.0 - decay * decay) * error;
+      joint_rate_[i] += (1.0 - decay) * (1.0 - decay) / dt * error;
     }
-    out.joint_velocity[i] = velocity_[i];
+    out.joint_position[i] = joint_[i];
+    out.joint_velocity[i] = joint_rate_[i];
   }
   joints_seen_ = true;
 }

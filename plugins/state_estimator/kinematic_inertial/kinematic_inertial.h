@@ -11,6 +11,10 @@ namespace gaitd::plugins {
 
 // Kinematic-inertial fusion from IMU, encoders and foot forces (theory section 7).
 //
+// Joints: an observer of second order on the encoders. Above the legs it is fed with the acceleration
+// that the command expects, so that rates are smooth without being late. In the legs the contacts
+// decide what a command does, and such a feed-forward would excite them.
+//
 // Attitude: the gyroscope is integrated and corrected by gravity (slowly), and by the orientation
 // that each foot in contact had when it came to rest (which also shows the gyroscope's bias and
 // keeps the heading). Position and velocity: a third-order observer that integrates the
@@ -25,7 +29,8 @@ class KinematicInertial {
     kContactOn,
     kContactOff,
     kForceFilter,
-    kVelocityFilter,
+    kLegPole,
+    kUpperBodyPole,
     kPositionRate,
     kTiltRate,
     kAnchorRate,
@@ -34,14 +39,17 @@ class KinematicInertial {
     kBiasLimit,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 13> kParameters = {
+  static constexpr std::array<GaitdParameter, 14> kParameters = {
       sdk::real_parameter("trust_on", "load", 0, 1, 0.35, "share that makes a foot an anchor"),
       sdk::real_parameter("trust_off", "load", 0, 1, 0.30, "share below which it is none"),
       sdk::real_parameter("trust_delay", "s", 0, 0.5, 0.02, "that the share must last"),
       sdk::real_parameter("contact_on", "weight", 0, 1, 0.05, "normal force of a contact"),
       sdk::real_parameter("contact_off", "weight", 0, 1, 0.03, "normal force of no contact"),
       sdk::real_parameter("force_filter", "Hz", 1, 500, 80, "low-pass of the normal force"),
-      sdk::real_parameter("velocity_filter", "Hz", 1, 1000, 1000, "low-pass of joint rates"),
+      sdk::real_parameter("leg_pole", "1/s", 0, 2000, 0,
+                          "observer of the rates of leg joints; 0: the rates of the sensors"),
+      sdk::real_parameter("upper_body_pole", "1/s", 0, 2000, 60,
+                          "the same for all other joints, which follow their commands closely"),
       sdk::real_parameter("position_rate", "1/s", 0.5, 200, 12,
                           "pole of the observer of position, velocity and bias"),
       sdk::real_parameter("tilt_rate", "1/s", 0, 10, 0.15, "correction of the tilt by gravity"),
@@ -92,7 +100,9 @@ class KinematicInertial {
 
   bool initialised_ = false;
   bool joints_seen_ = false;
-  std::array<double, GAITD_MAX_JOINTS> velocity_{};  // rad/s, filtered joint rates
+  std::array<bool, GAITD_MAX_JOINTS> leg_joint_{};
+  std::array<double, GAITD_MAX_JOINTS> joint_{};       // rad, observed
+  std::array<double, GAITD_MAX_JOINTS> joint_rate_{};  // rad/s, observed
   Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();  // pelvis in W
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();               // pelvis, W
   Eigen::Vector3d velocity_W_ = Eigen::Vector3d::Zero();             // pelvis, W

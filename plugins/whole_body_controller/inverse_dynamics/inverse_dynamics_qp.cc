@@ -270,6 +270,7 @@ void InverseDynamicsQp::write(double dt, const GaitdRobotState& robot,
     const double acceleration = acceleration_[6 + i];
     command.mode = GAITD_JOINT_MODE_TORQUE;
     command.torque = torque_[6 + i] + model_.joints[i].damping * robot.joint_velocity[i];
+    command.acceleration = acceleration;
     command.velocity = robot.joint_velocity[i] + acceleration * dt;
     command.position =
         robot.joint_position[i] + (robot.joint_velocity[i] + 0.5 * acceleration * dt) * dt;

@@ -82,8 +82,7 @@ void Actuators::begin_step(int64_t step, const Eigen::VectorXd& q, const Eigen::
     if (figures_.torque_noise > 0) {
       drive.noise = figures_.torque_noise * effort_limit_[i] * random_.normal();
     }
-    drive.constant =
-        drive.filtered + filter_gain_ * (constant - drive.filtered) + drive.noise;
+    drive.constant = drive.filtered + filter_gain_ * (constant - drive.filtered) + drive.noise;
     drive.slope = filter_gain_ * slope;
     drive.friction =
         figures_.coulomb_friction * effort_limit_[i] / std::hypot(u[j], kFrictionSpeed);
@@ -108,8 +107,7 @@ bool Actuators::update_limits(const Eigen::VectorXd& u) {
 void Actuators::end_step(const Eigen::VectorXd& u) {
   for (int j = 0; j < joint_count_; ++j) {
     Drive& drive = drives_[static_cast<size_t>(j)];
-    const double torque =
-        std::clamp(drive.constant - drive.slope * u[j], drive.lower, drive.upper);
+    const double torque = std::clamp(drive.constant - drive.slope * u[j], drive.lower, drive.upper);
     drive.filtered = torque - drive.noise;
     torque_[j] = torque - drive.friction * u[j];
   }

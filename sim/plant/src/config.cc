@@ -71,9 +71,9 @@ void read_sensors(const json& value, std::vector<std::string>* errors, SensorFig
     return;
   }
   JsonReader map(noise, "sensors.noise", errors);
-  map.allow({"gyro_noise", "gyro_bias", "accelerometer_noise", "accelerometer_bias",
-             "encoder_bits", "encoder_noise", "velocity_filter", "force_noise", "force_offset",
-             "moment_noise", "delay"});
+  map.allow({"gyro_noise", "gyro_bias", "accelerometer_noise", "accelerometer_bias", "encoder_bits",
+             "encoder_noise", "velocity_filter", "force_noise", "force_offset", "moment_noise",
+             "delay"});
   map.number("gyro_noise", kNotNegative, &figures->gyro_noise);
   map.number("gyro_bias", kNotNegative, &figures->gyro_bias);
   map.number("accelerometer_noise", kNotNegative, &figures->accelerometer_noise);
@@ -87,8 +87,7 @@ void read_sensors(const json& value, std::vector<std::string>* errors, SensorFig
   map.number("delay", kDelay, &figures->delay);
 }
 
-void read_actuators(const json& value, std::vector<std::string>* errors,
-                    ActuatorFigures* figures) {
+void read_actuators(const json& value, std::vector<std::string>* errors, ActuatorFigures* figures) {
   JsonReader reader(value, "actuators", errors);
   reader.allow({"model"});
   if (!reader.has("model")) return;
@@ -116,7 +115,8 @@ void read_actuators(const json& value, std::vector<std::string>* errors,
 
 std::string body_names(const GaitdModel& model) {
   std::string names;
-  for (int i = 0; i < model.body_count; ++i) names += (i ? ", " : "") + std::string(model.bodies[i].name);
+  for (int i = 0; i < model.body_count; ++i)
+    names += (i ? ", " : "") + std::string(model.bodies[i].name);
   return names;
 }
 
@@ -175,8 +175,9 @@ void read_top(const json& root, const GaitdModel& model, double period,
   if (reader.has("start")) read_start(reader.at("start"), errors, &config->start);
   if (reader.has("terrain")) read_terrain(reader.at("terrain"), errors, &config->terrain);
   if (!config->terrain.ground_z && !config->start.z) {
-    errors->push_back("start.z: expected the height of the soles, as there is no "
-                      "terrain.ground_z, got nothing");
+    errors->push_back(
+        "start.z: expected the height of the soles, as there is no "
+        "terrain.ground_z, got nothing");
   }
   if (reader.has("sensors")) read_sensors(reader.at("sensors"), errors, &config->sensors);
   if (reader.has("actuators")) read_actuators(reader.at("actuators"), errors, &config->actuators);

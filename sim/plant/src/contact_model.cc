@@ -16,7 +16,7 @@ ContactModel::ContactModel(const GaitdModel& model, Terrain terrain)
 void ContactModel::reset() {
   memory_.clear();
   contacts_.clear();
-  travel_.clear();
+  slip_.clear();
 }
 
 void ContactModel::detect(const Multibody& multibody) {
@@ -33,16 +33,17 @@ void ContactModel::detect(const Multibody& multibody) {
 }
 
 void ContactModel::finish(const Multibody& multibody) {
-  travel_.resize(contacts_.size());
+  slip_.assign(contacts_.size(), Eigen::Vector3d::Zero());
   for (size_t i = 0; i < contacts_.size(); ++i) {
     Contact& contact = contacts_[i];
-    travel_[i] = multibody.body(contact.body).point(contact.p_B) - contact.p_W;
+    const Eigen::Vector3d travel = multibody.body(contact.body).point(contact.p_B) - contact.p_W;
     Eigen::Vector3d& kept = memory_.entry(contact.memory).deflection;
     if (contact.mode == ContactMode::kStick) {
-      kept = contact.deflection + travel_[i];
+      kept = contact.deflection + travel;
     } else if (contact.mode == ContactMode::kSlide) {
       kept = contact.slide_direction *
              (-contact.friction * contact.normal_force() / contact.law.stiffness);
+      slip_[i] = travel - (kept - contact.deflection);
     } else {
       kept.setZero();
     }

@@ -47,8 +47,7 @@ void DynamicsTerms::update(const Multibody& multibody) {
   for (size_t i = 0; i < bodies_.size(); ++i) {
     const BodyMotion& motion = multibody.body(static_cast<int>(i));
     const GaitdBody& body = bodies_[i];
-    const Eigen::Vector3d c =
-        motion.point(Eigen::Map<const Eigen::Vector3d>(body.com)) - origin_;
+    const Eigen::Vector3d c = motion.point(Eigen::Map<const Eigen::Vector3d>(body.com)) - origin_;
     composite_mass_[i] = body.mass;
     composite_moment_[i] = body.mass * c;
     composite_inertia_[i].noalias() = motion.R_WB * central_inertia(body) * motion.R_WB.transpose();

@@ -10,15 +10,15 @@
 namespace gaitd::sim {
 namespace {
 
-constexpr int kBottom = 0;                // exit of a box edge through the sole; 1 + i: side i
-constexpr double kEntryTime = 0.005;      // s
-constexpr double kDeepestEdge = 0.01;     // m, that is still pushed out in proportion
-constexpr double kBefore = 1e-3;          // m, how far in front of an edge is looked
-constexpr double kCone = 0.1;             // sine, by which an edge may push beside its faces
-constexpr double kProbe = 3e-3;           // m, above the sole
-constexpr double kSameDirection = 0.99;   // cosine: two solids that push a point alike count once
-constexpr double kCovered = 1e-4;         // m: an edge this deep in another solid is no edge
-constexpr double kSameDepth = 1e-6;       // m: the first of two flush solids stays the one
+constexpr int kBottom = 0;               // exit of a box edge through the sole; 1 + i: side i
+constexpr double kEntryTime = 0.005;     // s
+constexpr double kDeepestEdge = 0.01;    // m, that is still pushed out in proportion
+constexpr double kBefore = 1e-3;         // m, how far in front of an edge is looked
+constexpr double kCone = 0.1;            // sine, by which an edge may push beside its faces
+constexpr double kProbe = 3e-3;          // m, above the sole
+constexpr double kSameDirection = 0.99;  // cosine: two solids that push a point alike count once
+constexpr double kCovered = 1e-4;        // m: an edge this deep in another solid is no edge
+constexpr double kSameDepth = 1e-6;      // m: the first of two flush solids stays the one
 
 }  // namespace
 
@@ -86,10 +86,9 @@ void FootContact::detect_points(const BodyMotion& motion, const Terrain& terrain
     };
     const int owner = side_ * 64 + i;
     if (terrain.has_ground() && p.z() < terrain.ground_z()) {
-      const int entry =
-          memory->touch(contact_key(ContactKind::kPoint, owner, Terrain::kGround, 0));
-      add(p, Eigen::Vector3d::UnitZ(), terrain.ground_z() - p.z(),
-          terrain.ground_friction(), entry);
+      const int entry = memory->touch(contact_key(ContactKind::kPoint, owner, Terrain::kGround, 0));
+      add(p, Eigen::Vector3d::UnitZ(), terrain.ground_z() - p.z(), terrain.ground_friction(),
+          entry);
     }
     for (const int index : near_) {
       const Box& box = terrain.boxes()[static_cast<size_t>(index)];
@@ -207,8 +206,7 @@ void FootContact::detect_edges(const BodyMotion& motion, const Terrain& terrain,
       contact.normal = normal;
       contact.depth = std::min(depth, kDeepestEdge);
       contact.friction = box.friction;
-      contact.memory =
-          memory->touch(contact_key(ContactKind::kEdgeEnd, owner, box_index, part));
+      contact.memory = memory->touch(contact_key(ContactKind::kEdgeEnd, owner, box_index, part));
       contacts->push_back(contact);
     };
     if (choice == kBottom) {

@@ -88,8 +88,7 @@ void Integrator::solve(const DynamicsTerms& terms, const std::vector<Contact>& c
   }
 }
 
-bool Integrator::update_contacts(const DynamicsTerms& terms,
-                                 std::vector<Contact>* contacts) const {
+bool Integrator::update_contacts(const DynamicsTerms& terms, std::vector<Contact>* contacts) const {
   int body = -1;
   Vector6 twist = Vector6::Zero();
   bool slips = false;
@@ -99,8 +98,7 @@ bool Integrator::update_contacts(const DynamicsTerms& terms,
       twist = terms.twist(body, solution_);
     }
     const Eigen::Vector3d angular = twist.head<3>();
-    contact.update_force(
-        h_, twist.tail<3>() + angular.cross(contact.p_W - terms.origin()));
+    contact.update_force(h_, twist.tail<3>() + angular.cross(contact.p_W - terms.origin()));
     slips |= contact.slips() && !contact.pulls();
   }
   // Points that stick where they should slide press and pull others that should not: let them

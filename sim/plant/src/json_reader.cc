@@ -52,8 +52,9 @@ void JsonReader::allow(std::initializer_list<const char*> keys) {
     const bool found = std::any_of(keys.begin(), keys.end(), [&name = key](const char* candidate) {
       return name == candidate;
     });
-    if (!found) errors_->push_back(path(key) + ": expected one of the keys " + known +
-                                   ", got unknown key \"" + key + "\"");
+    if (!found)
+      errors_->push_back(path(key) + ": expected one of the keys " + known +
+                         ", got unknown key \"" + key + "\"");
   }
 }
 

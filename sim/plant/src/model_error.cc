@@ -8,8 +8,7 @@ void check_frame(const GaitdModel& model, const std::string& where, const GaitdF
                  std::vector<std::string>* errors) {
   if (frame.body < 0 || frame.body >= model.body_count) {
     errors->push_back(where + ": expected a body index from 0 to " +
-                      std::to_string(model.body_count - 1) + ", got " +
-                      std::to_string(frame.body));
+                      std::to_string(model.body_count - 1) + ", got " + std::to_string(frame.body));
   }
   double norm = 0;
   for (const double x : frame.orientation) norm += x * x;
@@ -34,7 +33,8 @@ void check_outline(const std::string& where, const GaitdFoot& foot,
     const double turn = (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
     if (!(turn > 0)) {
       errors->push_back(where + ": expected a convex counter-clockwise outline, got one that " +
-                        "turns the other way at point " + std::to_string((i + 1) % foot.point_count));
+                        "turns the other way at point " +
+                        std::to_string((i + 1) % foot.point_count));
     }
   }
 }
@@ -75,8 +75,8 @@ std::vector<std::string> check_simulated_model(const GaitdModel& model) {
     if (!(body.mass > 0)) {
       errors.push_back(where + ": expected a mass > 0, got " + std::to_string(body.mass));
     }
-    const bool placed = i == 0 ? body.parent < 0
-                               : body.joint == i - 1 && body.parent >= 0 && body.parent < i;
+    const bool placed =
+        i == 0 ? body.parent < 0 : body.joint == i - 1 && body.parent >= 0 && body.parent < i;
     if (!placed) {
       errors.push_back(where + ": expected joint " + std::to_string(i - 1) +
                        " and a parent before it, got joint " + std::to_string(body.joint) +

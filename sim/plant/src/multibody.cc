@@ -55,9 +55,9 @@ struct Multibody::Impl {
     } else {
       const GaitdJoint& joint = model.joints[body.joint];
       const bool slides = joint.type == GAITD_JOINT_PRISMATIC;
-      const SimTK::Rotation along(SimTK::UnitVec3(vec(joint.axis)),
-                                  slides ? SimTK::CoordinateAxis(SimTK::XAxis)
-                                         : SimTK::CoordinateAxis(SimTK::ZAxis));
+      const SimTK::Rotation along(
+          SimTK::UnitVec3(vec(joint.axis)),
+          slides ? SimTK::CoordinateAxis(SimTK::XAxis) : SimTK::CoordinateAxis(SimTK::ZAxis));
       const SimTK::Transform parent(rotation_of(joint.orientation) * along, vec(joint.origin));
       const SimTK::Transform child(along, SimTK::Vec3(0));
       SimTK::MobilizedBody& base = bodies.at(static_cast<size_t>(body.parent));

@@ -22,6 +22,8 @@ GaitdModel simulated_model(const GaitdModel& model, const Config& config) {
   return apply_model_error(model, config.body_errors);
 }
 
+constexpr double kDeepestStart = 0.02;  // m
+
 // How deep the feet sink when each point carries the same share of the weight.
 double static_penetration(const GaitdModel& model, const ContactModel& contacts) {
   double stiffness = 0;
@@ -48,6 +50,12 @@ Plant::Plant(const GaitdModel& model, const Config& config, double period)
       external_(Eigen::VectorXd::Zero(6 + model.joint_count)) {
   start_ = make_start_state(model_, config, static_penetration(model_, contacts_), &multibody_);
   reset();
+  for (const Contact& contact : contacts_.contacts()) {
+    if (contact.depth < kDeepestStart) continue;
+    throw std::invalid_argument("start: expected the robot to stand on the terrain, got " +
+                                std::string(model_.bodies[contact.body].name) + " " +
+                                std::to_string(contact.depth) + " m inside it");
+  }
 }
 
 void Plant::reset() { place(start_); }
@@ -127,9 +135,8 @@ void Plant::add_disturbances() {
     terms_.add_wrench(push.force.body, wrench, share, &external_);
     push.remaining -= config_.time_step;
   }
-  std::erase_if(pushes_, [&](const Push& push) {
-    return push.remaining < 1e-9 * config_.time_step;
-  });
+  std::erase_if(pushes_,
+                [&](const Push& push) { return push.remaining < 1e-9 * config_.time_step; });
 }
 
 bool Plant::valid(const GaitdDisturbance& disturbance, int body_count) {
@@ -151,8 +158,8 @@ double Plant::energy() const {
   double potential = 0;
   for (int i = 0; i < model_.body_count; ++i) {
     const GaitdBody& body = model_.bodies[i];
-    potential += body.mass * model_.gravity *
-                 multibody_.body(i).point(Eigen::Vector3d(body.com)).z();
+    potential +=
+        body.mass * model_.gravity * multibody_.body(i).point(Eigen::Vector3d(body.com)).z();
   }
   return potential + 0.5 * state_.u.dot(terms_.mass_matrix() * state_.u);
 }

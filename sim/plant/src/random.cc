@@ -20,9 +20,7 @@ uint64_t mix(uint64_t x) {
 RandomStream::RandomStream(uint64_t seed, RandomPurpose purpose)
     : engine_(mix(mix(seed) + static_cast<uint64_t>(purpose))) {}
 
-double RandomStream::uniform() {
-  return (static_cast<double>(engine_() >> 11) + 1.0) * 0x1.0p-53;
-}
+double RandomStream::uniform() { return (static_cast<double>(engine_() >> 11) + 1.0) * 0x1.0p-53; }
 
 double RandomStream::normal() {
   if (has_spare_) {

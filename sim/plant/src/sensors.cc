@@ -137,8 +137,8 @@ void Sensors::sample_imus(const Multibody& multibody, Sample* sample) {
     const Eigen::Vector3d v = motion.velocity(motion.point(imu.p_B));
     const Eigen::Vector3d acceleration = (v - imu.velocity[velocity_slot_]) / period;
     imu.velocity[velocity_slot_] = v;
-    sample->angular_rate[i] = R_WI.transpose() * motion.w_W + imu.gyro_bias +
-                              noise(&gyro_, figures_.gyro_noise);
+    sample->angular_rate[i] =
+        R_WI.transpose() * motion.w_W + imu.gyro_bias + noise(&gyro_, figures_.gyro_noise);
     sample->specific_force[i] = R_WI.transpose() * (acceleration - gravity) +
                                 imu.accelerometer_bias +
                                 noise(&accelerometer_, figures_.accelerometer_noise);

@@ -8,8 +8,14 @@
 namespace gaitd::sim {
 namespace {
 
-bool is_foot(const GaitdModel& model, int body) {
-  return body == model.feet[GAITD_LEFT].body || body == model.feet[GAITD_RIGHT].body;
+// Is `body` on the way from the pelvis to a foot?
+bool is_leg(const GaitdModel& model, int body) {
+  for (const GaitdFoot& foot : model.feet) {
+    for (int i = foot.body; i >= 0; i = model.bodies[i].parent) {
+      if (i == body) return true;
+    }
+  }
+  return false;
 }
 
 bool is_leaf(const GaitdModel& model, int body) {
@@ -42,9 +48,9 @@ std::vector<Sphere> make_spheres(const GaitdModel& model) {
     }
   }
   for (int body = 1; body < model.body_count; ++body) {
-    if (is_leaf(model, body) && !is_foot(model, body) && body != model.chest_body) {
-      at_com(body, 0.05);
-    }
+    if (is_leg(model, body)) continue;
+    spheres.push_back({body, Eigen::Vector3d::Zero(), 0.05});
+    if (is_leaf(model, body) && body != model.chest_body) at_com(body, 0.05);
   }
   return spheres;
 }
@@ -55,6 +61,13 @@ SphereContact::SphereContact(std::vector<Sphere> spheres) : spheres_(std::move(s
 
 void SphereContact::detect(const Multibody& multibody, const Terrain& terrain,
                            ContactMemory* memory, std::vector<Contact>* contacts) {
+  const Eigen::Vector3d pelvis = multibody.body(0).p_WB;
+  double reach = 0;
+  for (const Sphere& sphere : spheres_) {
+    const Eigen::Vector3d center = multibody.body(sphere.body).point(sphere.center);
+    reach = std::max(reach, (center - pelvis).norm() + sphere.radius);
+  }
+  terrain.find_near(pelvis, reach, &near_);
   for (size_t i = 0; i < spheres_.size(); ++i) {
     const Sphere& sphere = spheres_[i];
     const BodyMotion& motion = multibody.body(sphere.body);
@@ -76,7 +89,6 @@ void SphereContact::detect(const Multibody& multibody, const Terrain& terrain,
       add(Terrain::kGround, Eigen::Vector3d::UnitZ(),
           terrain.ground_z() - center.z() + sphere.radius, terrain.ground_friction());
     }
-    terrain.find_near(center, sphere.radius, &near_);
     for (const int index : near_) {
       const Box& box = terrain.boxes()[static_cast<size_t>(index)];
       const Eigen::Vector3d local = box.R_WB.transpose() * (center - box.center);
@@ -89,8 +101,8 @@ void SphereContact::detect(const Multibody& multibody, const Terrain& terrain,
       } else {
         const auto depth = box.depths(center);
         const auto nearest = std::min_element(depth.begin(), depth.end());
-        add(index, box.normal(static_cast<int>(nearest - depth.begin())),
-            sphere.radius + *nearest, box.friction);
+        add(index, box.normal(static_cast<int>(nearest - depth.begin())), sphere.radius + *nearest,
+            box.friction);
       }
     }
   }

@@ -32,7 +32,7 @@ void Truth::update(const ContactModel& contacts) {
     foot.penetration = 0;
     foot.side_force = 0;
     double weight = 0;
-    Eigen::Vector2d travel = Eigen::Vector2d::Zero();
+    Eigen::Vector2d slipped = Eigen::Vector2d::Zero();
     for (size_t i = 0; i < contacts.contacts().size(); ++i) {
       const Contact& contact = contacts.contacts()[i];
       if (contact.foot < 0) body_contact_ = true;
@@ -42,11 +42,11 @@ void Truth::update(const ContactModel& contacts) {
       foot.penetration = std::max(foot.penetration, contact.depth);
       if (std::abs(contact.normal.z()) < kSideNormal) foot.side_force += normal_force;
       weight += normal_force;
-      travel += normal_force * contacts.travel(i).head<2>();
+      slipped += normal_force * contacts.slip(i).head<2>();
     }
     const bool loaded = foot.force.z() > kLoaded;
     if (loaded && !foot.loaded) foot.slip = 0;
-    if (loaded) foot.slip += travel.norm() / weight;
+    if (loaded) foot.slip += slipped.norm() / weight;
     foot.loaded = loaded;
   }
 }

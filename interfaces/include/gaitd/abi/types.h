@@ -377,6 +377,7 @@ typedef struct GaitdJointCommand {
   double velocity;  /* rad/s */
   double stiffness; /* N m/rad */
   double damping;   /* N m s/rad */
+  double acceleration; /* rad/s^2, expected under this command; 0 if nothing is expected */
 } GaitdJointCommand;
 
 typedef struct GaitdJointCommands {

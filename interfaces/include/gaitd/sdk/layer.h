@@ -197,7 +197,7 @@ class LayerAdapter {
 
 #define GAITD_EXPORT_LAYER(LayerClass, layer, id, version, worst_case_us)                          \
   extern "C" {                                                                                     \
-  extern const GaitdPluginDescriptor gaitd_plugin;                                                 \
+  extern __attribute__((visibility("default"))) const GaitdPluginDescriptor gaitd_plugin;          \
   __attribute__((visibility("default"), used, section(GAITD_PLUGIN_SECTION)))                      \
   constinit const GaitdPluginDescriptor gaitd_plugin = ::gaitd::sdk::make_descriptor(              \
       layer, id, version, worst_case_us, LayerClass::kParameters);                                 \

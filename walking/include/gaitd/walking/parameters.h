@@ -135,6 +135,7 @@ enum class Objective {
   kPostureDampingRatio,
   kPostureWeight,
   kStanceDamping,
+  kTouchdownDamping,
   kStanceWeight,
   kSwingStiffness,
   kSwingHeightStiffness,
@@ -148,7 +149,7 @@ enum class Objective {
   kToeAngularWeight,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 34> kObjectiveParameters = {
+inline constexpr std::array<GaitdParameter, 35> kObjectiveParameters = {
     real_parameter("friction", "", 0.05, 2, 0.7, "coefficient that the controller counts on"),
     real_parameter("com_height", "", 0.5, 1.2, 0.98,
                    "CoM height when standing, over the height in the nominal posture"),
@@ -175,7 +176,9 @@ inline constexpr std::array<GaitdParameter, 34> kObjectiveParameters = {
     real_parameter("posture_stiffness", "1/s^2", 0, 1000, 80, "of arms, neck and the like"),
     real_parameter("posture_damping_ratio", "", 0, 5, 0.6, "of arms, neck and the like"),
     real_parameter("posture_weight", "", 0, 1e4, 1, "of arms, neck and the like"),
-    real_parameter("stance_damping", "1/s", 0, 200, 30, "of the twist of a foot in contact"),
+    real_parameter("stance_damping", "1/s", 0, 200, 3, "of the twist of a foot in contact"),
+    real_parameter("touchdown_damping", "1/s", 0, 200, 30,
+                   "the same in the first moments after touchdown, fading out"),
     real_parameter("stance_weight", "", 0, 1e6, 1000, "of a foot in contact"),
     real_parameter("swing_stiffness", "1/s^2", 0, 2000, 150, "of the swing foot"),
     real_parameter("swing_height_stiffness", "1/s^2", 0, 2000, 200,

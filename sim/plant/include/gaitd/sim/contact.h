@@ -35,7 +35,7 @@ struct Contact {
 
   ContactMode mode = ContactMode::kStick;
   Eigen::Vector3d slide_direction = Eigen::Vector3d::Zero();  // unit, W: of friction, sliding
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();        // N, W, on the robot, of the last step
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  // N, W, on the robot, of the last step
 
   // f0 and G of the present mode for a step of `h` seconds. G is symmetric unless it slides.
   void linearise(double h, Eigen::Vector3d* f0, Eigen::Matrix3d* g) const {

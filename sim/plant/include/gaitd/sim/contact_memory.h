@@ -21,7 +21,7 @@ class ContactMemory {
  public:
   struct Entry {
     uint64_t key = 0;
-    int choice = -1;  // face or direction of exit
+    int choice = -1;                                       // face or direction of exit
     Eigen::Vector3d deflection = Eigen::Vector3d::Zero();  // m, W: tangential, from its anchor
     bool touched = false;
   };

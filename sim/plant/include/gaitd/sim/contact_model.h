@@ -25,14 +25,14 @@ class ContactModel {
   // Finds the contacts in the state of `multibody`, each with its tangential deflection.
   void detect(const Multibody& multibody);
 
-  // After the step: moves each anchor along, `multibody` being in the new state. Also leaves in
-  // every contact of contacts() how far its material point travelled, see travel().
+  // After the step: moves each anchor along, `multibody` being in the new state.
   void finish(const Multibody& multibody);
 
   std::vector<Contact>& contacts() { return contacts_; }
   const std::vector<Contact>& contacts() const { return contacts_; }
-  // m, W: of the material point of contact i in the step that finish() closed.
-  const Eigen::Vector3d& travel(size_t i) const { return travel_[i]; }
+  // m, W: how far contact i slid over the terrain in the step that finish() closed: the motion of
+  // its material point less what its tangential spring took up. Zero while it sticks.
+  const Eigen::Vector3d& slip(size_t i) const { return slip_[i]; }
 
   const Terrain& terrain() const { return terrain_; }
   const std::vector<FootContact>& feet() const { return feet_; }
@@ -44,7 +44,7 @@ class ContactModel {
   SphereContact spheres_;
   ContactMemory memory_;
   std::vector<Contact> contacts_;
-  std::vector<Eigen::Vector3d> travel_;
+  std::vector<Eigen::Vector3d> slip_;
 };
 
 }  // namespace gaitd::sim

@@ -52,8 +52,8 @@ class DynamicsTerms {
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   std::vector<Vector6, Eigen::aligned_allocator<Vector6>> screw_;  // of each joint, about origin_
   std::vector<double> composite_mass_;
-  std::vector<Eigen::Vector3d> composite_moment_;    // mass times (CoM - origin_)
-  std::vector<Eigen::Matrix3d> composite_inertia_;   // about origin_
+  std::vector<Eigen::Vector3d> composite_moment_;   // mass times (CoM - origin_)
+  std::vector<Eigen::Matrix3d> composite_inertia_;  // about origin_
   Eigen::MatrixXd mass_matrix_;
 };
 

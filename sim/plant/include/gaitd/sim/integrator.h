@@ -31,9 +31,8 @@ class Integrator {
   // Advances `state` by one step. `multibody` and `terms` are those of `state`; `external` (6 + n)
   // is any further generalised force (N, N m). Leaves the forces of the step in `contacts` and
   // `actuators`. False, with `state` as it was: the result is not finite.
-  bool step(const Multibody& multibody, const DynamicsTerms& terms,
-            const Eigen::VectorXd& external, std::vector<Contact>* contacts, Actuators* actuators,
-            State* state);
+  bool step(const Multibody& multibody, const DynamicsTerms& terms, const Eigen::VectorXd& external,
+            std::vector<Contact>* contacts, Actuators* actuators, State* state);
 
   // How often the last step solved its system: once, and once more for each change of modes.
   int solves() const { return solves_; }

@@ -77,9 +77,9 @@ class Sensors {
   double velocity_gain_;
   std::vector<Imu> imus_;
   FootWrench offset_[GAITD_MAX_FEET];
-  Eigen::VectorXd encoded_;         // last encoder reading
+  Eigen::VectorXd encoded_;  // last encoder reading
   Eigen::VectorXd rate_filter_;
-  std::vector<Sample> ring_;        // delay_steps_ + 1 samples
+  std::vector<Sample> ring_;  // delay_steps_ + 1 samples
   size_t newest_ = 0;
   size_t velocity_slot_ = 0;
   RandomStream gyro_, accelerometer_, encoder_, foot_force_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coarse contact of everything but the feet: spheres on the trunk, the knees, the ankles and the
-// ends of the limbs, so that a robot that has fallen lies on the terrain.
+// Coarse contact of everything but the soles: spheres on the trunk, the knees, the ankles and along
+// the arms, so that a robot that has fallen lies on the terrain. The robot never touches itself.
 #ifndef GAITD_SIM_SPHERE_CONTACT_H_
 #define GAITD_SIM_SPHERE_CONTACT_H_
 

@@ -13,10 +13,11 @@ namespace gaitd::sim {
 
 // Follows the feet over the plant steps and fills GaitdTruth.
 //
-// Slip is the horizontal path of the material point of contact (of the loaded points, weighted by
-// their normal forces, so that turning about the toe is none) while the foot carries more than
-// 50 N; it starts at zero with every new loading. Side force is the sum of the normal forces on
-// the foot that are more horizontal than vertical.
+// Slip is the horizontal path over the terrain of the material point of contact (of the loaded
+// points, weighted by their normal forces, so that turning about the toe is none; the give of the
+// contact springs, at most a few tenths of a millimetre, is not in it) while the foot carries more
+// than 50 N; it starts at zero with every new loading. Side force is the sum of the normal forces
+// on the foot that are more horizontal than vertical.
 class Truth {
  public:
   explicit Truth(const GaitdModel& model);

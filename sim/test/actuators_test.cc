@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "gaitd/sim/actuators.h"
+
+namespace gaitd::sim {
+namespace {
+
+constexpr double kStep = 0.0005;
+constexpr double kLimit = 100;
+
+GaitdModel one_joint() {
+  GaitdModel model{};
+  model.joint_count = 1;
+  model.joints[0].effort_limit = kLimit;
+  model.joints[0].velocity_limit = 10;
+  return model;
+}
+
+GaitdJointCommands command(int32_t mode, double torque, double stiffness = 0, double damping = 0) {
+  GaitdJointCommands commands{};
+  commands.joint_count = 1;
+  commands.joints[0].mode = mode;
+  commands.joints[0].torque = torque;
+  commands.joints[0].stiffness = stiffness;
+  commands.joints[0].damping = damping;
+  return commands;
+}
+
+class Drive {
+ public:
+  explicit Drive(const ActuatorFigures& figures, uint64_t seed = 1)
+      : actuators_(one_joint(), figures, kStep, seed) {}
+
+  void command(const GaitdJointCommands& commands) { actuators_.command(commands, step_); }
+
+  // One plant step at the constant position and rate.
+  double run(double q = 0, double u = 0) {
+    const Eigen::VectorXd position = Eigen::VectorXd::Constant(1, q);
+    const Eigen::VectorXd rate = Eigen::VectorXd::Constant(1, u);
+    actuators_.begin_step(step_++, position, rate);
+    actuators_.update_limits(rate);
+    actuators_.end_step(rate);
+    return actuators_.torque()[0];
+  }
+
+ private:
+  Actuators actuators_;
+  int64_t step_ = 0;
+};
+
+TEST(Actuators, NothingBeforeTheFirstCommand) {
+  Drive drive({});
+  EXPECT_EQ(drive.run(1, 1), 0);
+}
+
+TEST(Actuators, EveryModeDoesWhatItSays) {
+  Drive drive({});
+  drive.command(command(GAITD_JOINT_MODE_OFF, 50, 100, 10));
+  EXPECT_EQ(drive.run(1, 1), 0);
+  drive.command(command(GAITD_JOINT_MODE_DAMPING, 50, 100, 10));
+  EXPECT_DOUBLE_EQ(drive.run(1, 2), -20);
+  GaitdJointCommands full = command(GAITD_JOINT_MODE_TORQUE, 5, 100, 10);
+  full.joints[0].position = 0.2;
+  full.joints[0].velocity = 0.5;
+  drive.command(full);
+  // The position error is that of the end of the step.
+  EXPECT_DOUBLE_EQ(drive.run(0.1, 1), 5 + 100 * (0.2 - 0.1 - kStep) + 10 * (0.5 - 1));
+}
+
+TEST(Actuators, TorqueNeverExceedsTheLimit) {
+  Drive drive({});
+  drive.command(command(GAITD_JOINT_MODE_TORQUE, 500));
+  EXPECT_DOUBLE_EQ(drive.run(), kLimit);
+  drive.command(command(GAITD_JOINT_MODE_DAMPING, 0, 0, 100));
+  EXPECT_DOUBLE_EQ(drive.run(0, 5), -kLimit);
+}
+
+TEST(Actuators, CommandArrivesAfterItsDelay) {
+  ActuatorFigures figures;
+  figures.command_delay = 0.001;
+  Drive drive(figures);
+  drive.command(command(GAITD_JOINT_MODE_TORQUE, 10));
+  EXPECT_EQ(drive.run(), 0);
+  EXPECT_EQ(drive.run(), 0);
+  drive.command(command(GAITD_JOINT_MODE_TORQUE, 20));
+  EXPECT_DOUBLE_EQ(drive.run(), 10);
+  EXPECT_DOUBLE_EQ(drive.run(), 10);
+  EXPECT_DOUBLE_EQ(drive.run(), 20);
+}
+
+TEST(Actuators, BandwidthIsThatOfAFirstOrderLag) {
+  ActuatorFigures figures;
+  figures.bandwidth = 60;
+  Drive drive(figures);
+  drive.command(command(GAITD_JOINT_MODE_TORQUE, 10));
+  for (int i = 1; i <= 20; ++i) {
+    const double expected = 10 * (1 - std::exp(-2 * std::numbers::pi * 60 * i * kStep));
+    EXPECT_NEAR(drive.run(), expected, 1e-9);
+  }
+}
+
+TEST(Actuators, DrivingTorqueFallsToZeroAboveTheVelocityLimitAndBrakingDoesNot) {
+  ActuatorFigures figures;
+  figures.speed_derating = 1.5;
+  Drive drive(figures);
+  drive.command(command(GAITD_JOINT_MODE_TORQUE, kLimit));
+  EXPECT_DOUBLE_EQ(drive.run(0, 10), kLimit);
+  EXPECT_DOUBLE_EQ(drive.run(0, 12.5), 0.5 * kLimit);
+  EXPECT_DOUBLE_EQ(drive.run(0, 15), 0);
+  EXPECT_DOUBLE_EQ(drive.run(0, 20), 0);
+  EXPECT_DOUBLE_EQ(drive.run(0, -20), kLimit);
+}
+
+TEST(Actuators, CoulombFrictionOpposesTheMotionAndFadesAtRest) {
+  ActuatorFigures figures;
+  figures.coulomb_friction = 0.01;
+  Drive drive(figures);
+  EXPECT_NEAR(drive.run(0, 5), -1, 1e-4);
+  EXPECT_NEAR(drive.run(0, -5), 1, 1e-4);
+  EXPECT_EQ(drive.run(0, 0), 0);
+}
+
+TEST(Actuators, TorqueNoiseHasItsFigureAndComesFromTheSeed) {
+  ActuatorFigures figures;
+  figures.torque_noise = 0.005;
+  Drive drive(figures, 3), same(figures, 3), other(figures, 4);
+  double sum = 0, squares = 0;
+  int different = 0;
+  const int n = 20000;
+  for (int i = 0; i < n; ++i) {
+    const double torque = drive.run();
+    EXPECT_EQ(torque, same.run());
+    if (torque != other.run()) ++different;
+    sum += torque / n;
+    squares += torque * torque / n;
+  }
+  EXPECT_NEAR(sum, 0, 0.015);
+  EXPECT_NEAR(std::sqrt(squares), 0.5, 0.01);
+  EXPECT_EQ(different, n);
+}
+
+}  // namespace
+}  // namespace gaitd::sim

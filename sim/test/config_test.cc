@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "block_model.h"
+#include "gaitd/sim/config.h"
+
+namespace gaitd::sim {
+namespace {
+
+std::vector<std::string> errors_of(const std::string& text, double period = 0.001) {
+  std::vector<std::string> errors;
+  parse_config(text, test::block_model(), period, &errors);
+  return errors;
+}
+
+TEST(Config, EverythingIsRead) {
+  std::vector<std::string> errors;
+  const Config config = parse_config(
+      R"({"start": {"x": 1, "y": 2, "z": 0.5, "yaw": 0.3}, "seed": 9, "time_step": 0.00025,
+          "terrain": {"friction": 0.7, "ground_z": -1,
+                      "boxes": [{"center": [1, 2, 3], "size": [1, 1, 1], "rpy": [0, 0.1, 0]},
+                                {"center": [0, 0, 0], "size": [1, 2, 1], "friction": 0.2}]},
+          "sensors": {"noise": {"gyro_noise": 0.1, "delay": 0.002}},
+          "actuators": {"model": "nominal"},
+          "model_error": {"mass_scale": {"block": 1.1}, "com_offset": {"block": [0, 0, 0.1]},
+                          "inertia_scale": {"block": 2}, "friction": 0.5}})",
+      test::block_model(), 0.001, &errors);
+  EXPECT_TRUE(errors.empty()) << errors[0];
+  EXPECT_EQ(config.start.x, 1);
+  EXPECT_EQ(config.start.z, 0.5);
+  EXPECT_EQ(config.seed, 9u);
+  EXPECT_EQ(config.time_step, 0.00025);
+  EXPECT_EQ(config.terrain.ground_z, -1);
+  ASSERT_EQ(config.terrain.boxes.size(), 2u);
+  EXPECT_EQ(config.terrain.boxes[0].friction, 0.7);
+  EXPECT_EQ(config.terrain.boxes[0].rpy.y(), 0.1);
+  EXPECT_EQ(config.terrain.boxes[1].friction, 0.2);
+  EXPECT_EQ(config.sensors.gyro_noise, 0.1);
+  EXPECT_EQ(config.sensors.delay, 0.002);
+  EXPECT_EQ(config.sensors.force_noise, 0);
+  EXPECT_EQ(config.actuators.bandwidth, 60);
+  EXPECT_EQ(config.body_errors[0].mass_scale, 1.1);
+  EXPECT_EQ(config.body_errors[0].com_offset.z(), 0.1);
+  EXPECT_EQ(config.body_errors[0].inertia_scale, 2);
+  EXPECT_EQ(config.friction_scale, 0.5);
+}
+
+TEST(Config, EveryMistakeIsNamedAtOnce) {
+  const std::vector<std::string> errors = errors_of(
+      R"({"start": {"x": "left", "w": 1}, "seed": -3, "time_step": 0.0003, "gravity": 9.81,
+          "terrain": {"friction": -1, "boxes": [{"center": [0, 0], "size": [1, 0, 1]}, 7]},
+          "sensors": {"noise": "some"},
+          "actuators": {"model": {"bandwith": 60, "torque_noise": 2}},
+          "model_error": {"mass_scale": {"head": 1.1, "block": 0}}})");
+  const std::vector<std::string> expected = {"gravity: ",
+                                             "seed: ",
+                                             "time_step: ",
+                                             "start.w: ",
+                                             "start.x: ",
+                                             "start.z: ",
+                                             "terrain.friction: ",
+                                             "terrain.boxes[0].center: ",
+                                             "terrain.boxes[0].size: ",
+                                             "terrain.boxes[1]: ",
+                                             "sensors.noise: ",
+                                             "actuators.model.bandwith: ",
+                                             "actuators.model.torque_noise: ",
+                                             "model_error.mass_scale.head: ",
+                                             "model_error.mass_scale.block: "};
+  std::string all;
+  for (const std::string& error : errors) all += error + "\n";
+  for (const std::string& start : expected) {
+    bool found = false;
+    for (const std::string& error : errors) {
+      found = found || (error.rfind(start, 0) == 0 && error.find("expected ") != error.npos &&
+                        error.find(", got ") != error.npos);
+    }
+    EXPECT_TRUE(found) << start << " in\n" << all;
+  }
+}
+
+TEST(Config, TextThatIsNoJsonAndTerrainWithoutGroundAreRefused) {
+  EXPECT_EQ(errors_of("{").size(), 1u);
+  EXPECT_EQ(errors_of("[1]")[0].rfind("configuration: expected an object", 0), 0u);
+  EXPECT_EQ(errors_of("{}")[0].rfind("start.z: ", 0), 0u);
+  EXPECT_TRUE(errors_of(R"({"terrain": {"ground_z": 0}})").empty());
+  EXPECT_TRUE(errors_of(R"({"terrain": {"ground_z": 0}})", 0.004).empty());
+  EXPECT_FALSE(errors_of(R"({"terrain": {"ground_z": 0}})", 0.0007).empty());
+}
+
+}  // namespace
+}  // namespace gaitd::sim
