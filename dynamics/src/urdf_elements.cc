@@ -5,11 +5,24 @@
 
 #include "gaitd/abi/types.h"
 #include "gaitd/dynamics/model_check.h"
+#include "urdfdom_piece.h"
 
 namespace gaitd::dynamics {
 namespace {
 
 constexpr double kContinuousLimit = 1e9;  // rad
+
+Eigen::Vector3d to_vector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+
+Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
+  const urdf::Rotation& r = pose.rotation;
+  return Eigen::Translation3d(to_vector(pose.position)) * Eigen::Quaterniond(r.w, r.x, r.y, r.z);
+}
+
+int line_of(const TiXmlElement& parent, const char* tag) {
+  const TiXmlElement* element = parent.FirstChildElement(tag);
+  return element == nullptr ? parent.Row() : element->Row();
+}
 
 class ElementReader {
  public:
@@ -60,66 +73,50 @@ class ElementReader {
     return name;
   }
 
+  // If anything is wrong with its <inertial>, a link gets plausible figures: one error is enough.
   void read_link(const TiXmlElement& element) {
     UrdfLinkElement link;
     link.line = element.Row();
     link.name = name_of(element, "link");
     const std::string owner = "link " + quoted(link.name);
-    if (const TiXmlElement* inertial = element.FirstChildElement("inertial")) {
-      read_inertial(*inertial, owner, &link);
+    std::string reason;
+    const urdf::LinkConstSharedPtr parsed = parse_link_alone(element, &reason);
+    const bool named = element.Attribute("name") != nullptr;
+    if (parsed == nullptr && named)
+      xml_.add_error(link.line, owner + ": " + reason + "; correct it");
+    if (parsed == nullptr ||
+        (parsed->inertial != nullptr && !read_inertial(element, *parsed->inertial, owner, &link))) {
+      link.mass = 1;
+      link.inertia.setIdentity();
     }
     elements_.links.push_back(link);
   }
 
-  // If anything is wrong with it, the link gets plausible figures: one error is enough.
-  void read_inertial(const TiXmlElement& inertial, const std::string& owner,
-                     UrdfLinkElement* link) {
-    const std::size_t errors = xml_.error_count();
-    const Eigen::Isometry3d X_LC = xml_.origin(inertial, owner);
-    link->com = X_LC.translation();
-    const TiXmlElement* mass = inertial.FirstChildElement("mass");
-    const TiXmlElement* inertia = inertial.FirstChildElement("inertia");
-    if (mass == nullptr || inertia == nullptr) {
-      xml_.add_error(inertial.Row(), owner + ": <inertial> has no <" +
-                                         (mass == nullptr ? "mass" : "inertia") +
-                                         ">; add it or drop <inertial>");
-    } else {
-      link->mass = xml_.required_number(*mass, "value", owner);
-      const Eigen::Matrix3d m = read_inertia(*inertia, owner);
-      link->inertia = X_LC.linear() * m * X_LC.linear().transpose();
-      if (xml_.error_count() == errors) check_mass(*mass, *inertia, m, owner, link->mass);
-    }
-    if (xml_.error_count() == errors) return;
-    link->mass = 1;
-    link->inertia.setIdentity();
-  }
-
-  Eigen::Matrix3d read_inertia(const TiXmlElement& inertia, const std::string& owner) {
-    const double xx = xml_.required_number(inertia, "ixx", owner);
-    const double yy = xml_.required_number(inertia, "iyy", owner);
-    const double zz = xml_.required_number(inertia, "izz", owner);
-    const double xy = xml_.number(inertia, "ixy", owner, 0);
-    const double xz = xml_.number(inertia, "ixz", owner, 0);
-    const double yz = xml_.number(inertia, "iyz", owner, 0);
+  bool read_inertial(const TiXmlElement& element, const urdf::Inertial& from,
+                     const std::string& owner, UrdfLinkElement* link) {
+    const Eigen::Isometry3d X_LC = to_isometry(from.origin);
     Eigen::Matrix3d m;
-    m << xx, xy, xz, xy, yy, yz, xz, yz, zz;
-    return m;
-  }
-
-  void check_mass(const TiXmlElement& mass, const TiXmlElement& inertia, const Eigen::Matrix3d& m,
-                  const std::string& owner, double value) {
-    if (value < 0 || (value == 0 && !m.isZero(0))) {
-      xml_.add_error(mass.Row(), owner + ": mass is " + to_text(value) +
-                                     " kg, expected above 0; give the mass of the link");
+    m << from.ixx, from.ixy, from.ixz, from.ixy, from.iyy, from.iyz, from.ixz, from.iyz, from.izz;
+    link->com = X_LC.translation();
+    link->mass = from.mass;
+    link->inertia = X_LC.linear() * m * X_LC.linear().transpose();
+    const TiXmlElement* inertial = element.FirstChildElement("inertial");
+    const bool mass_ok = from.mass > 0 || (from.mass == 0 && m.isZero(0));
+    if (!mass_ok) {
+      xml_.add_error(line_of(*inertial, "mass"), owner + ": mass is " + to_text(from.mass) +
+                                                     " kg, expected above 0; give the mass of "
+                                                     "the link");
     }
     // A part on a fixed joint may be a point mass; the body it is merged into is checked again.
     const std::string reason = check_inertia(m, true);
     if (!reason.empty()) {
-      xml_.add_error(inertia.Row(),
+      xml_.add_error(line_of(*inertial, "inertia"),
                      owner + ": " + reason + "; correct <inertia> (about the centre of mass)");
     }
+    return mass_ok && reason.empty();
   }
 
+  // The ends and the kind of a joint are there even if urdfdom refuses it, to go on with the tree.
   void read_joint(const TiXmlElement& element) {
     UrdfJointElement joint;
     joint.line = element.Row();
@@ -127,16 +124,23 @@ class ElementReader {
     const std::string owner = "joint " + quoted(joint.name);
     joint.parent = link_of(element, "parent", owner);
     joint.child = link_of(element, "child", owner);
-    joint.X_PJ = xml_.origin(element, owner);
-
     const std::string type = xml_.text(element, "type", owner);
-    if (type == "revolute" || type == "continuous" || type == "prismatic") {
+    const bool moves = type == "revolute" || type == "continuous" || type == "prismatic";
+    if (moves) {
       joint.kind = type == "prismatic" ? UrdfJointKind::kPrismatic : UrdfJointKind::kRevolute;
-      read_motion(element, owner, type == "continuous", &joint);
-    } else if (type != "fixed" && !type.empty()) {
+    }
+    std::string reason;
+    const urdf::JointConstSharedPtr parsed = parse_joint_alone(element, &reason);
+    const bool whole = !joint.name.empty() && !joint.parent.empty() && !joint.child.empty();
+    if (!moves && type != "fixed" && !type.empty()) {
       xml_.add_error(joint.line, owner + ": type is '" + type +
                                      "', expected revolute, continuous, prismatic or fixed; the "
                                      "root of the tree floats by itself");
+    } else if (parsed == nullptr && whole && !type.empty()) {
+      xml_.add_error(joint.line, owner + ": " + reason + "; correct it");
+    } else if (parsed != nullptr) {
+      joint.X_PJ = to_isometry(parsed->parent_to_joint_origin_transform);
+      if (moves) read_motion(element, *parsed, owner, &joint);
     }
     elements_.joints.push_back(joint);
   }
@@ -148,57 +152,50 @@ class ElementReader {
     return {};
   }
 
-  void read_motion(const TiXmlElement& element, const std::string& owner, bool continuous,
+  void read_motion(const TiXmlElement& element, const urdf::Joint& from, const std::string& owner,
                    UrdfJointElement* joint) {
-    if (const TiXmlElement* axis = element.FirstChildElement("axis")) {
-      const Eigen::Vector3d value = xml_.vector(*axis, "xyz", owner, Eigen::Vector3d::UnitX());
-      if (value.norm() > 0) {
-        joint->axis = value.normalized();
-      } else {
-        xml_.add_error(axis->Row(), owner + ": the axis is zero, expected a direction");
-      }
-    }
-    if (const TiXmlElement* dynamics = element.FirstChildElement("dynamics")) {
-      joint->damping = xml_.number(*dynamics, "damping", owner, 0);
-      if (joint->damping < 0) {
-        xml_.add_error(dynamics->Row(),
-                       owner + ": damping is " + to_text(joint->damping) + ", expected 0 or above");
-      }
-    }
-    if (const TiXmlElement* mimic = element.FirstChildElement("mimic")) {
-      xml_.add_error(mimic->Row(), owner +
-                                       ": <mimic> is not supported; make the joint fixed, or "
-                                       "drop <mimic> if it has a drive of its own");
-    }
-    if (const TiXmlElement* limit = element.FirstChildElement("limit")) {
-      read_limit(*limit, owner, continuous, joint);
+    const Eigen::Vector3d axis = to_vector(from.axis);
+    if (axis.norm() > 0) {
+      joint->axis = axis.normalized();
     } else {
-      xml_.add_error(joint->line, owner + ": has no <limit>; give " +
-                                      (continuous ? "velocity and effort"
-                                                  : "lower, upper, velocity and effort"));
+      xml_.add_error(line_of(element, "axis"), owner + ": the axis is zero, expected a direction");
+    }
+    if (from.dynamics != nullptr) joint->damping = from.dynamics->damping;
+    if (joint->damping < 0) {
+      xml_.add_error(line_of(element, "dynamics"),
+                     owner + ": damping is " + to_text(joint->damping) + ", expected 0 or above");
+    }
+    if (from.mimic != nullptr) {
+      xml_.add_error(line_of(element, "mimic"),
+                     owner +
+                         ": <mimic> is not supported; make the joint fixed, or drop <mimic> if "
+                         "it has a drive of its own");
+    }
+    if (from.limits != nullptr) {
+      read_limit(line_of(element, "limit"), from, owner, joint);
+    } else {
+      xml_.add_error(joint->line, owner + ": has no <limit>; give velocity and effort");
     }
   }
 
-  void read_limit(const TiXmlElement& limit, const std::string& owner, bool continuous,
+  void read_limit(int line, const urdf::Joint& from, const std::string& owner,
                   UrdfJointElement* joint) {
-    joint->velocity = positive_limit(limit, "velocity", owner);
-    joint->effort = positive_limit(limit, "effort", owner);
-    joint->lower = continuous ? -kContinuousLimit : xml_.number(limit, "lower", owner, 0);
-    joint->upper = continuous ? kContinuousLimit : xml_.number(limit, "upper", owner, 0);
+    const bool continuous = from.type == urdf::Joint::CONTINUOUS;
+    joint->velocity = positive_limit(line, "velocity", from.limits->velocity, owner);
+    joint->effort = positive_limit(line, "effort", from.limits->effort, owner);
+    joint->lower = continuous ? -kContinuousLimit : from.limits->lower;
+    joint->upper = continuous ? kContinuousLimit : from.limits->upper;
     if (!(joint->lower < joint->upper)) {
-      xml_.add_error(limit.Row(), owner + ": <limit> is lower " + to_text(joint->lower) +
-                                      ", upper " + to_text(joint->upper) +
-                                      ", expected lower < upper; give the range of the joint");
+      xml_.add_error(line, owner + ": <limit> is lower " + to_text(joint->lower) + ", upper " +
+                               to_text(joint->upper) +
+                               ", expected lower < upper; give the range of the joint");
     }
   }
 
-  double positive_limit(const TiXmlElement& limit, const char* attribute,
-                        const std::string& owner) {
-    const double value = xml_.required_number(limit, attribute, owner);
-    if (limit.Attribute(attribute) != nullptr && !(value > 0)) {
-      xml_.add_error(limit.Row(), owner + ": the " + attribute + " limit is " +
-                                      limit.Attribute(attribute) +
-                                      ", expected above 0; give what the drive can do");
+  double positive_limit(int line, const char* what, double value, const std::string& owner) {
+    if (!(value > 0)) {
+      xml_.add_error(line, owner + ": the " + what + " limit is " + to_text(value) +
+                               ", expected above 0; give what the drive can do");
     }
     return value;
   }

@@ -9,10 +9,10 @@ namespace {
 
 using sdk::view;
 
-// While the robot has just been switched on, gravity is believed more: this many times the rate,
-// decaying with this time constant (s).
-constexpr double kStartBoost = 6.0;
-constexpr double kStartTime = 1.0;
+// The first attitude comes from one noisy sample: it is levelled this many times faster at first,
+// fading with this time constant (s).
+constexpr double kStartBoost = 10.0;
+constexpr double kStartTime = 0.4;
 
 double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * hertz * dt); }
 
@@ -32,13 +32,13 @@ KinematicInertial::KinematicInertial(const GaitdModel& model)
 
 void KinematicInertial::reset() {
   initialised_ = false;
+  time_since_start_ = 0.0;
   joints_seen_ = false;
   orientation_.setIdentity();
   position_.setZero();
   velocity_W_.setZero();
   gyro_bias_.setZero();
   accelerometer_bias_.setZero();
-  time_since_start_ = 0.0;
   feet_ = {};
 }
 
@@ -59,12 +59,12 @@ void KinematicInertial::get_state(GaitdStateEstimatorState& s) const {
 void KinematicInertial::set_state(const GaitdStateEstimatorState& s) {
   reset();
   initialised_ = s.initialised != 0;
+  time_since_start_ = 100.0 * kStartTime;
   position_ = view(s.pelvis_position);
   orientation_ = sdk::quaternion(s.pelvis_orientation);
   velocity_W_ = view(s.pelvis_velocity);
   gyro_bias_ = view(s.gyro_bias);
   accelerometer_bias_ = view(s.accelerometer_bias);
-  time_since_start_ = 100.0 * kStartTime;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) feet_[side].contact = s.contact[side];
 }
 
@@ -164,20 +164,11 @@ void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in, doub
   last_rate_ = rate_;
 
   orientation_ = (orientation_ * sdk::exp_so3(rate_ * dt)).normalized();
-  const double boost = 1.0 + kStartBoost * std::exp(-time_since_start_ / kStartTime);
-  Eigen::Vector3d tilt;
-  if (sensor->has_orientation != 0) {
-    const Eigen::Quaterniond measured =
-        sdk::quaternion(sensor->orientation) * mount.conjugate();
-    tilt = sdk::log_so3(measured * orientation_.conjugate());
-  } else {
-    const Eigen::Vector3d up = orientation_ * specific_force_;
-    tilt = up.cross(Eigen::Vector3d::UnitZ()) / model_.gravity;
-  }
+  if (sensor->has_orientation == 0) return;
+  const Eigen::Quaterniond measured = sdk::quaternion(sensor->orientation) * mount.conjugate();
+  Eigen::Vector3d tilt = sdk::log_so3(measured * orientation_.conjugate());
   tilt.z() = 0.0;
-  orientation_ =
-      (sdk::exp_so3(std::min(1.0, p_[P::kTiltRate] * boost * dt) * tilt) * orientation_)
-          .normalized();
+  orientation_ = (sdk::exp_so3(p_[P::kTiltRate] * dt * tilt) * orientation_).normalized();
 }
 
 void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
@@ -264,13 +255,16 @@ void KinematicInertial::update_anchors(const GaitdStateEstimatorInput& in, doubl
       f.orientation_anchored = true;
       f.anchor_orientation = now;
     }
-    error += f.normal_force * sdk::log_so3(f.anchor_orientation * now.conjugate());
+    // The heading only: under load a foot tilts by some milliradians.
+    error.z() += f.normal_force * sdk::log_so3(f.anchor_orientation * now.conjugate()).z();
     total += f.normal_force;
   }
   if (total <= 0.0) return;
   error /= total;
   orientation_ = (sdk::exp_so3(p_[P::kAnchorRate] * dt * error) * orientation_).normalized();
-  gyro_bias_ -= p_[P::kBiasRate] * dt * (orientation_.conjugate() * error);
+  // In a walk every foot turns a little when it is loaded: that must not look like a bias.
+  const double share = in.gait->phase == GAITD_PHASE_STAND ? 1.0 : 0.05;
+  gyro_bias_ -= share * p_[P::kBiasRate] * dt * (orientation_.conjugate() * error);
 }
 
 void KinematicInertial::update_position(const GaitdStateEstimatorInput& in, double dt) {
@@ -297,6 +291,19 @@ void KinematicInertial::update_position(const GaitdStateEstimatorInput& in, doub
   accelerometer_bias_ -= pole * pole * pole * dt * (orientation_.conjugate() * correction);
   const double limit = p_[P::kBiasLimit];
   accelerometer_bias_ = accelerometer_bias_.cwiseMax(-limit).cwiseMin(limit);
+  level_attitude(dt);
+}
+
+void KinematicInertial::level_attitude(double dt) {
+  // A tilt error of `tilt` turns gravity into an acceleration error of g (tilt_y, -tilt_x).
+  const Eigen::Vector3d error = orientation_ * accelerometer_bias_;
+  const Eigen::Vector3d tilt(-error.y() / model_.gravity, error.x() / model_.gravity, 0.0);
+  const double boost = 1.0 + kStartBoost * std::exp(-time_since_start_ / kStartTime);
+  const double share = std::min(1.0, boost * p_[P::kTiltRate] * dt);
+  accelerometer_bias_ -=
+      share * (orientation_.conjugate() * Eigen::Vector3d(error.x(), error.y(), 0.0));
+  orientation_ = (sdk::exp_so3(-share * tilt) * orientation_).normalized();
+  gyro_bias_ += p_[P::kTiltBiasRate] * dt * (orientation_.conjugate() * tilt);
 }
 
 void KinematicInertial::write(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
@@ -325,9 +332,7 @@ GaitdStatus KinematicInertial::process(const GaitdStateEstimatorInput& in, Gaitd
   if (in.sensors->joint_count != model_.joint_count) return GAITD_INVALID_ARGUMENT;
   const double dt = in.time.period;
   read_joints(in, out);
-  if (!initialised_) {
-    initialise(in, out);
-  }
+  if (!initialised_) initialise(in, out);
   update_attitude(in, dt);
   update_kinematics(out);
   read_feet(in, out);

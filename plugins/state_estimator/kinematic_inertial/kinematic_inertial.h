@@ -15,11 +15,12 @@ namespace gaitd::plugins {
 // that the command expects, so that rates are smooth without being late. In the legs the contacts
 // decide what a command does, and such a feed-forward would excite them.
 //
-// Attitude: the gyroscope is integrated and corrected by gravity (slowly), and by the orientation
-// that each foot in contact had when it came to rest (which also shows the gyroscope's bias and
-// keeps the heading). Position and velocity: a third-order observer that integrates the
-// accelerometer and is corrected by where the anchored feet put the pelvis; its third state is the
-// bias of the accelerometer. Feet are trusted by the share of the load they carry.
+// Attitude: the gyroscope is integrated, its heading corrected by the heading that each foot in
+// contact had when it came to rest (which also shows the gyroscope's bias). Position
+// and velocity: a third-order observer that integrates the accelerometer and is corrected by where
+// the anchored feet put the pelvis; its third state is the error of the accelerometer. The
+// horizontal part of that error is what a wrong tilt makes of gravity, free of the accelerations of
+// walking: it levels the attitude, slowly. Feet are trusted by the share of the load they carry.
 class KinematicInertial {
  public:
   enum class P {
@@ -33,13 +34,14 @@ class KinematicInertial {
     kUpperBodyPole,
     kPositionRate,
     kTiltRate,
+    kTiltBiasRate,
     kAnchorRate,
     kBiasRate,
     kAnchorDelay,
     kBiasLimit,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 14> kParameters = {
+  static constexpr std::array<GaitdParameter, 15> kParameters = {
       sdk::real_parameter("trust_on", "load", 0, 1, 0.35, "share that makes a foot an anchor"),
       sdk::real_parameter("trust_off", "load", 0, 1, 0.30, "share below which it is none"),
       sdk::real_parameter("trust_delay", "s", 0, 0.5, 0.02, "that the share must last"),
@@ -52,9 +54,12 @@ class KinematicInertial {
                           "the same for all other joints, which follow their commands closely"),
       sdk::real_parameter("position_rate", "1/s", 0.5, 200, 12,
                           "pole of the observer of position, velocity and bias"),
-      sdk::real_parameter("tilt_rate", "1/s", 0, 10, 0.15, "correction of the tilt by gravity"),
-      sdk::real_parameter("anchor_rate", "1/s", 0, 50, 2, "correction by feet at rest"),
-      sdk::real_parameter("bias_rate", "1/s^2", 0, 50, 0.5, "gyroscope bias from feet at rest"),
+      sdk::real_parameter("tilt_rate", "1/s", 0, 10, 0.5, "correction of the tilt by gravity"),
+      sdk::real_parameter("tilt_bias_rate", "1/s^2", 0, 10, 0.05,
+                          "gyroscope bias from the same"),
+      sdk::real_parameter("anchor_rate", "1/s", 0, 50, 2, "correction of the heading by feet at rest"),
+      sdk::real_parameter("bias_rate", "1/s^2", 0, 50, 0.5,
+                          "gyroscope bias from the same while standing; a twentieth in a walk"),
       sdk::real_parameter("anchor_delay", "s", 0, 1, 0.1,
                           "after which an anchored foot is taken to be at rest"),
       sdk::real_parameter("bias_limit", "m/s^2", 0, 5, 0.4, "of the accelerometer bias"),
@@ -88,6 +93,7 @@ class KinematicInertial {
   void update_trust(const GaitdStateEstimatorInput& in, double dt);
   void update_anchors(const GaitdStateEstimatorInput& in, double dt);
   void update_position(const GaitdStateEstimatorInput& in, double dt);
+  void level_attitude(double dt);
   void write(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void update_kinematics(const GaitdRobotState& joints);
   Eigen::Quaterniond sole_orientation(int side) const;
@@ -99,6 +105,7 @@ class KinematicInertial {
   dynamics::Kinematics kinematics_;
 
   bool initialised_ = false;
+  double time_since_start_ = 0.0;
   bool joints_seen_ = false;
   std::array<bool, GAITD_MAX_JOINTS> leg_joint_{};
   std::array<double, GAITD_MAX_JOINTS> joint_{};       // rad, observed
@@ -111,7 +118,6 @@ class KinematicInertial {
   Eigen::Vector3d accelerometer_bias_ = Eigen::Vector3d::Zero();     // pelvis frame
   Eigen::Vector3d specific_force_ = Eigen::Vector3d::Zero();         // at the pelvis, its frame
   Eigen::Vector3d last_rate_ = Eigen::Vector3d::Zero();
-  double time_since_start_ = 0.0;
   std::array<Foot, GAITD_MAX_FEET> feet_;
   Eigen::Vector2d last_cop_ = Eigen::Vector2d::Zero();
 };

@@ -1,0 +1,52 @@
+# Sourced by run-demo and run-tests in the folder of the repository: packages, configuration, build.
+
+PACKAGE_LIST=cmake/debian-packages.txt
+BUILD=build/release
+
+say() { printf '\n== %s\n' "$*"; }
+die() {
+  printf 'error: %s\n' "$*" >&2
+  exit 1
+}
+
+missing_packages() {
+  local package
+  while read -r package; do
+    [[ -z $package || $package == \#* ]] && continue
+    dpkg-query -W -f '${db:Status-Abbrev}\n' "$package" 2>/dev/null | grep -q '^ii' ||
+      echo "$package"
+  done <"$PACKAGE_LIST"
+}
+
+install_packages() {
+  local as_root=()
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    printf 'This is no Debian: taking the packages in %s for installed.\n' "$PACKAGE_LIST"
+    return
+  fi
+  local missing
+  mapfile -t missing < <(missing_packages)
+  ((${#missing[@]} == 0)) && return
+  if ((EUID != 0)); then
+    command -v sudo >/dev/null || die "missing packages, and neither root nor sudo to install them.
+  As root: apt-get install ${missing[*]}"
+    as_root=(sudo)
+  fi
+  say "Installing ${missing[*]}"
+  "${as_root[@]}" apt-get update ||
+    die "apt-get update failed; check the network and /etc/apt/sources.list"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y --no-install-recommends "${missing[@]}" ||
+    die "apt-get could not install ${missing[*]}; gaitd is built and tested on Debian 12"
+}
+
+# The whole repository with its tests is configured, always in the same way, so that run-demo and
+# run-tests share one build tree; the arguments choose the targets to build.
+set_up_and_build() {
+  install_packages
+  say "Configuring $BUILD"
+  cmake --preset release -UGAITD_COMPONENTS -UGAITD_BUILD_TESTS -UGAITD_BUILD_BENCHMARKS ||
+    die "the configuration failed, see above; $PACKAGE_LIST lists what it needs"
+  say "Building $BUILD on $(nproc) cores"
+  cmake --build --preset release --parallel "$(nproc)" "$@" || die "the build failed, see above"
+}
