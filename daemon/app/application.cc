@@ -156,6 +156,14 @@ bool Application::load_layers() {
   apply(legs, [&](int i, double v) { pipeline_->objectives().set_leg_parameter(i, v); });
   apply(objectives, [&](int i, double v) { pipeline_->objectives().set_objective_parameter(i, v); });
   apply(safety, [&](int i, double v) { pipeline_->safety().set_parameter(i, v); });
+  using Impedance = walking::ObjectiveBuilder::Impedance;
+  const ImpedanceProfile& profile = robot_->impedance;
+  auto impedance = [&](Impedance state, const JointImpedance& values) {
+    pipeline_->objectives().set_impedance(state, values.stiffness, values.damping);
+  };
+  impedance(Impedance::kSupport, profile.support);
+  impedance(Impedance::kSwing, profile.swing);
+  impedance(Impedance::kHeelStrike, profile.heel_strike);
   if (scenario_) {
     Command mode;
     mode.type = CommandType::kMode;

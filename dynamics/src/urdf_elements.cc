@@ -79,11 +79,11 @@ class ElementReader {
     link.line = element.Row();
     link.name = name_of(element, "link");
     const std::string owner = "link " + quoted(link.name);
-    std::string reason;
-    const urdf::LinkConstSharedPtr parsed = parse_link_alone(element, &reason);
-    const bool named = element.Attribute("name") != nullptr;
-    if (parsed == nullptr && named)
-      xml_.add_error(link.line, owner + ": " + reason + "; correct it");
+    std::string fault;
+    const urdf::LinkConstSharedPtr parsed = parse_link(element, &fault);
+    if (parsed == nullptr) {
+      xml_.add_error(line_of(element, "inertial"), owner + ": " + fault + "; correct it here");
+    }
     if (parsed == nullptr ||
         (parsed->inertial != nullptr && !read_inertial(element, *parsed->inertial, owner, &link))) {
       link.mass = 1;
@@ -129,15 +129,14 @@ class ElementReader {
     if (moves) {
       joint.kind = type == "prismatic" ? UrdfJointKind::kPrismatic : UrdfJointKind::kRevolute;
     }
-    std::string reason;
-    const urdf::JointConstSharedPtr parsed = parse_joint_alone(element, &reason);
-    const bool whole = !joint.name.empty() && !joint.parent.empty() && !joint.child.empty();
+    std::string fault;
+    const urdf::JointConstSharedPtr parsed = parse_joint(element, &fault);
     if (!moves && type != "fixed" && !type.empty()) {
       xml_.add_error(joint.line, owner + ": type is '" + type +
                                      "', expected revolute, continuous, prismatic or fixed; the "
                                      "root of the tree floats by itself");
-    } else if (parsed == nullptr && whole && !type.empty()) {
-      xml_.add_error(joint.line, owner + ": " + reason + "; correct it");
+    } else if (parsed == nullptr && !type.empty()) {
+      xml_.add_error(joint.line, owner + ": " + fault + "; correct it here");
     } else if (parsed != nullptr) {
       joint.X_PJ = to_isometry(parsed->parent_to_joint_origin_transform);
       if (moves) read_motion(element, *parsed, owner, &joint);

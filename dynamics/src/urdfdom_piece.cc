@@ -10,18 +10,20 @@
 namespace gaitd::dynamics {
 namespace {
 
-// Takes what urdfdom says for as long as it lives. The handler is one for the whole process.
-class Messages : public console_bridge::OutputHandler {
+// Takes the faults that urdfdom tells for as long as it lives, one at a time in the process.
+class Faults : public console_bridge::OutputHandler {
  public:
-  explicit Messages(std::string* text) : text_(*text), lock_(mutex()) {
+  explicit Faults(std::string* text) : text_(*text), lock_(mutex()) {
+    console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
     console_bridge::useOutputHandler(this);
   }
-  ~Messages() override { console_bridge::restorePreviousOutputHandler(); }
+  ~Faults() override {
+    console_bridge::restorePreviousOutputHandler();
+    console_bridge::setLogLevel(level_);
+  }
 
-  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) {
-      text_ += (text_.empty() ? "" : "; ") + text;
-    }
+  void log(const std::string& text, console_bridge::LogLevel, const char*, int) override {
+    text_ += (text_.empty() ? "" : "; ") + text;
   }
 
  private:
@@ -32,6 +34,7 @@ class Messages : public console_bridge::OutputHandler {
 
   std::string& text_;
   std::lock_guard<std::mutex> lock_;
+  console_bridge::LogLevel level_ = console_bridge::getLogLevel();
 };
 
 // urdfdom 3 prints a number that it cannot read as a format string: a '%' there would crash it.
@@ -45,66 +48,65 @@ bool has_percent(const TiXmlElement& element) {
   return false;
 }
 
-void add_link(const char* name, TiXmlElement* robot) {
-  TiXmlElement link("link");
-  link.SetAttribute("name", name);
-  robot->InsertEndChild(link);
+void add(const char* tag, const char* attribute, const char* value, TiXmlElement* parent) {
+  TiXmlElement child(tag);
+  child.SetAttribute(attribute, value);
+  parent->InsertEndChild(child);
 }
 
-void rename_link(const char* tag, const char* name, TiXmlElement* joint) {
-  if (TiXmlElement* element = joint->FirstChildElement(tag)) element->SetAttribute("link", name);
-}
-
-void drop_all(const char* tag, TiXmlElement* element) {
-  while (TiXmlNode* child = element->FirstChild(tag)) element->RemoveChild(child);
+void drop(const char* tag, TiXmlElement* parent) {
+  while (TiXmlNode* child = parent->FirstChild(tag)) parent->RemoveChild(child);
 }
 
 // urdfdom wants all six figures; products of inertia that are not there are zero.
 void complete_inertia(TiXmlElement* link) {
-  TiXmlNode* inertial = link->FirstChild("inertial");
-  TiXmlElement* inertia = inertial == nullptr ? nullptr : inertial->FirstChildElement("inertia");
+  TiXmlElement* inertia =
+      TiXmlHandle(link).FirstChild("inertial").FirstChild("inertia").ToElement();
   if (inertia == nullptr) return;
   for (const char* product : {"ixy", "ixz", "iyz"}) {
     if (inertia->Attribute(product) == nullptr) inertia->SetAttribute(product, "0");
   }
 }
 
-urdf::ModelInterfaceSharedPtr parse(TiXmlElement* robot, const TiXmlElement& piece,
+urdf::ModelInterfaceSharedPtr parse(const TiXmlElement& piece, TiXmlElement* robot,
                                     std::string* reason) {
   if (has_percent(piece)) {
-    *reason = "there is a '%' in it";
+    *reason = "a value holds a '%', expected a name or a number";
     return nullptr;
   }
   robot->SetAttribute("name", "piece");
   robot->InsertEndChild(piece);
   TiXmlPrinter printer;
   robot->Accept(&printer);
-  const Messages messages(reason);
-  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(printer.Str());
-  if (model == nullptr && reason->empty()) *reason = "urdfdom cannot read it";
-  return reason->empty() ? model : nullptr;
+  const Faults faults(reason);
+  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(printer.Str());
+  if (model == nullptr && reason->empty()) *reason = "urdfdom refuses it";
+  return reason->empty() ? model : nullptr;  // it goes on after some faults
 }
 
 }  // namespace
 
-urdf::LinkConstSharedPtr parse_link_alone(const TiXmlElement& link, std::string* reason) {
-  TiXmlElement piece(link);
-  drop_all("visual", &piece);
-  drop_all("collision", &piece);
-  complete_inertia(&piece);
+urdf::LinkConstSharedPtr parse_link(const TiXmlElement& link, std::string* reason) {
   TiXmlElement robot("robot");
-  const urdf::ModelInterfaceSharedPtr model = parse(&robot, piece, reason);
+  TiXmlElement piece(link);
+  piece.SetAttribute("name", link.Attribute("name") ? link.Attribute("name") : "");
+  drop("visual", &piece);
+  drop("collision", &piece);
+  complete_inertia(&piece);
+  const urdf::ModelInterfaceSharedPtr model = parse(piece, &robot, reason);
   return model == nullptr ? nullptr : model->getRoot();
 }
 
-urdf::JointConstSharedPtr parse_joint_alone(const TiXmlElement& joint, std::string* reason) {
-  TiXmlElement piece(joint);
-  rename_link("parent", "p", &piece);
-  rename_link("child", "c", &piece);
+urdf::JointConstSharedPtr parse_joint(const TiXmlElement& joint, std::string* reason) {
   TiXmlElement robot("robot");
-  add_link("p", &robot);
-  add_link("c", &robot);
-  const urdf::ModelInterfaceSharedPtr model = parse(&robot, piece, reason);
+  TiXmlElement piece(joint);
+  piece.SetAttribute("name", joint.Attribute("name") ? joint.Attribute("name") : "");
+  for (const char* end : {"parent", "child"}) {
+    add("link", "name", end, &robot);
+    drop(end, &piece);
+    add(end, "link", end, &piece);
+  }
+  const urdf::ModelInterfaceSharedPtr model = parse(piece, &robot, reason);
   return model == nullptr ? nullptr : model->joints_.begin()->second;
 }
 

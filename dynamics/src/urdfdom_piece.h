@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One link or joint of a robot description, parsed by urdfdom. It stops at the first fault of what
-// it is given, so each element is given to it alone.
+// it is given and names no line, so each element is given to it alone.
 #ifndef GAITD_DYNAMICS_SRC_URDFDOM_PIECE_H_
 #define GAITD_DYNAMICS_SRC_URDFDOM_PIECE_H_
 
@@ -12,11 +12,12 @@
 
 namespace gaitd::dynamics {
 
-// Null if urdfdom finds a fault; `reason` is then what it said.
-urdf::LinkConstSharedPtr parse_link_alone(const TiXmlElement& link, std::string* reason);
+// Without what is only looked at or bumped into. Null if urdfdom finds a fault; `reason` is then
+// what it said.
+urdf::LinkConstSharedPtr parse_link(const TiXmlElement& link, std::string* reason);
 
-// The same; the links that the joint names need not be there, and are not in the result.
-urdf::JointConstSharedPtr parse_joint_alone(const TiXmlElement& joint, std::string* reason);
+// The same, without the names of the two links.
+urdf::JointConstSharedPtr parse_joint(const TiXmlElement& joint, std::string* reason);
 
 }  // namespace gaitd::dynamics
 

@@ -14,6 +14,7 @@ using sdk::view;
 
 constexpr double kHeightRate = 8.0;  // 1/s, of the reference filter of the CoM height
 constexpr double kTouchdownTime = 0.05;  // s, in which the touchdown damping fades
+constexpr double kHeelStrikeTime = 0.1;  // s after touchdown in which the drives damp
 constexpr double kYawRate = 6.0;     // 1/s, of the reference filter of the heading
 constexpr std::uint32_t kAngularRows = 0b000111;
 constexpr std::uint32_t kLinearRows = 0b111000;
@@ -94,7 +95,23 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
   update_upper_body(dt, robot, gait, out);
   update_feet(dt, robot, gait, lift_off, toe_off, out);
   update_privileged(dt, robot, gait, out);
-  for (int i = 0; i < GAITD_MAX_JOINTS; ++i) out.joint_stiffness[i] = out.joint_damping[i] = 0.0;
+  update_impedance(gait, out);
+}
+
+void ObjectiveBuilder::update_impedance(const GaitdGaitState& gait, GaitdObjectives& out) const {
+  auto set = [&](int joint, Impedance state) {
+    out.joint_stiffness[joint] = stiffness_[static_cast<int>(state)][joint];
+    out.joint_damping[joint] = damping_[static_cast<int>(state)][joint];
+  };
+  for (int i = 0; i < model_.joint_count; ++i) set(i, Impedance::kSupport);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const bool swing = gait.footholds[side].contact == GAITD_CONTACT_NONE;
+    const bool strike = !swing && time_in_contact_[side] < kHeelStrikeTime;
+    const GaitdLeg& leg = model_.legs[side];
+    for (int i = 0; i < leg.joint_count; ++i) {
+      if (swing || strike) set(leg.joints[i], swing ? Impedance::kSwing : Impedance::kHeelStrike);
+    }
+  }
 }
 
 double ObjectiveBuilder::load_share(int side, const GaitdGaitState& gait) const {
@@ -143,7 +160,14 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
                                        GaitdObjectives& out) {
   const double mass = model_.total_mass;
   const double standing = parameters_[Objective::kComHeight] * model_.nominal_com_height;
-  out.height_target = com_height_target(gait, standing, leg_length_, model_.nominal_foot_separation);
+  const LegReach reach{
+      .standing_height = standing,
+      .leg_length = leg_length_ - (model_.nominal_com_height - standing),
+      .longest = parameters_[Objective::kReachLength] * leg_length_,
+      .trailing_share = parameters_[Objective::kReachShare],
+      .nominal_separation = model_.nominal_foot_separation,
+      .largest_drop = parameters_[Objective::kReachDrop] * model_.nominal_com_height};
+  out.height_target = com_height_target(gait, reach);
   height_.update(dt, out.height_target, kHeightRate);
   const double stiffness = parameters_[Objective::kHeightStiffness];
   const double limit = parameters_[Objective::kHeightAccelerationLimit] * model_.gravity;

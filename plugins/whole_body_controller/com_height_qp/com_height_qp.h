@@ -19,9 +19,10 @@ class ComHeightQp {
     kBaseAcceleration,
     kTorqueScale,
     kMaxIterations,
+    kReferenceLeak,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 7> kParameters = {
+  static constexpr std::array<GaitdParameter, 8> kParameters = {
       sdk::real_parameter("privileged_scale", "", 0, 10, 0.02,
                           "of the privileged weights; small: it must not disturb the tasks"),
       sdk::real_parameter("joint_rate_gain", "1/s", 1, 500, 30,
@@ -34,6 +35,8 @@ class ComHeightQp {
       sdk::real_parameter("torque_scale", "", 0.05, 1, 1, "share of the effort limits in use"),
       sdk::integer_parameter("max_iterations", "", 10, 10000, 300,
                              "changes of the active set after which the solver gives up"),
+      sdk::real_parameter("reference_leak", "1/s", 0, 1000, 8,
+                          "with which the references of the drives follow the joints"),
   };
 
   explicit ComHeightQp(const GaitdModel& model);

@@ -8,6 +8,14 @@
 
 namespace gaitd::plugins {
 
+namespace {
+
+// Furthest that the references of the drives run ahead of the joints (rad, rad/s).
+constexpr double kPositionLead = 0.1;
+constexpr double kRateLead = 3.0;
+
+}  // namespace
+
 using sdk::view;
 
 InverseDynamicsQp::InverseDynamicsQp(const GaitdModel& model)
@@ -43,6 +51,7 @@ InverseDynamicsQp::InverseDynamicsQp(const GaitdModel& model)
 void InverseDynamicsQp::reset() {
   state_ = {};
   state_.size = sizeof(state_);
+  references_valid_ = false;
   acceleration_.setZero();
   rho_.setZero();
   solver_.reset_warm_start();
@@ -51,6 +60,7 @@ void InverseDynamicsQp::reset() {
 void InverseDynamicsQp::get_state(GaitdWholeBodyControllerState& state) const { state = state_; }
 void InverseDynamicsQp::set_state(const GaitdWholeBodyControllerState& state) {
   state_ = state;
+  references_valid_ = state.contact_count > 0;
   solver_.reset_warm_start();
 }
 
@@ -231,7 +241,7 @@ void InverseDynamicsQp::remember(const GaitdObjectives& objectives) {
   sdk::head(state_.joint_acceleration, joints_) = acceleration_.tail(joints_);
 }
 
-void InverseDynamicsQp::write(double dt, const GaitdRobotState& robot,
+void InverseDynamicsQp::write(double dt, double reference_leak, const GaitdRobotState& robot,
                               const GaitdObjectives& objectives,
                               GaitdWholeBodyControllerOutput& out) {
   GaitdWbcInfo& info = out.info;
@@ -255,33 +265,55 @@ void InverseDynamicsQp::write(double dt, const GaitdRobotState& robot,
   if (info.status != GAITD_WBC_SOLVED) {
     // The next problem must not lean on the forces of this one; the host falls back.
     state_.contact_count = 0;
+    references_valid_ = false;
     solver_.reset_warm_start();
     return;
   }
   remember(objectives);
-
   torque_.noalias() = dynamics_.mass_matrix() * acceleration_;
   torque_ += dynamics_.bias();
   torque_.noalias() -= contact_.leftCols(rho_count_) * rho_.head(rho_count_);
-  out.commands.size = sizeof(out.commands);
-  out.commands.joint_count = joints_;
+  write_commands(dt, reference_leak, robot, objectives, out.commands);
+  write_figures(objectives, info);
+}
+
+void InverseDynamicsQp::write_commands(double dt, double reference_leak,
+                                       const GaitdRobotState& robot,
+                                       const GaitdObjectives& objectives,
+                                       GaitdJointCommands& commands) {
+  commands.size = sizeof(commands);
+  commands.joint_count = joints_;
+  const double leak = std::min(1.0, reference_leak * dt);
   for (int i = 0; i < joints_; ++i) {
-    GaitdJointCommand& command = out.commands.joints[i];
+    GaitdJointCommand& command = commands.joints[i];
+    const double q = robot.joint_position[i];
+    const double rate = robot.joint_velocity[i];
     const double acceleration = acceleration_[6 + i];
+    double& q_ref = state_.position_reference[i];
+    double& rate_ref = state_.velocity_reference[i];
+    if (!references_valid_) {
+      q_ref = q;
+      rate_ref = rate;
+    }
+    rate_ref += leak * (rate - rate_ref) + dt * acceleration;
+    rate_ref = std::clamp(rate_ref, rate - kRateLead, rate + kRateLead);
+    q_ref += leak * (q - q_ref) + dt * rate_ref;
+    q_ref = std::clamp(q_ref, q - kPositionLead, q + kPositionLead);
     command.mode = GAITD_JOINT_MODE_TORQUE;
-    command.torque = torque_[6 + i] + model_.joints[i].damping * robot.joint_velocity[i];
+    command.torque = torque_[6 + i] + model_.joints[i].damping * rate;
     command.acceleration = acceleration;
-    command.velocity = robot.joint_velocity[i] + acceleration * dt;
-    command.position =
-        robot.joint_position[i] + (robot.joint_velocity[i] + 0.5 * acceleration * dt) * dt;
+    command.velocity = rate_ref;
+    command.position = q_ref;
     command.stiffness = objectives.joint_stiffness[i];
     command.damping = objectives.joint_damping[i];
-    state_.position_reference[i] = command.position;
-    state_.velocity_reference[i] = command.velocity;
-    info.joint_acceleration[i] = acceleration;
   }
-  view(info.pelvis_acceleration) = acceleration_.head<6>();
+  references_valid_ = true;
+}
 
+void InverseDynamicsQp::write_figures(const GaitdObjectives& objectives,
+                                      GaitdWbcInfo& info) const {
+  view(info.pelvis_acceleration) = acceleration_.head<6>();
+  for (int i = 0; i < joints_; ++i) info.joint_acceleration[i] = acceleration_[6 + i];
   const dynamics::Vector6d rate =
       dynamics_.centroidal_momentum_matrix() * acceleration_ + dynamics_.centroidal_bias();
   double residual = 0.0;

@@ -47,9 +47,11 @@ class InverseDynamicsQp {
   Eigen::Ref<const Eigen::MatrixXd> task_rows() const { return rows_.topRows(row_count_); }
 
   void solve(int max_iterations);
-  // Torques, references and figures of the last solve, for a tick of `dt` seconds.
-  void write(double dt, const GaitdRobotState& robot, const GaitdObjectives& objectives,
-             GaitdWholeBodyControllerOutput& out);
+  // Torques, references and figures of the last solve, for a tick of `dt` seconds. The references
+  // of the drives are integrated from the solved accelerations and leak towards the measured state
+  // with `reference_leak` (1/s): what a drive adds around them makes good for friction and the like.
+  void write(double dt, double reference_leak, const GaitdRobotState& robot,
+             const GaitdObjectives& objectives, GaitdWholeBodyControllerOutput& out);
 
   int velocity_size() const { return nv_; }
 
@@ -62,6 +64,9 @@ class InverseDynamicsQp {
                   const Limits& limits);
   double previous_rho(const GaitdObjectives& objectives, int contact, int edge) const;
   void remember(const GaitdObjectives& objectives);
+  void write_commands(double dt, double reference_leak, const GaitdRobotState& robot,
+                      const GaitdObjectives& objectives, GaitdJointCommands& commands);
+  void write_figures(const GaitdObjectives& objectives, GaitdWbcInfo& info) const;
 
   const GaitdModel model_;
   const int nv_;
@@ -89,6 +94,7 @@ class InverseDynamicsQp {
   Eigen::VectorXd torque_;        // nv
 
   GaitdWholeBodyControllerState state_{};
+  bool references_valid_ = false;
 };
 
 }  // namespace gaitd::plugins

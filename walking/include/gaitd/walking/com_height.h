@@ -27,10 +27,19 @@ class ReferenceFilter {
   double value_ = 0.0, velocity_ = 0.0, acceleration_ = 0.0;
 };
 
-// Height (m, W) that the CoM aims at: `standing_height` above the ground under the feet, lowered by
-// what a leg of `leg_length` (hip to ankle, m) needs to span the feet: l - sqrt(l^2 - (d/2)^2), d
-// the horizontal distance of the footholds. Blends from one foothold to the next over the phase.
-double com_height_target(const GaitdGaitState& gait, double standing_height, double leg_length,
-                         double nominal_separation);
+// What the legs allow: lengths from the robot, shares from parameters.
+struct LegReach {
+  double standing_height;     // m, CoM above the ground when the feet are side by side
+  double leg_length;          // m, hip to ankle in that posture
+  double longest;             // m, hip to ankle that a leg may be stretched to
+  double trailing_share;      // of the step by which the hip is ahead of the trailing ankle
+  double nominal_separation;  // m, of the feet sideways
+  double largest_drop;        // m
+};
+
+// Height (m, W) that the CoM aims at, with both soles flat until lift-off: as high as when standing,
+// lowered by what the trailing leg needs to reach its foothold at the end of a transfer. Blends from
+// one foothold to the next over the phase.
+double com_height_target(const GaitdGaitState& gait, const LegReach& reach);
 
 }  // namespace gaitd::walking

@@ -24,6 +24,15 @@ class ObjectiveBuilder {
   void set_leg_parameter(int index, double value) { leg_parameters_.set(index, value); }
   void set_swing_parameter(int index, double value) { swing_parameters_.set(index, value); }
 
+  // What the drives add around their references, by what the leg of the joint does. Joints of no leg
+  // follow `kSupport`. N m/rad and N m s/rad, one per joint.
+  enum class Impedance { kSupport = 0, kSwing, kHeelStrike, kCount };
+  using PerJoint = std::array<double, GAITD_MAX_JOINTS>;
+  void set_impedance(Impedance state, const PerJoint& stiffness, const PerJoint& damping) {
+    stiffness_[static_cast<int>(state)] = stiffness;
+    damping_[static_cast<int>(state)] = damping;
+  }
+
   // Takes the present posture as the start of every reference.
   void reset(const GaitdRobotState& robot, const GaitdGaitState& gait);
 
@@ -50,6 +59,7 @@ class ObjectiveBuilder {
                       const GaitdPose& lift_off, GaitdObjectives& out);
   void update_privileged(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                          GaitdObjectives& out);
+  void update_impedance(const GaitdGaitState& gait, GaitdObjectives& out) const;
   GaitdTask& add_task(GaitdObjectives& out, int type, int index, std::uint32_t mask) const;
   void add_orientation_task(int body, const Eigen::Quaterniond& goal,
                             const Eigen::Vector3d& goal_rate, double stiffness,
@@ -75,6 +85,8 @@ class ObjectiveBuilder {
   ReferenceFilter height_;
   ReferenceFilter yaw_;
   std::array<double, GAITD_MAX_FEET> time_in_contact_{};
+  std::array<PerJoint, static_cast<int>(Impedance::kCount)> stiffness_{};
+  std::array<PerJoint, static_cast<int>(Impedance::kCount)> damping_{};
 };
 
 }  // namespace gaitd::walking

@@ -114,6 +114,9 @@ inline constexpr std::array<GaitdParameter, 15> kLegParameters = {
 enum class Objective {
   kFriction,
   kComHeight,
+  kReachLength,
+  kReachShare,
+  kReachDrop,
   kHeightStiffness,
   kHeightDampingRatio,
   kHeightAccelerationLimit,
@@ -149,10 +152,16 @@ enum class Objective {
   kToeAngularWeight,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 35> kObjectiveParameters = {
+inline constexpr std::array<GaitdParameter, 38> kObjectiveParameters = {
     real_parameter("friction", "", 0.05, 2, 0.7, "coefficient that the controller counts on"),
-    real_parameter("com_height", "", 0.5, 1.2, 0.98,
+    real_parameter("com_height", "", 0.5, 1.2, 1.0,
                    "CoM height when standing, over the height in the nominal posture"),
+    real_parameter("reach_length", "", 0.5, 1.2, 0.99,
+                   "hip to ankle of a trailing leg, over the length in the nominal posture"),
+    real_parameter("reach_share", "", 0, 1.5, 0.9,
+                   "hip ahead of the trailing ankle at the end of a transfer, over the step"),
+    real_parameter("reach_drop", "", 0, 0.5, 0.1,
+                   "largest lowering for it, over the CoM height in the nominal posture"),
     real_parameter("height_stiffness", "1/s^2", 0, 500, 40, "of the CoM height"),
     real_parameter("height_damping_ratio", "", 0, 5, 0.8, "of the CoM height"),
     real_parameter("height_acceleration_limit", "g", 0.01, 1, 0.5, "of the CoM height"),

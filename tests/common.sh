@@ -1,0 +1,71 @@
+# Sourced by every test script. GAITD_BUILD and GAITD_SOURCE name the build and the source tree.
+# Gives: a temporary folder $scratch, gaitd and gaitctl on PATH, nothing of the user's environment.
+set -euo pipefail
+
+scratch=$(mktemp -d)
+daemon=
+
+fail() {
+  printf 'FAILED: %s\n' "$*" >&2
+  [[ -f $scratch/gaitd.txt ]] && sed 's/^/  gaitd: /' "$scratch/gaitd.txt" >&2
+  exit 1
+}
+
+clean_up() {
+  [[ -n $daemon ]] && kill -KILL "$daemon" 2>/dev/null
+  rm -rf "$scratch"
+}
+trap clean_up EXIT
+
+export PATH="$GAITD_BUILD/bin:$PATH"
+export HOME=$scratch/home XDG_RUNTIME_DIR=$scratch/run
+unset XDG_STATE_HOME GAITD_PATH
+mkdir -p "$HOME" "$XDG_RUNTIME_DIR"
+
+# expect CODE COMMAND...: runs it, shows what it does and checks its exit code.
+expect() {
+  local code=$1 got=0
+  shift
+  printf '$ %s\n' "$*"
+  "$@" || got=$?
+  ((got == code)) || fail "'$*' ended with exit code $got, expected $code"
+}
+
+# start_daemon ARGUMENTS...: gaitd in the background, ready when it answers.
+start_daemon() {
+  printf '$ gaitd %s &\n' "$*"
+  gaitd "$@" >"$scratch/gaitd.txt" 2>&1 &
+  daemon=$!
+  for _ in {1..100}; do
+    "${client[@]}" status >/dev/null 2>&1 && return
+    kill -0 "$daemon" 2>/dev/null || fail "gaitd ended while starting"
+    sleep 0.1
+  done
+  fail "gaitd does not answer after 10 s"
+}
+
+stop_daemon() {
+  local code=0
+  kill -TERM "$daemon"
+  wait "$daemon" || code=$?
+  daemon=
+  ((code == 0)) || fail "gaitd ended with exit code $code on SIGTERM"
+}
+
+# The client that every helper uses; a script may add --socket.
+client=(gaitctl)
+
+# field NAME: of `gaitctl status`.
+field() { "${client[@]}" status | awk -v name="$1" '$1 == name { $1 = ""; print substr($0, 2) }'; }
+
+# wait_for NAME VALUE SECONDS: until the status says so. A fault ends it at once.
+wait_for() {
+  local value deadline=$((SECONDS + $3))
+  while :; do
+    value=$(field "$1")
+    [[ $value == "$2" ]] && return
+    [[ $(field state) == fault ]] && fail "fault ($(field faults)) while waiting for $1 $2"
+    ((SECONDS < deadline)) || fail "$1 is '$value' after $3 s, expected '$2'"
+    sleep 0.2
+  done
+}
