@@ -72,9 +72,10 @@ done
 stop_daemon
 [[ -s verdict.json && -s flat.csv && -x $HOME/gaitd/bin/gaitd ]] || fail "a command left no file"
 
-# Every link to a file of the repository leads somewhere.
-grep -ohE '\]\([a-zA-Z][^):]*\)' "$GAITD_SOURCE"/*.md | tr -d ']()' | sed 's/#.*//' | sort -u |
+# Every link of a page to a file of the repository leads somewhere.
+for page in "$GAITD_SOURCE"/*.md "$GAITD_SOURCE"/docs/*.md; do
   while read -r link; do
-    [[ -e $GAITD_SOURCE/$link ]] || fail "a page links to $link, which is not there"
-  done
+    [[ -e $(dirname "$page")/$link ]] || fail "$page links to $link, which is not there"
+  done < <(grep -oE '\]\([a-zA-Z.][^):]*\)' "$page" | tr -d ']()' | sed 's/#.*//' | sort -u)
+done
 echo "all ${#lines[@]} lines of README.md work"

@@ -19,11 +19,6 @@ Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
   return Eigen::Translation3d(to_vector(pose.position)) * Eigen::Quaterniond(r.w, r.x, r.y, r.z);
 }
 
-int line_of(const TiXmlElement& parent, const char* tag) {
-  const TiXmlElement* element = parent.FirstChildElement(tag);
-  return element == nullptr ? parent.Row() : element->Row();
-}
-
 class ElementReader {
  public:
   explicit ElementReader(XmlReader* xml) : xml_(*xml) {}
@@ -73,50 +68,55 @@ class ElementReader {
     return name;
   }
 
-  // If anything is wrong with its <inertial>, a link gets plausible figures: one error is enough.
   void read_link(const TiXmlElement& element) {
     UrdfLinkElement link;
     link.line = element.Row();
     link.name = name_of(element, "link");
     const std::string owner = "link " + quoted(link.name);
-    std::string fault;
-    const urdf::LinkConstSharedPtr parsed = parse_link(element, &fault);
-    if (parsed == nullptr) {
-      xml_.add_error(line_of(element, "inertial"), owner + ": " + fault + "; correct it here");
-    }
-    if (parsed == nullptr ||
-        (parsed->inertial != nullptr && !read_inertial(element, *parsed->inertial, owner, &link))) {
-      link.mass = 1;
-      link.inertia.setIdentity();
+    if (const TiXmlElement* inertial = element.FirstChildElement("inertial")) {
+      read_inertial(*inertial, owner, &link);
     }
     elements_.links.push_back(link);
   }
 
-  bool read_inertial(const TiXmlElement& element, const urdf::Inertial& from,
-                     const std::string& owner, UrdfLinkElement* link) {
+  // If anything is wrong with it, the link gets plausible figures: one error is enough.
+  void read_inertial(const TiXmlElement& inertial, const std::string& owner,
+                     UrdfLinkElement* link) {
+    const std::size_t errors = xml_.error_count();
+    const TiXmlElement* mass = inertial.FirstChildElement("mass");
+    const TiXmlElement* inertia = inertial.FirstChildElement("inertia");
+    if (mass == nullptr || inertia == nullptr) {
+      xml_.add_error(inertial.Row(), owner + ": <inertial> has no <" +
+                                         (mass == nullptr ? "mass" : "inertia") +
+                                         ">; add it or drop <inertial>");
+    }
+    const urdf::Inertial from = parse_inertial(inertial, owner, &xml_);
     const Eigen::Isometry3d X_LC = to_isometry(from.origin);
     Eigen::Matrix3d m;
     m << from.ixx, from.ixy, from.ixz, from.ixy, from.iyy, from.iyz, from.ixz, from.iyz, from.izz;
     link->com = X_LC.translation();
     link->mass = from.mass;
     link->inertia = X_LC.linear() * m * X_LC.linear().transpose();
-    const TiXmlElement* inertial = element.FirstChildElement("inertial");
-    const bool mass_ok = from.mass > 0 || (from.mass == 0 && m.isZero(0));
-    if (!mass_ok) {
-      xml_.add_error(line_of(*inertial, "mass"), owner + ": mass is " + to_text(from.mass) +
-                                                     " kg, expected above 0; give the mass of "
-                                                     "the link");
+    if (xml_.error_count() == errors) check_mass(*mass, *inertia, m, owner, link->mass);
+    if (xml_.error_count() == errors) return;
+    link->mass = 1;
+    link->inertia.setIdentity();
+  }
+
+  void check_mass(const TiXmlElement& mass, const TiXmlElement& inertia, const Eigen::Matrix3d& m,
+                  const std::string& owner, double value) {
+    if (value < 0 || (value == 0 && !m.isZero(0))) {
+      xml_.add_error(mass.Row(), owner + ": mass is " + to_text(value) +
+                                     " kg, expected above 0; give the mass of the link");
     }
     // A part on a fixed joint may be a point mass; the body it is merged into is checked again.
     const std::string reason = check_inertia(m, true);
     if (!reason.empty()) {
-      xml_.add_error(line_of(*inertial, "inertia"),
+      xml_.add_error(inertia.Row(),
                      owner + ": " + reason + "; correct <inertia> (about the centre of mass)");
     }
-    return mass_ok && reason.empty();
   }
 
-  // The ends and the kind of a joint are there even if urdfdom refuses it, to go on with the tree.
   void read_joint(const TiXmlElement& element) {
     UrdfJointElement joint;
     joint.line = element.Row();
@@ -124,22 +124,17 @@ class ElementReader {
     const std::string owner = "joint " + quoted(joint.name);
     joint.parent = link_of(element, "parent", owner);
     joint.child = link_of(element, "child", owner);
+    const urdf::Joint from = parse_joint(element, owner, &xml_);
+    joint.X_PJ = to_isometry(from.parent_to_joint_origin_transform);
+
     const std::string type = xml_.text(element, "type", owner);
-    const bool moves = type == "revolute" || type == "continuous" || type == "prismatic";
-    if (moves) {
+    if (type == "revolute" || type == "continuous" || type == "prismatic") {
       joint.kind = type == "prismatic" ? UrdfJointKind::kPrismatic : UrdfJointKind::kRevolute;
-    }
-    std::string fault;
-    const urdf::JointConstSharedPtr parsed = parse_joint(element, &fault);
-    if (!moves && type != "fixed" && !type.empty()) {
+      read_motion(element, from, owner, type == "continuous", &joint);
+    } else if (type != "fixed" && !type.empty()) {
       xml_.add_error(joint.line, owner + ": type is '" + type +
                                      "', expected revolute, continuous, prismatic or fixed; the "
                                      "root of the tree floats by itself");
-    } else if (parsed == nullptr && !type.empty()) {
-      xml_.add_error(joint.line, owner + ": " + fault + "; correct it here");
-    } else if (parsed != nullptr) {
-      joint.X_PJ = to_isometry(parsed->parent_to_joint_origin_transform);
-      if (moves) read_motion(element, *parsed, owner, &joint);
     }
     elements_.joints.push_back(joint);
   }
@@ -152,38 +147,40 @@ class ElementReader {
   }
 
   void read_motion(const TiXmlElement& element, const urdf::Joint& from, const std::string& owner,
-                   UrdfJointElement* joint) {
+                   bool continuous, UrdfJointElement* joint) {
     const Eigen::Vector3d axis = to_vector(from.axis);
     if (axis.norm() > 0) {
       joint->axis = axis.normalized();
     } else {
-      xml_.add_error(line_of(element, "axis"), owner + ": the axis is zero, expected a direction");
+      xml_.add_error(element.FirstChildElement("axis")->Row(),
+                     owner + ": the axis is zero, expected a direction");
     }
     if (from.dynamics != nullptr) joint->damping = from.dynamics->damping;
     if (joint->damping < 0) {
-      xml_.add_error(line_of(element, "dynamics"),
+      xml_.add_error(element.FirstChildElement("dynamics")->Row(),
                      owner + ": damping is " + to_text(joint->damping) + ", expected 0 or above");
     }
-    if (from.mimic != nullptr) {
-      xml_.add_error(line_of(element, "mimic"),
-                     owner +
-                         ": <mimic> is not supported; make the joint fixed, or drop <mimic> if "
-                         "it has a drive of its own");
+    if (const TiXmlElement* mimic = element.FirstChildElement("mimic")) {
+      xml_.add_error(mimic->Row(), owner +
+                                       ": <mimic> is not supported; make the joint fixed, or "
+                                       "drop <mimic> if it has a drive of its own");
     }
-    if (from.limits != nullptr) {
-      read_limit(line_of(element, "limit"), from, owner, joint);
-    } else {
-      xml_.add_error(joint->line, owner + ": has no <limit>; give velocity and effort");
+    const TiXmlElement* limit = element.FirstChildElement("limit");
+    if (limit == nullptr) {
+      xml_.add_error(joint->line, owner + ": has no <limit>; give " +
+                                      (continuous ? "velocity and effort"
+                                                  : "lower, upper, velocity and effort"));
+    } else if (from.limits != nullptr) {
+      read_limit(limit->Row(), *from.limits, owner, continuous, joint);
     }
   }
 
-  void read_limit(int line, const urdf::Joint& from, const std::string& owner,
-                  UrdfJointElement* joint) {
-    const bool continuous = from.type == urdf::Joint::CONTINUOUS;
-    joint->velocity = positive_limit(line, "velocity", from.limits->velocity, owner);
-    joint->effort = positive_limit(line, "effort", from.limits->effort, owner);
-    joint->lower = continuous ? -kContinuousLimit : from.limits->lower;
-    joint->upper = continuous ? kContinuousLimit : from.limits->upper;
+  void read_limit(int line, const urdf::JointLimits& limits, const std::string& owner,
+                  bool continuous, UrdfJointElement* joint) {
+    joint->velocity = positive_limit(line, "velocity", limits.velocity, owner);
+    joint->effort = positive_limit(line, "effort", limits.effort, owner);
+    joint->lower = continuous ? -kContinuousLimit : limits.lower;
+    joint->upper = continuous ? kContinuousLimit : limits.upper;
     if (!(joint->lower < joint->upper)) {
       xml_.add_error(line, owner + ": <limit> is lower " + to_text(joint->lower) + ", upper " +
                                to_text(joint->upper) +

@@ -4,26 +4,26 @@
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <cstring>
+#include <initializer_list>
 #include <mutex>
 
 namespace gaitd::dynamics {
 namespace {
 
-// Takes the faults that urdfdom tells for as long as it lives, one at a time in the process.
-class Faults : public console_bridge::OutputHandler {
+// Takes the first fault that urdfdom tells while it lives. There is one handler in the process.
+class FaultHandler : public console_bridge::OutputHandler {
  public:
-  explicit Faults(std::string* text) : text_(*text), lock_(mutex()) {
+  explicit FaultHandler(std::string* fault) : fault_(*fault), lock_(mutex()) {
     console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
     console_bridge::useOutputHandler(this);
   }
-  ~Faults() override {
+  ~FaultHandler() override {
     console_bridge::restorePreviousOutputHandler();
     console_bridge::setLogLevel(level_);
   }
 
   void log(const std::string& text, console_bridge::LogLevel, const char*, int) override {
-    text_ += (text_.empty() ? "" : "; ") + text;
+    if (fault_.empty()) fault_ = text;
   }
 
  private:
@@ -32,82 +32,79 @@ class Faults : public console_bridge::OutputHandler {
     return instance;
   }
 
-  std::string& text_;
+  std::string& fault_;
   std::lock_guard<std::mutex> lock_;
   console_bridge::LogLevel level_ = console_bridge::getLogLevel();
 };
 
-// urdfdom 3 prints a number that it cannot read as a format string: a '%' there would crash it.
-bool has_percent(const TiXmlElement& element) {
-  for (const TiXmlAttribute* a = element.FirstAttribute(); a != nullptr; a = a->Next()) {
-    if (std::strchr(a->Value(), '%') != nullptr) return true;
-  }
-  for (const TiXmlElement* e = element.FirstChildElement(); e; e = e->NextSiblingElement()) {
-    if (has_percent(*e)) return true;
-  }
-  return false;
-}
-
-void add(const char* tag, const char* attribute, const char* value, TiXmlElement* parent) {
-  TiXmlElement child(tag);
-  child.SetAttribute(attribute, value);
-  parent->InsertEndChild(child);
-}
-
-void drop(const char* tag, TiXmlElement* parent) {
-  while (TiXmlNode* child = parent->FirstChild(tag)) parent->RemoveChild(child);
-}
-
-// urdfdom wants all six figures; products of inertia that are not there are zero.
-void complete_inertia(TiXmlElement* link) {
-  TiXmlElement* inertia =
-      TiXmlHandle(link).FirstChild("inertial").FirstChild("inertia").ToElement();
-  if (inertia == nullptr) return;
-  for (const char* product : {"ixy", "ixz", "iyz"}) {
-    if (inertia->Attribute(product) == nullptr) inertia->SetAttribute(product, "0");
-  }
-}
-
-urdf::ModelInterfaceSharedPtr parse(const TiXmlElement& piece, TiXmlElement* robot,
-                                    std::string* reason) {
-  if (has_percent(piece)) {
-    *reason = "a value holds a '%', expected a name or a number";
+// Null if there is a fault.
+urdf::ModelInterfaceSharedPtr parse(const std::string& text, std::string* fault) {
+  // urdfdom 3 prints a number that it cannot read as a format string, which crashes.
+  if (text.find('%') != std::string::npos) {
+    *fault = "'%' in a number";
     return nullptr;
   }
-  robot->SetAttribute("name", "piece");
-  robot->InsertEndChild(piece);
+  const FaultHandler handler(fault);
+  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
+  if (model == nullptr && fault->empty()) *fault = "refused by urdfdom";
+  return fault->empty() ? model : nullptr;  // urdfdom goes on after some faults
+}
+
+// Text of the element without its children. Products of inertia that are not there are zero, which
+// urdfdom does not know.
+std::string print(TiXmlElement element) {
+  element.Clear();
+  for (const char* product : {"ixy", "ixz", "iyz"}) {
+    if (element.ValueStr() == "inertia" && !element.Attribute(product)) {
+      element.SetAttribute(product, "0");
+    }
+  }
   TiXmlPrinter printer;
-  robot->Accept(&printer);
-  const Faults faults(reason);
-  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(printer.Str());
-  if (model == nullptr && reason->empty()) *reason = "urdfdom refuses it";
-  return reason->empty() ? model : nullptr;  // it goes on after some faults
+  element.Accept(&printer);
+  return printer.Str();
+}
+
+// Of two children with one name urdfdom takes the first: `tail` has those that must be there.
+urdf::ModelInterfaceSharedPtr parse_children(const TiXmlElement& parent,
+                                             std::initializer_list<const char*> tags,
+                                             const std::string& head, const std::string& tail,
+                                             const std::string& owner, XmlReader* xml) {
+  std::string good, fault;
+  urdf::ModelInterfaceSharedPtr model = parse(head + tail, &fault);
+  for (const char* tag : tags) {
+    const TiXmlElement* child = parent.FirstChildElement(tag);
+    if (child == nullptr) continue;
+    const std::string with_child = good + print(*child);
+    fault.clear();
+    if (const auto read = parse(head + with_child + tail, &fault)) {
+      good = with_child;
+      model = read;
+    } else {
+      xml->add_error(child->Row(), owner + ": <" + tag + ">: " + fault + "; correct it");
+    }
+  }
+  return model;
 }
 
 }  // namespace
 
-urdf::LinkConstSharedPtr parse_link(const TiXmlElement& link, std::string* reason) {
-  TiXmlElement robot("robot");
-  TiXmlElement piece(link);
-  piece.SetAttribute("name", link.Attribute("name") ? link.Attribute("name") : "");
-  drop("visual", &piece);
-  drop("collision", &piece);
-  complete_inertia(&piece);
-  const urdf::ModelInterfaceSharedPtr model = parse(piece, &robot, reason);
-  return model == nullptr ? nullptr : model->getRoot();
+urdf::Inertial parse_inertial(const TiXmlElement& inertial, const std::string& owner,
+                              XmlReader* xml) {
+  const auto model = parse_children(
+      inertial, {"origin", "mass", "inertia"}, "<robot name='piece'><link name='this'><inertial>",
+      "<mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>"
+      "</link></robot>",
+      owner, xml);
+  return *model->getRoot()->inertial;
 }
 
-urdf::JointConstSharedPtr parse_joint(const TiXmlElement& joint, std::string* reason) {
-  TiXmlElement robot("robot");
-  TiXmlElement piece(joint);
-  piece.SetAttribute("name", joint.Attribute("name") ? joint.Attribute("name") : "");
-  for (const char* end : {"parent", "child"}) {
-    add("link", "name", end, &robot);
-    drop(end, &piece);
-    add(end, "link", end, &piece);
-  }
-  const urdf::ModelInterfaceSharedPtr model = parse(piece, &robot, reason);
-  return model == nullptr ? nullptr : model->joints_.begin()->second;
+urdf::Joint parse_joint(const TiXmlElement& joint, const std::string& owner, XmlReader* xml) {
+  const auto model =
+      parse_children(joint, {"origin", "axis", "limit", "dynamics"},
+                     "<robot name='piece'><link name='p'/><link name='c'/>"
+                     "<joint name='this' type='continuous'><parent link='p'/><child link='c'/>",
+                     "</joint></robot>", owner, xml);
+  return *model->getJoint("this");
 }
 
 }  // namespace gaitd::dynamics

@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// One link or joint of a robot description, parsed by urdfdom. It stops at the first fault of what
-// it is given and names no line, so each element is given to it alone.
+// urdfdom stops at the first fault of what it is given and names no line. So it gets a link or a
+// joint child by child, and each fault is told with the line of the child.
 #ifndef GAITD_DYNAMICS_SRC_URDFDOM_PIECE_H_
 #define GAITD_DYNAMICS_SRC_URDFDOM_PIECE_H_
 
-#include <tinyxml.h>
 #include <urdf_model/joint.h>
 #include <urdf_model/link.h>
 
 #include <string>
 
+#include "xml_reader.h"
+
 namespace gaitd::dynamics {
 
-// Without what is only looked at or bumped into. Null if urdfdom finds a fault; `reason` is then
-// what it said.
-urdf::LinkConstSharedPtr parse_link(const TiXmlElement& link, std::string* reason);
+// What urdfdom reads in <inertial>. A child that it refuses goes to `xml` and is left out, which
+// makes it that of a ball of 1 kg.
+urdf::Inertial parse_inertial(const TiXmlElement& inertial, const std::string& owner,
+                              XmlReader* xml);
 
-// The same, without the names of the two links.
-urdf::JointConstSharedPtr parse_joint(const TiXmlElement& joint, std::string* reason);
+// The same for origin, axis, limits and dynamics of a <joint> of any type.
+urdf::Joint parse_joint(const TiXmlElement& joint, const std::string& owner, XmlReader* xml);
 
 }  // namespace gaitd::dynamics
 

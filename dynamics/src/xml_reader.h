@@ -19,6 +19,8 @@ class XmlReader {
   XmlReader(std::string source, std::vector<std::string>* errors)
       : source_(std::move(source)), errors_(errors) {}
 
+  std::size_t error_count() const { return errors_->size(); }
+
   // "file:line: <what>"; without a line if it is 0.
   void add_error(int line, const std::string& what);
 

@@ -81,9 +81,9 @@ TEST(UrdfErrors, WrongMass) {
                     {"'b'", "mass [nan]", "not a float"});
   expect_link_error("<inertial><mass value='1e999'/>" + inertia,
                     {"'b'", "mass [1e999]", "not a float"});
-  expect_link_error("<inertial><mass/>" + inertia, {"'b'", "mass element must have value"});
-  expect_link_error("<inertial>" + inertia, {"'b'", "must have a mass element"});
-  expect_link_error("<inertial><mass value='2'/></inertial>", {"'b'", "must have inertia element"});
+  expect_link_error("<inertial><mass/>" + inertia, {"'b'", "<mass>", "must have value"});
+  expect_link_error("<inertial>" + inertia, {"has no <mass>"});
+  expect_link_error("<inertial><mass value='2'/></inertial>", {"has no <inertia>"});
 }
 
 TEST(UrdfErrors, NonPhysicalInertia) {
@@ -94,7 +94,7 @@ TEST(UrdfErrors, NonPhysicalInertia) {
   expect_link_error(inertial("ixx='1' iyy='1' izz='1' ixy='2'"), {"not positive definite"});
   expect_link_error(inertial("ixx='0' iyy='0' izz='0'"), {"'b' with all links", "not positive"});
   expect_link_error(inertial("ixx='1' iyy='1' izz='3'"), {"1, 1, 3", "sum of the two others"});
-  expect_link_error(inertial("ixx='1' iyy='1'"), {"'b'", "missing izz attribute"});
+  expect_link_error(inertial("ixx='1' iyy='1'"), {"'b'", "<inertia>", "missing izz"});
 }
 
 TEST(UrdfErrors, Loops) {
@@ -150,42 +150,54 @@ TEST(UrdfErrors, UnknownLinks) {
 }
 
 TEST(UrdfErrors, Limits) {
-  expect_joint_error("", "revolute", {"'j'", "REVOLUTE", "does not specify limits"});
+  expect_joint_error("", "revolute", {"'j'", "no <limit>", "lower, upper, velocity and effort"});
   expect_joint_error("", "continuous", {"no <limit>", "velocity and effort"});
   expect_joint_error("<limit lower='-1' upper='1' effort='1'/>", "revolute",
-                     {"'j'", "joint limit: no velocity"});
+                     {"'j'", "<limit>", "no velocity"});
   expect_joint_error("<limit lower='-1' upper='1' effort='1' velocity='0'/>", "revolute",
                      {"velocity limit is 0", "above 0"});
   expect_joint_error("<limit lower='-1' upper='1' effort='0' velocity='1'/>", "prismatic",
                      {"effort limit is 0", "above 0"});
   expect_joint_error("<limit effort='1' velocity='1'/>", "revolute", {"lower < upper"});
   expect_joint_error("<limit lower='x' upper='1' effort='1' velocity='1'/>", "revolute",
-                     {"'j'", "lower value (x)", "not a valid float"});
+                     {"'j'", "<limit>", "lower value (x)"});
 }
 
 TEST(UrdfErrors, JointFigures) {
   const std::string limit = kLimit;
   expect_joint_error(limit + "<axis xyz='0 0 0'/>", "revolute", {"axis is zero"});
   expect_joint_error(limit + "<axis xyz='0 1'/>", "revolute",
-                     {"'j'", "axis", "[0 1]", "3 expected"});
-  expect_joint_error(limit + "<axis xyz='1-2-3'/>", "revolute",
-                     {"'j'", "axis", "[1-2-3]", "Unable to parse"});
+                     {"'j'", "<axis>", "[0 1]", "3 expected"});
+  expect_joint_error(limit + "<axis xyz='1-2-3'/>", "revolute", {"'j'", "<axis>", "[1-2-3]"});
   expect_joint_error(limit + "<axis xyz='0 1 0 0'/>", "revolute",
-                     {"'j'", "axis", "[0 1 0 0]", "3 expected"});
-  expect_joint_error(limit + "<origin xyz='0,1,2'/>", "revolute",
-                     {"'j'", "origin", "[0,1,2]", "Unable to parse"});
+                     {"'j'", "<axis>", "[0 1 0 0]", "3 expected"});
+  expect_joint_error(limit + "<origin xyz='0,1,2'/>", "revolute", {"'j'", "<origin>", "[0,1,2]"});
   expect_joint_error(limit + "<dynamics damping='-1'/>", "revolute", {"damping", "0 or above"});
   expect_joint_error(limit + "<mimic joint='k'/>", "revolute", {"<mimic>", "fixed"});
 }
 
-// urdfdom uses some of these as format strings.
+// urdfdom would use some of these as format strings.
 TEST(UrdfErrors, PercentSigns) {
   const std::string limit = kLimit;
-  expect_joint_error(limit + "<origin xyz='%s%s%s%s%s%s 0 0'/>", "revolute", {"'j'", "'%'"});
-  expect_joint_error(limit + "<axis xyz='%n 0 0'/>", "revolute", {"'j'", "'%'"});
-  expect_joint_error(limit + "<dynamics damping='&#37;n'/>", "revolute", {"'j'", "'%'"});
+  expect_joint_error(limit + "<origin xyz='%s%s%s%s%s%s 0 0'/>", "revolute", {"<origin>", "'%'"});
+  expect_joint_error(limit + "<axis xyz='%n 0 0'/>", "revolute", {"<axis>", "'%'"});
+  expect_joint_error(limit + "<dynamics damping='&#37;n'/>", "revolute", {"<dynamics>", "'%'"});
   expect_link_error("<inertial><mass value='%n%s'/><inertia ixx='1' iyy='1' izz='1'/></inertial>",
-                    {"'b'", "'%'"});
+                    {"<mass>", "'%'"});
+  EXPECT_TRUE(errors_of(link("%s%n")).empty());
+}
+
+TEST(UrdfErrors, EachInItsLine) {
+  const std::vector<std::string> errors = errors_of(
+      "<link name='a'>\n<inertial>\n<origin xyz='0'/>\n<mass value='x'/>\n<inertia ixx='y'/>\n"
+      "</inertial>\n</link>\n" +
+      link("b") +
+      "<joint name='j' type='revolute'>\n<parent link='a'/>\n<child link='b'/>\n"
+      "<origin xyz='0,1,2'/>\n<axis xyz='0 0 0'/>\n<limit lower='z'/>\n<dynamics damping='-1'/>\n"
+      "</joint>\n");
+  std::string places;
+  for (const std::string& error : errors) places += error.substr(9, error.find(": ") - 9) + " ";
+  EXPECT_EQ(places, "4 5 6 13 15 14 16 ");
 }
 
 TEST(UrdfErrors, JointTypes) {
@@ -212,8 +224,8 @@ TEST(UrdfErrors, AllAtOnce) {
                 joint("j", "a", "b", "") + joint("k", "b", "c", kLimit, "planar"));
   std::string text;
   for (const std::string& error : errors) text += error + "\n";
-  for (const char* part : {"'a' moves but has no mass", "must have inertia element",
-                           "does not specify limits", "'planar'"}) {
+  for (const char* part :
+       {"'a' moves but has no mass", "has no <inertia>", "has no <limit>", "'planar'"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " not in:\n" << text;
   }
 }

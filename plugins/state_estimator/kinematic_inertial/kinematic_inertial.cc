@@ -9,10 +9,12 @@ namespace {
 
 using sdk::view;
 
-// The first attitude comes from one noisy sample: it is levelled this many times faster at first,
-// fading with this time constant (s).
-constexpr double kStartBoost = 10.0;
-constexpr double kStartTime = 0.4;
+// The first attitude comes from one noisy sample. For this long (s) the mean over all samples so far,
+// carried along by the gyroscope, takes its place: what the robot does meanwhile averages out.
+constexpr double kAveragingTime = 0.2;
+
+// Anchors are at their best while standing: the attitude is levelled this many times faster then.
+constexpr double kStandingFactor = 3.0;
 
 double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * hertz * dt); }
 
@@ -59,7 +61,7 @@ void KinematicInertial::get_state(GaitdStateEstimatorState& s) const {
 void KinematicInertial::set_state(const GaitdStateEstimatorState& s) {
   reset();
   initialised_ = s.initialised != 0;
-  time_since_start_ = 100.0 * kStartTime;
+  time_since_start_ = 2.0 * kAveragingTime;
   position_ = view(s.pelvis_position);
   orientation_ = sdk::quaternion(s.pelvis_orientation);
   velocity_W_ = view(s.pelvis_velocity);
@@ -132,8 +134,14 @@ void KinematicInertial::initialise(const GaitdStateEstimatorInput& in,
     const Eigen::Quaterniond mount = sdk::quaternion(model_.imus[index].orientation);
     orientation_ = level(mount * view(sensor->specific_force));
   }
+  place(in, joints);
+  initialised_ = true;
+}
+
+// The heading and the place come from the operator: the middle of the feet.
+void KinematicInertial::place(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints) {
+  velocity_W_.setZero();
   update_kinematics(joints);
-  // The heading and the place come from the operator: the middle of the feet.
   const double left = sdk::yaw_of(sole_orientation(GAITD_LEFT));
   const double right = sdk::yaw_of(sole_orientation(GAITD_RIGHT));
   const double yaw = left + 0.5 * std::remainder(right - left, 2.0 * M_PI);
@@ -144,7 +152,6 @@ void KinematicInertial::initialise(const GaitdStateEstimatorInput& in,
              sole_point(GAITD_RIGHT, Eigen::Vector3d::Zero()));
   position_ += view(in.start.position) - middle;
   update_kinematics(joints);
-  initialised_ = true;
 }
 
 void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in, double dt) {
@@ -164,11 +171,19 @@ void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in, doub
   last_rate_ = rate_;
 
   orientation_ = (orientation_ * sdk::exp_so3(rate_ * dt)).normalized();
-  if (sensor->has_orientation == 0) return;
-  const Eigen::Quaterniond measured = sdk::quaternion(sensor->orientation) * mount.conjugate();
-  Eigen::Vector3d tilt = sdk::log_so3(measured * orientation_.conjugate());
+  Eigen::Vector3d tilt;
+  double share = p_[P::kTiltRate] * dt;
+  if (sensor->has_orientation != 0) {
+    const Eigen::Quaterniond measured = sdk::quaternion(sensor->orientation) * mount.conjugate();
+    tilt = sdk::log_so3(measured * orientation_.conjugate());
+  } else if (time_since_start_ < kAveragingTime) {
+    tilt = (orientation_ * specific_force_).cross(Eigen::Vector3d::UnitZ()) / model_.gravity;
+    share = dt / (time_since_start_ + dt);
+  } else {
+    return;  // level_attitude() does it
+  }
   tilt.z() = 0.0;
-  orientation_ = (sdk::exp_so3(p_[P::kTiltRate] * dt * tilt) * orientation_).normalized();
+  orientation_ = (sdk::exp_so3(std::min(1.0, share) * tilt) * orientation_).normalized();
 }
 
 void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
@@ -291,19 +306,19 @@ void KinematicInertial::update_position(const GaitdStateEstimatorInput& in, doub
   accelerometer_bias_ -= pole * pole * pole * dt * (orientation_.conjugate() * correction);
   const double limit = p_[P::kBiasLimit];
   accelerometer_bias_ = accelerometer_bias_.cwiseMax(-limit).cwiseMin(limit);
-  level_attitude(dt);
+  level_attitude(dt, in.gait->phase == GAITD_PHASE_STAND);
 }
 
-void KinematicInertial::level_attitude(double dt) {
+void KinematicInertial::level_attitude(double dt, bool standing) {
+  const double faster = standing ? kStandingFactor : 1.0;
   // A tilt error of `tilt` turns gravity into an acceleration error of g (tilt_y, -tilt_x).
   const Eigen::Vector3d error = orientation_ * accelerometer_bias_;
   const Eigen::Vector3d tilt(-error.y() / model_.gravity, error.x() / model_.gravity, 0.0);
-  const double boost = 1.0 + kStartBoost * std::exp(-time_since_start_ / kStartTime);
-  const double share = std::min(1.0, boost * p_[P::kTiltRate] * dt);
+  const double share = std::min(1.0, faster * p_[P::kTiltRate] * dt);
   accelerometer_bias_ -=
       share * (orientation_.conjugate() * Eigen::Vector3d(error.x(), error.y(), 0.0));
   orientation_ = (sdk::exp_so3(-share * tilt) * orientation_).normalized();
-  gyro_bias_ += p_[P::kTiltBiasRate] * dt * (orientation_.conjugate() * tilt);
+  gyro_bias_ += faster * faster * p_[P::kTiltBiasRate] * dt * (orientation_.conjugate() * tilt);
 }
 
 void KinematicInertial::write(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
@@ -336,10 +351,14 @@ GaitdStatus KinematicInertial::process(const GaitdStateEstimatorInput& in, Gaitd
   update_attitude(in, dt);
   update_kinematics(out);
   read_feet(in, out);
-  update_trust(in, dt);
-  update_anchors(in, dt);
-  update_kinematics(out);
-  update_position(in, dt);
+  if (time_since_start_ < kAveragingTime) {
+    place(in, out);
+  } else {
+    update_trust(in, dt);
+    update_anchors(in, dt);
+    update_kinematics(out);
+    update_position(in, dt);
+  }
   write(in, out);
   time_since_start_ += dt;
   return GAITD_OK;

@@ -54,7 +54,7 @@ class KinematicInertial {
                           "the same for all other joints, which follow their commands closely"),
       sdk::real_parameter("position_rate", "1/s", 0.5, 200, 12,
                           "pole of the observer of position, velocity and bias"),
-      sdk::real_parameter("tilt_rate", "1/s", 0, 10, 0.5, "correction of the tilt by gravity"),
+      sdk::real_parameter("tilt_rate", "1/s", 0, 10, 0.5, "levelling in a walk; three times faster when standing"),
       sdk::real_parameter("tilt_bias_rate", "1/s^2", 0, 10, 0.05,
                           "gyroscope bias from the same"),
       sdk::real_parameter("anchor_rate", "1/s", 0, 50, 2, "correction of the heading by feet at rest"),
@@ -88,12 +88,13 @@ class KinematicInertial {
   const GaitdImuSensor* imu(const GaitdSensors& sensors, int& index) const;
   void read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
+  void place(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
   void update_attitude(const GaitdStateEstimatorInput& in, double dt);
   void read_feet(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void update_trust(const GaitdStateEstimatorInput& in, double dt);
   void update_anchors(const GaitdStateEstimatorInput& in, double dt);
   void update_position(const GaitdStateEstimatorInput& in, double dt);
-  void level_attitude(double dt);
+  void level_attitude(double dt, bool standing);
   void write(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void update_kinematics(const GaitdRobotState& joints);
   Eigen::Quaterniond sole_orientation(int side) const;
