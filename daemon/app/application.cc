@@ -268,7 +268,8 @@ nlohmann::json Application::status() const {
   s["version"] = GAITD_VERSION;
   s["scenario"] = scenario_ ? nlohmann::json(scenario_->name) : nlohmann::json(nullptr);
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
-    s["layers"].push_back({{"layer", layer_name(layer)}, {"variant", layer_variants_[layer]}});
+    s["layers"][layer]["layer"] = layer_name(layer);
+    s["layers"][layer]["variant"] = layer_variants_[layer];
   }
   const Telemetry::LogStatus log = telemetry_->log_status();
   s["log"] = {{"file", log_file_},

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/app/metadata.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "daemon/control/tick_data.h"
 
@@ -9,65 +13,95 @@ namespace gaitd::daemon {
 
 using nlohmann::json;
 
-void add_robot_metadata(const GaitdModel& model, LogMetadata* metadata) {
+void add_robot_metadata(const GaitdModel &model, LogMetadata *metadata) {
   json joints = json::array();
   for (int i = 0; i < model.joint_count; ++i) {
-    joints.push_back(
-        {{"name", model.joints[i].name}, {"effort_limit", model.joints[i].effort_limit}});
+    joints.push_back({{"name", model.joints[i].name},
+                      {"effort_limit", model.joints[i].effort_limit}});
   }
   json legs;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    const GaitdLeg& leg = model.legs[side];
+    const GaitdLeg &leg = model.legs[side];
     json names = json::array();
-    for (int i = 0; i < leg.joint_count; ++i) names.push_back(model.joints[leg.joints[i]].name);
-    legs[side == GAITD_LEFT ? "left" : "right"] = {{"knee", model.joints[leg.knee].name},
-                                                   {"knee_bend_sign", leg.knee_bend_sign},
-                                                   {"joints", names}};
+    for (int i = 0; i < leg.joint_count; ++i)
+      names.push_back(model.joints[leg.joints[i]].name);
+    legs[side == GAITD_LEFT ? "left" : "right"] = {
+        {"knee", model.joints[leg.knee].name},
+        {"knee_bend_sign", leg.knee_bend_sign},
+        {"joints", names}};
   }
   json faults;
-  for (std::size_t i = 0; i < kFaultNames.size(); ++i) faults[kFaultNames[i]] = i;
+  for (std::size_t i = 0; i < kFaultNames.size(); ++i)
+    faults[kFaultNames[i]] = i;
   (*metadata)["joints"] = joints.dump();
   (*metadata)["legs"] = legs.dump();
   (*metadata)["fault_bits"] = faults.dump();
 }
 
-json status_of(const Telemetry& telemetry) {
+namespace {
+
+// A signal as people read it; null if it is not there or not finite.
+json signal_value(const SignalTable &table, const std::vector<double> &values,
+                  std::string_view name) {
+  for (std::size_t i = 0; i < table.size() && i < values.size(); ++i) {
+    const SignalDescription &signal = table[i];
+    if (signal.name != name || !std::isfinite(values[i]))
+      continue;
+    switch (signal.kind) {
+    case SignalDescription::Kind::kReal:
+      return values[i];
+    case SignalDescription::Kind::kInteger:
+      return static_cast<std::int64_t>(values[i]);
+    case SignalDescription::Kind::kBoolean:
+      return values[i] != 0.0;
+    case SignalDescription::Kind::kEnumeration:
+      const auto index = static_cast<std::size_t>(std::max(0.0, values[i]));
+      return index < signal.words.size() ? json(signal.words[index]) : json();
+    }
+  }
+  return nullptr;
+}
+
+} // namespace
+
+json status_of(const Telemetry &telemetry) {
   std::vector<double> values;
   json status;
-  if (!telemetry.latest(values)) {
-    status["tick"] = nullptr;
-    return status;
+  const bool ticked = telemetry.latest(values);
+  if (!ticked)
+    values.clear();
+  const auto get = [&](const std::string &name) {
+    return signal_value(telemetry.table(), values, name);
+  };
+  for (const char *name : {"time", "tick"})
+    status[name] = get(name);
+  status["state"] = get("safety/state");
+  for (const char *name : {"mode", "phase", "support", "step_index",
+                           "footsteps_ahead", "paused"}) {
+    status[name] = get(std::string("gait/") + name);
   }
-  const SignalTable& table = telemetry.table();
-  for (std::size_t i = 0; i < table.size() && i < values.size(); ++i) {
-    const SignalDescription& signal = table[i];
-    if (signal.name.starts_with("truth/") || signal.name.starts_with("joint/")) continue;
-    json value = nullptr;
-    const auto index = static_cast<std::size_t>(std::max(0.0, values[i]));
-    switch (signal.kind) {
-      case SignalDescription::Kind::kReal:
-        if (std::isfinite(values[i])) value = values[i];
-        break;
-      case SignalDescription::Kind::kInteger:
-        value = static_cast<std::int64_t>(values[i]);
-        break;
-      case SignalDescription::Kind::kBoolean:
-        value = values[i] != 0.0;
-        break;
-      case SignalDescription::Kind::kEnumeration:
-        if (index < signal.words.size()) value = signal.words[index];
-        break;
-    }
-    // A name may be a prefix of another one: "icp/x" and "icp/desired/x" nest, nothing else does.
-    status[json::json_pointer("/" + signal.name)] = value;
+  const auto pose = [&](const std::string &frame) {
+    json axes;
+    for (const char *axis : {"x", "y", "z", "yaw"})
+      axes[axis] = get(frame + "/" + axis);
+    return axes;
+  };
+  status["pelvis"] = pose("pelvis");
+  status["feet"] = {{"left", pose("foot/left")}, {"right", pose("foot/right")}};
+  status["faults"] = json::array();
+  const json bits = get("safety/faults");
+  for (std::size_t i = 0; bits.is_number() && i < kFaultNames.size(); ++i) {
+    if ((bits.get<std::int64_t>() >> i & 1) != 0)
+      status["faults"].push_back(kFaultNames[i]);
   }
-  json faults = json::array();
-  const auto bits = status.value(json::json_pointer("/safety/faults"), std::int64_t{0});
-  for (std::size_t i = 0; i < kFaultNames.size(); ++i) {
-    if ((bits >> i & 1) != 0) faults.push_back(kFaultNames[i]);
+  status["tick_us"] = get("tick/total_us");
+  constexpr const char *kLayerTimes[] = {"estimator_us", "planner_us",
+                                         "adjuster_us", "toe_off_us", "wbc_us"};
+  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
+    status["layers"].push_back(
+        {{"time_us", get(std::string("tick/") + kLayerTimes[layer])}});
   }
-  status["safety"]["faults"] = faults;
   return status;
 }
 
-}  // namespace gaitd::daemon
+} // namespace gaitd::daemon

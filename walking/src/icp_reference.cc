@@ -18,6 +18,8 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
   auto delta = view(state_.offset);
   auto start = view(state_.start_ecmp);
   const double omega = gait.omega;
+  // The first reference is where the robot rests: the CoM, which is far less noisy than the ICP.
+  const Eigen::Vector2d at_rest = view(robot.com).head<2>();
 
   trajectory_.build(model_, gait, offsets);
   const bool from_standing = gait.phase == GAITD_PHASE_TRANSFER && gait.trailing_side == GAITD_BOTH;
@@ -25,8 +27,7 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
     // A transfer that has just begun, or one that another variant began, is fitted once.
     const bool begun = gait.phase != state_.phase || gait.time_in_phase < 0.5 * dt;
     if (begun || state_.start_ecmp_valid == 0) {
-      trajectory_.fit_start(first ? Eigen::Vector2d(view(robot.icp)) : Eigen::Vector2d(icp),
-                            fit_limit);
+      trajectory_.fit_start(first ? at_rest : Eigen::Vector2d(icp), fit_limit);
       start = trajectory_.start();
       state_.start_ecmp_valid = 1;
     } else {
@@ -45,14 +46,16 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
   }
   if (changed) {
     // state_.icp already holds the prediction for this tick.
-    delta = (first ? Eigen::Vector2d(view(robot.icp)) : Eigen::Vector2d(icp)) - s.icp;
-  } else {
+    delta = (first ? at_rest : Eigen::Vector2d(icp)) - s.icp;
+  } else if (gait.phase != GAITD_PHASE_STAND) {
+    // Who stands has no reason to shift the weight.
     delta *= std::max(0.0, 1.0 - decay * dt);
   }
 
   plan.size = sizeof(plan);
   view(plan.icp) = s.icp + delta;
-  view(plan.ecmp) = s.ecmp + (1.0 + decay / omega) * delta;
+  const double leaving = gait.phase == GAITD_PHASE_STAND ? 0.0 : decay;
+  view(plan.ecmp) = s.ecmp + (1.0 + leaving / omega) * delta;
   view(plan.icp_velocity) = omega * (view(plan.icp) - view(plan.ecmp));
   view(plan.icp_end) = s.icp_end;
   view(plan.offset) = delta;
