@@ -48,7 +48,7 @@ class KinematicInertial {
       sdk::real_parameter("contact_on", "weight", 0, 1, 0.05, "normal force of a contact"),
       sdk::real_parameter("contact_off", "weight", 0, 1, 0.03, "normal force of no contact"),
       sdk::real_parameter("force_filter", "Hz", 1, 500, 80, "low-pass of the normal force"),
-      sdk::real_parameter("leg_pole", "1/s", 0, 2000, 0,
+      sdk::real_parameter("leg_pole", "1/s", 0, 2000, 300,
                           "observer of the rates of leg joints; 0: the rates of the sensors"),
       sdk::real_parameter("upper_body_pole", "1/s", 0, 2000, 60,
                           "the same for all other joints, which follow their commands closely"),

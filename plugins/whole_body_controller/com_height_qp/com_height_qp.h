@@ -23,7 +23,7 @@ class ComHeightQp {
     kCount
   };
   static constexpr std::array<GaitdParameter, 8> kParameters = {
-      sdk::real_parameter("privileged_scale", "", 0, 10, 0.02,
+      sdk::real_parameter("privileged_scale", "", 0, 10, 0.1,
                           "of the privileged weights; small: it must not disturb the tasks"),
       sdk::real_parameter("joint_rate_gain", "1/s", 1, 500, 30,
                           "allowed joint rate per distance to a position limit"),
