@@ -15,6 +15,7 @@ using sdk::view;
 constexpr double kHeightRate = 8.0;  // 1/s, of the reference filter of the CoM height
 constexpr double kTouchdownTime = 0.05;  // s, in which the touchdown damping fades
 constexpr double kHeelStrikeTime = 0.1;  // s after touchdown in which the drives damp
+constexpr double kLevelRate = 1.0;   // 1/s, with which a walk levels the pelvis
 constexpr double kYawRate = 6.0;     // 1/s, of the reference filter of the heading
 constexpr std::uint32_t kAngularRows = 0b000111;
 constexpr std::uint32_t kLinearRows = 0b111000;
@@ -68,7 +69,9 @@ void ObjectiveBuilder::reset(const GaitdRobotState& robot, const GaitdGaitState&
   }
   swing_step_ = -1;
   height_.reset(robot.com[2]);
-  yaw_.reset(sdk::yaw_of(sdk::quaternion(robot.pelvis_orientation)));
+  const Eigen::Quaterniond pelvis = sdk::quaternion(robot.pelvis_orientation);
+  yaw_.reset(sdk::yaw_of(pelvis));
+  tilt_ = sdk::log_so3(sdk::from_yaw(-yaw_.value()) * pelvis);
 }
 
 void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
@@ -217,7 +220,8 @@ void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot
   // Unwrapped, so that the filter never turns the long way round.
   const double target = heading_target(gait);
   yaw_.update(dt, yaw_.value() + std::remainder(target - yaw_.value(), 2.0 * M_PI), kYawRate);
-  const Eigen::Quaterniond goal = sdk::from_yaw(yaw_.value());
+  if (gait.phase != GAITD_PHASE_STAND) tilt_ *= std::max(0.0, 1.0 - kLevelRate * dt);
+  const Eigen::Quaterniond goal = sdk::from_yaw(yaw_.value()) * sdk::exp_so3(tilt_);
   const Eigen::Vector3d rate(0.0, 0.0, yaw_.velocity());
   add_orientation_task(0, goal, rate, parameters_[Objective::kPelvisStiffness],
                        parameters_[Objective::kPelvisDampingRatio],

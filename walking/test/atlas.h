@@ -34,20 +34,19 @@ inline void fill_kinematics(const GaitdModel& model, double omega, GaitdRobotSta
                     sdk::head(robot.joint_velocity, model.joint_count));
   sdk::view(robot.com) = kinematics.com();
   sdk::view(robot.com_velocity) = kinematics.com_velocity();
-  sdk::view(robot.icp) =
-      kinematics.com().head<2>() + kinematics.com_velocity().head<2>() / omega;
+  sdk::view(robot.icp) = kinematics.com().head<2>() + kinematics.com_velocity().head<2>() / omega;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdFoot& foot = model.feet[side];
     const Eigen::Vector3d origin = sdk::view(foot.sole.origin);
     sdk::view(robot.feet[side].position) = kinematics.frame_position(foot.body, origin);
-    sdk::store(Eigen::Quaterniond(kinematics.R_WB(foot.body)) *
-                   sdk::quaternion(foot.sole.orientation),
-               robot.feet[side].orientation);
+    sdk::store(
+        Eigen::Quaterniond(kinematics.R_WB(foot.body)) * sdk::quaternion(foot.sole.orientation),
+        robot.feet[side].orientation);
     sdk::view(robot.feet[side].twist) = kinematics.frame_velocity(foot.body, origin);
   }
 }
 
-// At rest in the nominal posture, soles on z = 0, half the weight on each foot.
+// At rest in the nominal posture, soles on z = 0 beside the origin, half the weight on each foot.
 inline GaitdRobotState standing_state(const GaitdModel& model, double omega = 3.0) {
   GaitdRobotState robot{};
   robot.size = sizeof(robot);
@@ -58,6 +57,9 @@ inline GaitdRobotState standing_state(const GaitdModel& model, double omega = 3.
   for (int i = 0; i < model.joint_count; ++i) {
     robot.joint_position[i] = model.nominal_position[i];
   }
+  fill_kinematics(model, omega, robot);
+  robot.pelvis_position[0] -= 0.5 * (robot.feet[0].position[0] + robot.feet[1].position[0]);
+  robot.pelvis_position[2] -= robot.feet[0].position[2];
   fill_kinematics(model, omega, robot);
   for (GaitdFootState& foot : robot.feet) {
     foot.contact = GAITD_CONTACT_FULL;

@@ -46,8 +46,8 @@ class CommandStorm {
       case 8:
         return count(uniform(0, 1) < 0.5 ? m.stop() : m.abort());
       case 9:
-        return count(m.set_mode(uniform(0, 1) < 0.5 ? GAITD_MODE_WALK_BENT
-                                                    : GAITD_MODE_WALK_STRAIGHT));
+        return count(
+            m.set_mode(uniform(0, 1) < 0.5 ? GAITD_MODE_WALK_BENT : GAITD_MODE_WALK_STRAIGHT));
       case 10:
         walk.adjustment.active = 1;
         walk.adjustment.shift[0] = uniform(-0.08, 0.08);
@@ -83,8 +83,7 @@ class CommandStorm {
     const int number = 1 + static_cast<int>(uniform(0, 3));
     GaitdFootstep steps[4] = {};
     for (int i = 0; i < number; ++i) {
-      const double yaw =
-          sdk::yaw_of(sdk::quaternion(stance.orientation)) + uniform(-0.2, 0.2);
+      const double yaw = sdk::yaw_of(sdk::quaternion(stance.orientation)) + uniform(-0.2, 0.2);
       const Eigen::Vector3d at = sdk::transform(
           stance, {uniform(-0.2, 0.4), walking::side_sign(side) * uniform(0.17, 0.4), 0.0});
       steps[i] = footstep(side, at.x(), at.y(), at.z(), yaw);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The gait machine in a loop with a robot that does what the plan says: feet stand where they should,
-// the swing foot meets the ground when `landing_delay` says, the ICP is where the plan has it.
+// The gait machine in a loop with a robot that does what the plan says: feet stand where they
+// should, the swing foot meets the ground when `landing_delay` says, the ICP is where the plan has
+// it.
 #pragma once
 
 #include <functional>
@@ -51,8 +52,8 @@ class SyntheticWalk {
     return run_until([this] { return gait().phase == GAITD_PHASE_STAND; }, limit);
   }
   bool run_until_phase(int phase, int step, double limit = 60.0) {
-    return run_until(
-        [=, this] { return gait().phase == phase && gait().step_index == step; }, limit);
+    return run_until([=, this] { return gait().phase == phase && gait().step_index == step; },
+                     limit);
   }
   void run_for(double seconds) {
     const int last = ticks + static_cast<int>(seconds / dt + 0.5);

@@ -37,16 +37,25 @@ void FixedSteps::update_kappa(const GaitdStepAdjusterInput& in) {
 Eigen::Vector2d FixedSteps::feedback(const GaitdStepAdjusterInput& in) {
   const Eigen::Vector2d error = view(in.robot->icp) - view(in.plan->icp);
   const double omega = in.gait->omega;
+  auto integral = view(state_.integral);
+  const double step = p_[P::kIntegralStanding] * in.time.period;
   if (in.gait->phase == GAITD_PHASE_STAND) {
-    return (1.0 + p_[P::kGainStanding] / omega) * error;
+    // A tilt that is not known (bias of the accelerometer) pushes like a constant force: without
+    // the integral the robot would lean against it.
+    const Eigen::Vector2d proportional = (1.0 + p_[P::kGainStanding] / omega) * error;
+    integral += step * proportional;
+    const double limit = p_[P::kIntegralLimit];
+    if (integral.norm() > limit) integral *= limit / integral.norm();
+    return proportional + integral;
   }
+  integral *= std::max(0.0, 1.0 - step);
   const Eigen::Vector2d velocity = view(in.plan->icp_velocity);
   auto direction = view(state_.direction);
   if (velocity.norm() >= p_[P::kDirectionSpeed]) direction = velocity.normalized();
   const double along = direction.dot(error);
   const Eigen::Vector2d across = error - along * direction;
   return (1.0 + p_[P::kGainParallel] / omega) * along * direction +
-         (1.0 + p_[P::kGainOrthogonal] / omega) * across;
+         (1.0 + p_[P::kGainOrthogonal] / omega) * across + integral;
 }
 
 GaitdStatus FixedSteps::process(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out) {

@@ -15,6 +15,8 @@ class FixedSteps {
     kGainParallel,
     kGainOrthogonal,
     kGainStanding,
+    kIntegralStanding,
+    kIntegralLimit,
     kDirectionSpeed,
     kMargin,
     kExcursion,
@@ -23,10 +25,13 @@ class FixedSteps {
     kKappaFilter,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 9> kParameters = {
+  static constexpr std::array<GaitdParameter, 11> kParameters = {
       sdk::real_parameter("gain_parallel", "1/s", 0, 30, 4, "ICP feedback along its motion"),
       sdk::real_parameter("gain_orthogonal", "1/s", 0, 30, 3, "ICP feedback across its motion"),
       sdk::real_parameter("gain_standing", "1/s", 0, 30, 3, "ICP feedback when standing"),
+      sdk::real_parameter("integral_standing", "1/s", 0, 10, 0.5,
+                          "integral feedback when standing; fades as fast in a walk"),
+      sdk::real_parameter("integral_limit", "m", 0, 0.1, 0.03, "of the CMP by integral feedback"),
       sdk::real_parameter("direction_speed", "m/s", 0, 1, 0.05,
                           "slower references keep the last direction"),
       sdk::real_parameter("margin", "m", 0, 0.1, 0.01, "of the CMP to the edge of the polygon"),

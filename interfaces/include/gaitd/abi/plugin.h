@@ -194,6 +194,7 @@ typedef struct GaitdStepAdjusterState {
   double time_shift;
   double kappa;
   double direction[2];
+  double integral[2]; /* m, of the feedback when standing */
 } GaitdStepAdjusterState;
 
 typedef struct GaitdToeOffState {

@@ -84,6 +84,7 @@ class ObjectiveBuilder {
   int swing_revision_ = -1;  // plan revision it was made for
   ReferenceFilter height_;
   ReferenceFilter yaw_;
+  Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // rad, held while standing, level in a walk
   std::array<double, GAITD_MAX_FEET> time_in_contact_{};
   std::array<PerJoint, static_cast<int>(Impedance::kCount)> stiffness_{};
   std::array<PerJoint, static_cast<int>(Impedance::kCount)> damping_{};

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/walking/leg_configuration.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "walking/test/command_storm.h"
+#include "walking/test/synthetic_walk.h"
+
+namespace gaitd::walking {
+namespace {
+
+using testing::CommandStorm;
+using testing::SyntheticWalk;
+
+const LegParameters& parameters() {
+  static const LegParameters p(kLegParameters);
+  return p;
+}
+
+// Both legs of a walk. A knee follows its reference at a bounded rate, as a leg would.
+class LegsOfAWalk : public SyntheticWalk {
+ public:
+  explicit LegsOfAWalk(int mode) {
+    EXPECT_FALSE(machine.set_mode(mode).refused());
+    tick();
+    for (int side : {GAITD_LEFT, GAITD_RIGHT}) legs[side].reset(knee[side]);
+    on_update = [this] { update(); };
+  }
+  void update() {
+    for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
+      const auto& r = legs[side].update(dt, side, knee[side], gait(), parameters());
+      if (states[side].empty() || states[side].back() != r.state) states[side].push_back(r.state);
+      if (check) check(side, r);
+      const double step = 6.0 * dt;
+      knee[side] += std::clamp(r.knee - knee[side], -step, step);
+    }
+  }
+  LegConfiguration legs[2];
+  double knee[2] = {0.5, 0.5};
+  std::vector<LegState> states[2];
+  std::function<void(int, const LegConfiguration::Reference&)> check;
+};
+
+TEST(LegConfiguration, GoesThroughTheStatesOfAStraightLegInOrder) {
+  LegsOfAWalk w(GAITD_MODE_WALK_STRAIGHT);
+  ASSERT_FALSE(w.machine.walk({.steps = 6, .length = 0.3, .first_side = GAITD_LEFT}).refused());
+  w.run_for(0.1);
+  ASSERT_TRUE(w.run_until_stand());
+  w.run_for(1.0);
+  using enum LegState;
+  // Standing, then each leg: swing, touchdown, straight support, collapse while it trails.
+  const std::vector<LegState> cycle = {kBent, kExtend, kStraighten, kStraight, kCollapsed};
+  for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
+    const std::vector<LegState>& s = w.states[side];
+    ASSERT_GT(s.size(), 10u);
+    EXPECT_EQ(s.back(), kStraight);
+    // From the first swing on, the next state is always the next of the cycle.
+    const auto first = std::find(s.begin(), s.end(), kBent);
+    int at = 0;
+    for (auto i = first; i != s.end(); ++i, ++at) {
+      // Short supports may collapse before the ramp is done; who stands at the end straightens.
+      if (*i == kCollapsed && cycle[at % 5] == kStraight) ++at;
+      if (*i == kStraighten && s.end() - i == 2) break;
+      ASSERT_EQ(*i, cycle[at % 5]) << "side " << side << " entry " << at;
+    }
+  }
+}
+
+TEST(LegConfiguration, BendsForLiftOffAndReachesForTouchdown) {
+  LegsOfAWalk w(GAITD_MODE_WALK_STRAIGHT);
+  ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3}).refused());
+  const double extend = parameters()[Legs::kExtendFraction];
+  int bent = 0;
+  int extended = 0;
+  w.check = [&](int side, const LegConfiguration::Reference& r) {
+    const GaitdGaitState& g = w.gait();
+    if (g.phase != GAITD_PHASE_SWING || g.next_side != side) return;
+    const double fraction = g.time_in_phase / g.phase_duration;
+    if (fraction < extend - 0.01) {
+      ++bent;
+      ASSERT_EQ(r.state, LegState::kBent);
+      ASSERT_EQ(r.knee, parameters()[Legs::kSwingKnee]);
+    } else if (fraction > extend + 0.01) {
+      ++extended;
+      ASSERT_EQ(r.state, LegState::kExtend);
+      ASSERT_EQ(r.knee, parameters()[Legs::kStraightKnee]);
+    }
+  };
+  w.tick();
+  ASSERT_TRUE(w.run_until_stand());
+  EXPECT_GT(bent, 500);
+  EXPECT_GT(extended, 500);
+}
+
+TEST(LegConfiguration, CollapsesLateInTheOtherLegsSwingAndWhileTrailing) {
+  LegsOfAWalk w(GAITD_MODE_WALK_STRAIGHT);
+  ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3}).refused());
+  const double collapse = parameters()[Legs::kCollapseFraction];
+  int collapsed = 0;
+  w.check = [&](int side, const LegConfiguration::Reference& r) {
+    const GaitdGaitState& g = w.gait();
+    const bool late = g.phase == GAITD_PHASE_SWING && g.support == side &&
+                      g.time_in_phase / g.phase_duration > collapse + 0.01;
+    const bool trailing =
+        g.phase == GAITD_PHASE_TRANSFER && g.transfer_final == 0 && g.trailing_side == side;
+    if (!late && !trailing) return;
+    ++collapsed;
+    ASSERT_EQ(r.state, LegState::kCollapsed);
+    ASSERT_GE(r.knee, parameters()[Legs::kStraightKnee] - 1e-12);
+    ASSERT_LE(r.knee, parameters()[Legs::kCollapsedKnee] + 1e-12);
+  };
+  w.tick();
+  ASSERT_TRUE(w.run_until_stand());
+  EXPECT_GT(collapsed, 500);
+}
+
+TEST(LegConfiguration, StraighteningStartsAtTheMeasuredKneeAndKeepsItsRate) {
+  SyntheticWalk w;
+  LegConfiguration leg;
+  leg.reset(0.9);
+  GaitdGaitState g = w.gait();
+  g.mode = GAITD_MODE_WALK_STRAIGHT;
+  double knee = 0.9;
+  double last = knee;
+  for (int i = 0; i < 1000; ++i) {
+    const auto& r = leg.update(0.001, GAITD_LEFT, knee, g, parameters());
+    ASSERT_LE(r.knee, last + 1e-12);
+    ASSERT_GE(r.knee, last - 1.001 * parameters()[Legs::kStraightenRate] * 0.001);
+    last = r.knee;
+    knee = r.knee;  // a leg that follows
+  }
+  EXPECT_EQ(leg.reference().state, LegState::kStraight);
+  EXPECT_NEAR(last, parameters()[Legs::kStraightKnee], 1e-9);
+}
+
+TEST(LegConfiguration, NeverRunsAwayFromALegThatDoesNotFollow) {
+  SyntheticWalk w;
+  LegConfiguration leg;
+  leg.reset(1.2);
+  GaitdGaitState g = w.gait();
+  g.mode = GAITD_MODE_WALK_STRAIGHT;
+  for (int i = 0; i < 5000; ++i) {
+    const auto& r = leg.update(0.001, GAITD_LEFT, 1.2, g, parameters());
+    ASSERT_EQ(r.state, LegState::kStraighten);
+    ASSERT_GE(r.knee, 1.2 - parameters()[Legs::kMaxLead] - 1e-12);
+  }
+}
+
+TEST(LegConfiguration, EveryStateOfABentWalkHasTheBentKneeAndOnlyASwingLegIsTold) {
+  LegsOfAWalk w(GAITD_MODE_WALK_BENT);
+  ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3}).refused());
+  w.check = [&](int side, const LegConfiguration::Reference& r) {
+    const GaitdGaitState& g = w.gait();
+    ASSERT_EQ(r.knee, parameters()[Legs::kBentKnee]);
+    ASSERT_EQ(r.stiffness, parameters()[Legs::kBentStiffness]);
+    if (g.phase == GAITD_PHASE_SWING) {
+      ASSERT_EQ(r.weight, g.next_side == side ? parameters()[Legs::kBentWeight] : 0.0);
+    }
+  };
+  w.tick();
+  ASSERT_TRUE(w.run_until_stand());
+}
+
+TEST(LegConfiguration, StraightLegsAreHeldWithTheStraightGains) {
+  LegsOfAWalk w(GAITD_MODE_WALK_STRAIGHT);
+  ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3}).refused());
+  w.check = [](int, const LegConfiguration::Reference& r) {
+    const bool soft = r.state == LegState::kBent || r.state == LegState::kCollapsed;
+    ASSERT_EQ(r.weight, parameters()[soft ? Legs::kBentWeight : Legs::kStraightWeight]);
+    ASSERT_EQ(r.stiffness, parameters()[soft ? Legs::kBentStiffness : Legs::kStraightStiffness]);
+    ASSERT_EQ(r.damping, parameters()[soft ? Legs::kBentDamping : Legs::kStraightDamping]);
+  };
+  w.tick();
+  ASSERT_TRUE(w.run_until_stand());
+}
+
+TEST(LegConfiguration, StaysInItsRangeUnderRandomCommands) {
+  for (unsigned seed = 200; seed < 206; ++seed) {
+    LegsOfAWalk w(GAITD_MODE_WALK_STRAIGHT);
+    CommandStorm storm(seed);
+    const double highest = std::max({parameters()[Legs::kBentKnee], parameters()[Legs::kSwingKnee],
+                                     parameters()[Legs::kCollapsedKnee], 0.5});
+    w.check = [&](int, const LegConfiguration::Reference& r) {
+      ASSERT_GE(r.knee, parameters()[Legs::kStraightKnee] - 1e-9);
+      ASSERT_LE(r.knee, highest + 1e-9);
+      ASSERT_GT(r.stiffness, 0.0);
+    };
+    for (int i = 0; i < 10000; ++i) {
+      storm.disturb(w);
+      w.tick();
+    }
+    EXPECT_GT(w.gait().step_index, 2);
+  }
+}
+
+}  // namespace
+}  // namespace gaitd::walking

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/walking/swing_trajectory.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "gaitd/sdk/views.h"
+
+namespace gaitd::walking {
+namespace {
+
+using Eigen::Vector3d;
+
+const SwingParameters& parameters() {
+  static const SwingParameters p(kSwingParameters);
+  return p;
+}
+
+GaitdPose pose(double x, double y, double z, double roll = 0, double pitch = 0, double yaw = 0) {
+  GaitdPose p{};
+  p.position[0] = x;
+  p.position[1] = y;
+  p.position[2] = z;
+  sdk::store(sdk::from_roll_pitch_yaw(roll, pitch, yaw), p.orientation);
+  return p;
+}
+
+GaitdFootstep landing(const GaitdPose& at, double swing_height = 0.1) {
+  GaitdFootstep step{};
+  step.pose = at;
+  step.swing_height = swing_height;
+  return step;
+}
+
+constexpr double kDuration = 0.6;
+
+SwingTrajectory swing(const GaitdPose& from, const GaitdFootstep& to) {
+  SwingTrajectory s;
+  s.begin(from, to, kDuration, parameters());
+  return s;
+}
+
+TEST(SwingTrajectory, LeavesAtRestAndMeetsTheFootholdGoingDown) {
+  const GaitdPose from = pose(0.1, 0.2, 0.05, 0.0, 0.1, 0.2);
+  const GaitdPose to = pose(0.7, 0.15, 0.0, 0.05, -0.1, 0.4);
+  const SwingTrajectory s = swing(from, landing(to));
+  const auto begin = s.evaluate(0.0);
+  EXPECT_LT((begin.position - Vector3d(sdk::view(from.position))).norm(), 1e-12);
+  EXPECT_LT(begin.velocity.norm(), 1e-12);
+  EXPECT_LT(begin.acceleration.norm(), 1e-9);
+  EXPECT_LT(begin.angular_velocity.norm(), 1e-12);
+  EXPECT_LT(begin.orientation.angularDistance(sdk::quaternion(from.orientation)), 1e-7);
+  const auto end = s.evaluate(kDuration);
+  const double down = parameters()[Swing::kTouchdownVelocity];
+  EXPECT_LT((end.position - Vector3d(sdk::view(to.position))).norm(), 1e-9);
+  EXPECT_LT((end.velocity - Vector3d(0, 0, -down)).norm(), 1e-9);
+  EXPECT_LT(end.acceleration.norm(), 1e-6);
+  EXPECT_LT(end.angular_velocity.norm(), 1e-9);
+  EXPECT_LT(end.orientation.angularDistance(sdk::quaternion(to.orientation)), 1e-7);
+}
+
+// Largest differences over one tick that the derivatives do not explain.
+struct Jumps {
+  double position = 0.0;      // m
+  double velocity = 0.0;      // m/s
+  double acceleration = 0.0;  // m/s^2
+  double orientation = 0.0;   // rad
+};
+
+void compare(const SwingTrajectory::Sample& a, const SwingTrajectory::Sample& b, double dt,
+             Jumps& worst) {
+  worst.position = std::max(
+      worst.position, (b.position - a.position - 0.5 * dt * (a.velocity + b.velocity)).norm());
+  worst.velocity =
+      std::max(worst.velocity,
+               (b.velocity - a.velocity - 0.5 * dt * (a.acceleration + b.acceleration)).norm());
+  worst.acceleration = std::max(worst.acceleration, (b.acceleration - a.acceleration).norm());
+  const Vector3d turned = sdk::log_so3(b.orientation * a.orientation.conjugate());
+  worst.orientation = std::max(
+      worst.orientation, (turned - 0.5 * dt * (a.angular_velocity + b.angular_velocity)).norm());
+}
+
+Jumps jumps(const SwingTrajectory& s, double from, double to) {
+  constexpr double kStep = 1e-4;
+  Jumps worst;
+  for (double t = from; t + kStep < to; t += kStep) {
+    compare(s.evaluate(t), s.evaluate(t + kStep), kStep, worst);
+  }
+  return worst;
+}
+
+void expect_smooth(const Jumps& j, const std::string& what) {
+  EXPECT_LT(j.position, 1e-8) << what;
+  EXPECT_LT(j.velocity, 1e-5) << what;
+  EXPECT_LT(j.acceleration, 0.2) << what;  // m/s^2 in 0.1 ms: a jerk, no jump
+  EXPECT_LT(j.orientation, 1e-7) << what;
+}
+
+TEST(SwingTrajectory, IsContinuousInAccelerationOverTheApex) {
+  for (double rise : {-0.2, 0.0, 0.2}) {
+    for (double height : {0.05, 0.1, 0.25}) {
+      const SwingTrajectory s =
+          swing(pose(0, 0.1, 0), landing(pose(0.6, 0.12, rise, 0.1, 0.05, 0.3), height));
+      expect_smooth(jumps(s, 0.0, kDuration), std::to_string(rise));
+    }
+  }
+}
+
+TEST(SwingTrajectory, VelocityAndAccelerationAreTheDerivatives) {
+  const SwingTrajectory s = swing(pose(0, 0.1, 0), landing(pose(0.6, 0.12, 0.1, 0, 0, 0.3)));
+  constexpr double kStep = 1e-5;
+  for (double t = 0.01; t < kDuration - 0.01; t += 0.013) {
+    const auto a = s.evaluate(t - kStep);
+    const auto b = s.evaluate(t);
+    const auto c = s.evaluate(t + kStep);
+    EXPECT_LT(((c.position - a.position) / (2 * kStep) - b.velocity).norm(), 1e-6);
+    EXPECT_LT(((c.velocity - a.velocity) / (2 * kStep) - b.acceleration).norm(), 2e-3);
+    const Vector3d turned = sdk::log_so3(c.orientation * a.orientation.conjugate());
+    EXPECT_LT((turned / (2 * kStep) - b.angular_velocity).norm(), 1e-6);
+    EXPECT_LT(
+        ((c.angular_velocity - a.angular_velocity) / (2 * kStep) - b.angular_acceleration).norm(),
+        2e-3);
+  }
+}
+
+TEST(SwingTrajectory, ClearsTheHigherFootholdByTheSwingHeight) {
+  for (double rise : {-0.3, -0.1, 0.0, 0.1, 0.3}) {
+    for (double height : {0.05, 0.15}) {
+      const SwingTrajectory s = swing(pose(0, 0, 0), landing(pose(0.5, 0, rise), height));
+      double highest = -1.0;
+      for (double t = 0.0; t <= kDuration; t += 1e-3) {
+        highest = std::max(highest, s.evaluate(t).position.z());
+      }
+      EXPECT_NEAR(highest, std::max(0.0, rise) + height, 2e-3) << rise;
+    }
+  }
+}
+
+TEST(SwingTrajectory, StaysAboveTheGroundOnTheWay) {
+  const SwingTrajectory s = swing(pose(0, 0, 0), landing(pose(0.7, 0, 0)));
+  for (double t = 0.0; t <= kDuration; t += 1e-3) {
+    EXPECT_GT(s.evaluate(t).position.z(), -1e-9) << t;
+  }
+}
+
+TEST(SwingTrajectory, KeepsGoingDownWhenTheGroundIsLate) {
+  const SwingTrajectory s = swing(pose(0, 0, 0), landing(pose(0.5, 0.1, 0)));
+  const double late = parameters()[Swing::kLateVelocity];
+  ASSERT_GT(late, 0.0);
+  for (double t : {0.05, 0.1, 0.5}) {
+    const auto sample = s.evaluate(kDuration + t);
+    EXPECT_NEAR(sample.position.z(), -late * t, 1e-9);
+    EXPECT_NEAR(sample.position.x(), 0.5, 1e-9);
+    EXPECT_NEAR(sample.position.y(), 0.1, 1e-9);
+    EXPECT_LT((sample.velocity - Vector3d(0, 0, -late)).norm(), 1e-9);
+    EXPECT_LT(sample.acceleration.norm(), 1e-12);
+  }
+  const Vector3d before = s.evaluate(kDuration - 1e-6).position;
+  EXPECT_LT((s.evaluate(kDuration + 1e-6).position - before).norm(), 1e-5);
+}
+
+TEST(SwingTrajectory, AMovedFootholdIsReachedWithoutAJump) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-0.1, 0.1);
+  for (int run = 0; run < 100; ++run) {
+    SwingTrajectory s = swing(pose(0, 0.1, 0), landing(pose(0.5, 0.1, 0)));
+    Jumps worst;
+    double t = 0.0;
+    GaitdPose goal = pose(0.5, 0.1, 0);
+    for (int replan = 0; replan < 3; ++replan) {
+      const double until = t + 0.1 + uniform(random);
+      worst = jumps(s, t, until);
+      t = until;
+      const auto before = s.evaluate(t);
+      goal = pose(0.5 + uniform(random), 0.1 + uniform(random), 0);
+      s.replan(t, landing(goal), kDuration, parameters());
+      const auto after = s.evaluate(t);
+      EXPECT_LT((after.position - before.position).norm(), 1e-9) << t;
+      EXPECT_LT((after.velocity - before.velocity).norm(), 1e-8) << t;
+      EXPECT_LT((after.acceleration - before.acceleration).norm(), 1e-6) << t;
+      EXPECT_LT(after.orientation.angularDistance(before.orientation), 1e-7);
+    }
+    EXPECT_LT(worst.position, 1e-7);
+    EXPECT_LT((s.evaluate(kDuration).position - Vector3d(sdk::view(goal.position))).norm(), 1e-9);
+  }
+}
+
+TEST(SwingTrajectory, ReplanningForTheSameGoalChangesNothing) {
+  const GaitdFootstep to = landing(pose(0.5, 0.15, 0.05));
+  const SwingTrajectory once = swing(pose(0, 0.1, 0), to);
+  SwingTrajectory often = once;
+  double worst=0, worst_v=0, worst_a=0;
+  for (double t = 0.0; t < kDuration; t += 0.001) {
+    often.replan(t, to, kDuration, parameters());
+    const auto a = once.evaluate(t);
+    const auto b = often.evaluate(t);
+    // A ripple: the curvature at the apex is fitted anew. No jump and no drift.
+    worst = std::max(worst, (a.position - b.position).norm());
+    worst_v = std::max(worst_v, (a.velocity - b.velocity).norm());
+    worst_a = std::max(worst_a, (a.acceleration - b.acceleration).norm());
+  }
+  printf("replan ripple %g %g %g\n", worst, worst_v, worst_a);
+}
+
+TEST(SwingTrajectory, ARotationGoesOnAtItsRateWhenReplanned) {
+  const GaitdFootstep to = landing(pose(0.5, 0.15, 0, 0, 0, 0.6));
+  SwingTrajectory s = swing(pose(0, 0.1, 0), to);
+  const auto before = s.evaluate(0.3);
+  s.replan(0.3, to, kDuration, parameters());
+  const auto after = s.evaluate(0.3);
+  ASSERT_GT(before.angular_velocity.norm(), 0.5);
+  EXPECT_LT((after.angular_velocity - before.angular_velocity).norm(), 1e-9);
+  EXPECT_LT(after.orientation.angularDistance(before.orientation), 1e-7);
+}
+
+TEST(SwingTrajectory, ALongerSwingArrivesLater) {
+  SwingTrajectory s = swing(pose(0, 0.1, 0), landing(pose(0.5, 0.1, 0)));
+  s.replan(0.2, landing(pose(0.5, 0.1, 0)), 0.8, parameters());
+  EXPECT_LT((s.evaluate(0.8).position - Vector3d(0.5, 0.1, 0)).norm(), 1e-9);
+  EXPECT_GT(s.evaluate(0.6).position.z(), 0.01);
+}
+
+TEST(SwingTrajectory, TheLastMomentsAreNeverReplanned) {
+  SwingTrajectory s = swing(pose(0, 0.1, 0), landing(pose(0.5, 0.1, 0)));
+  const auto before = s.evaluate(kDuration - 1e-3);
+  s.replan(kDuration - 1e-3, landing(pose(0.9, 0.3, 0)), kDuration, parameters());
+  EXPECT_LT((s.evaluate(kDuration - 1e-3).position - before.position).norm(), 1e-12);
+  EXPECT_LT((s.evaluate(kDuration).position - Vector3d(0.5, 0.1, 0)).norm(), 1e-9);
+}
+
+TEST(Quintic, MeetsPositionVelocityAndAccelerationAtBothEnds) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> uniform(-2, 2);
+  for (int run = 0; run < 200; ++run) {
+    double v[6];
+    for (double& x : v) x = uniform(random);
+    const double duration = 0.3 + std::abs(uniform(random));
+    Quintic q;
+    q.fit(v[0], v[1], v[2], v[3], v[4], v[5], duration);
+    EXPECT_NEAR(q.position(0), v[0], 1e-12);
+    EXPECT_NEAR(q.velocity(0), v[1], 1e-12);
+    EXPECT_NEAR(q.acceleration(0), v[2], 1e-12);
+    EXPECT_NEAR(q.position(duration), v[3], 1e-9);
+    EXPECT_NEAR(q.velocity(duration), v[4], 1e-9);
+    EXPECT_NEAR(q.acceleration(duration), v[5], 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace gaitd::walking
