@@ -3,6 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <ctime>
 #include <filesystem>
 #include <thread>
@@ -10,7 +11,6 @@
 #include "daemon/app/metadata.h"
 #include "daemon/app/realtime.h"
 #include "daemon/config/command_parse.h"
-#include "daemon/control/signals.h"
 #include "daemon/host/layers.h"
 #include "daemon/host/plugin_json.h"
 #include "gaitd/walking/parameters.h"
@@ -101,6 +101,7 @@ bool Application::load_layers() {
   for (const PluginEntry& entry : directory.list()) {
     if (entry.layer < GAITD_LAYER_COUNT) {
       settings_.declare_variant(layer_name(entry.layer), entry.variant);
+      known_variants_[entry.layer].push_back(entry.variant);
     }
   }
   bool loaded = true;
@@ -156,6 +157,14 @@ bool Application::load_layers() {
   apply(legs, [&](int i, double v) { pipeline_->objectives().set_leg_parameter(i, v); });
   apply(objectives, [&](int i, double v) { pipeline_->objectives().set_objective_parameter(i, v); });
   apply(safety, [&](int i, double v) { pipeline_->safety().set_parameter(i, v); });
+  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
+    auto& known = known_variants_[layer];
+    if (std::find(known.begin(), known.end(), layer_variants_[layer]) == known.end()) {
+      known.push_back(layer_variants_[layer]);  // given as a file
+    }
+    const auto at = std::find(known.begin(), known.end(), layer_variants_[layer]);
+    pipeline_->data().variants[layer] = static_cast<int>(at - known.begin());
+  }
   using Impedance = walking::ObjectiveBuilder::Impedance;
   const ImpedanceProfile& profile = robot_->impedance;
   auto impedance = [&](Impedance state, const JointImpedance& values) {
@@ -243,7 +252,7 @@ LogMetadata Application::metadata() const {
 bool Application::start_telemetry() {
   TelemetryOptions options;
   options.period = config_.period;
-  telemetry_ = std::make_unique<Telemetry>(make_signal_table(robot_->model, truth_), options);
+  telemetry_ = std::make_unique<Telemetry>(make_signal_table(robot_->model, known_variants_, truth_), options);
   if (config_.log.enabled) {
     log_file_ = default_log_file();
     McapOptions mcap;

@@ -10,6 +10,7 @@
 #include "daemon/config/paths.h"
 #include "daemon/config/scenario.h"
 #include "daemon/control/control_loop.h"
+#include "daemon/control/signals.h"
 #include "daemon/host/loaded_plugin.h"
 #include "daemon/host/plugin_directory.h"
 #include "daemon/server/command_server.h"
@@ -62,7 +63,8 @@ class Application {
   std::optional<Scenario> scenario_;
   std::unique_ptr<ScenarioPlayer> player_;
   LayerChain::Layers layers_;
-  std::vector<std::string> layer_variants_;
+  std::vector<std::string> layer_variants_;  // in use
+  LayerVariants known_variants_;             // installed
   std::unique_ptr<LoadedBackend> backend_;
   bool truth_ = false;
   std::string log_file_;

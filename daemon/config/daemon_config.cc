@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, 3> kBackends = {"simbody", "socketcan", "
 constexpr std::array<std::string_view, 2> kClocks = {"realtime", "lockstep"};
 constexpr std::array<std::string_view, 3> kProfiles = {"simulation", "hardware", "auto"};
 constexpr std::array<std::string_view, 2> kOverrunPolicies = {"report", "safe-stop"};
-constexpr std::array<std::string_view, 3> kCompressions = {"none", "lz4", "zstd"};
+constexpr std::array<std::string_view, 2> kCompressions = {"none", "zstd"};
 constexpr int kMaxProcessor = 1023;
 
 // One key at a time out of the settings, with the checks of MapReader; what is not set or does not
@@ -132,10 +132,6 @@ DaemonConfig read_daemon_config(Settings* settings, Issues* issues) {
   reader.number("limits.torque_ratio", {0.0, 1.0, ""}, &config.limits.torque_ratio);
   reader.number("limits.velocity_ratio", {0.0, 1.0, ""}, &config.limits.velocity_ratio);
   reader.number("limits.position_margin", {0.0, 0.5, "rad"}, &config.limits.position_margin);
-  reader.boolean("swap.allow_on_hardware", &config.swap.allow_on_hardware);
-  reader.number("swap.shadow", {0.0, 60.0, "s"}, &config.swap.shadow);
-  reader.number("swap.probation", {0.0, 60.0, "s"}, &config.swap.probation);
-  reader.number("swap.cross_fade", {0.0, 1.0, "s"}, &config.swap.cross_fade);
   read_log(&reader, issues, &config.log);
   reader.text("socket", true, &config.socket);
   return config;

@@ -36,14 +36,7 @@ struct LimitsConfig {
   double position_margin = 0.0;  // rad or m, inside the position limits
 };
 
-struct SwapConfig {
-  bool allow_on_hardware = false;
-  double shadow = 0.25;      // s, live inputs before the switch
-  double probation = 1.0;    // s, incumbent ready after the switch
-  double cross_fade = 0.03;  // s
-};
-
-enum class LogCompression { kNone, kLz4, kZstd };
+enum class LogCompression { kNone, kZstd };
 
 struct LogConfig {
   bool enabled = true;
@@ -63,7 +56,6 @@ struct DaemonConfig {
                                                          "fixed_steps", "never", "com_height_qp"};
   RealtimeConfig realtime;
   LimitsConfig limits;
-  SwapConfig swap;
   LogConfig log;
   std::string socket;  // "": the default place for the user
 };

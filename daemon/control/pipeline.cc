@@ -36,7 +36,9 @@ void Pipeline::reset() {
   layers_.reset();
   safety_.clear();
   safety_.disarm();
+  const auto variants = data_.variants;
   data_ = TickData{};
+  data_.variants = variants;
   gait_.reset(data_.robot);
   data_.gait = gait_.state();
   if (before != SafetyState::kDisarmed) safety_.arm();

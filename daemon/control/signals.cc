@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <string>
 
+#include "daemon/host/layers.h"
 #include "gaitd/sdk/views.h"
 
 namespace gaitd::daemon {
@@ -196,7 +197,7 @@ void visit_truth(V& v, const GaitdTruth& t) {
     v.real(foot.penetration, "m", "truth/foot/", kSides[side], "/penetration");
     v.real(foot.side_force, "N", "truth/foot/", kSides[side], "/side_force");
     axes(v, foot.force, 3, "N", "truth/foot/", kSides[side], "/force/");
-    axes(v, foot.position, 3, "m", "truth/foot/", kSides[side], "/position/");
+    axes(v, foot.position, 3, "m", "truth/foot/", kSides[side], "/");
   }
 }
 
@@ -212,16 +213,24 @@ void visit(V&& v, const GaitdModel& model, const TickData& d, bool truth) {
 
 }  // namespace
 
-SignalTable make_signal_table(const GaitdModel& model, bool truth) {
+SignalTable make_signal_table(const GaitdModel& model, const LayerVariants& variants, bool truth) {
   SignalTable table;
   TickData data{};
   data.robot.pelvis_orientation[3] = 1.0;
   visit(Describe(&table), model, data, truth);
+  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
+    table.push_back({"layer/" + std::string(layer_name(layer)) + "/variant", "",
+                     Kind::kEnumeration, variants[layer]});
+  }
   return table;
 }
 
 void record_signals(const GaitdModel& model, const TickData& data, std::span<double> values) {
-  visit(Record(values), model, data, data.has_truth);
+  const std::size_t rest = values.size() - GAITD_LAYER_COUNT;
+  visit(Record(values.first(rest)), model, data, data.has_truth);
+  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
+    values[rest + layer] = data.variants[layer];
+  }
 }
 
 }  // namespace gaitd::daemon

@@ -50,6 +50,7 @@ struct TickData {
   SafetyState safety = SafetyState::kDisarmed;
   std::uint32_t faults = 0;
   std::array<walking::LegConfiguration::Reference, GAITD_MAX_FEET> legs{};
+  std::array<int, GAITD_LAYER_COUNT> variants{};  // in use, by their place in the signal table
   bool has_truth = false;
   GaitdTruth truth{};
   TickTimes times;

@@ -8,11 +8,19 @@
 #include "gaitd/walking/support.h"
 
 namespace gaitd::walking {
+namespace {
+
+// Of the distance of the feet in the nominal posture: closer the legs get in each other's way.
+constexpr double kNominalShare = 0.8;
+
+}  // namespace
 
 GaitMachine::GaitMachine(const GaitdModel& model)
     : model_(model),
       parameters_(kGaitParameters),
       nominal_omega_(std::sqrt(model.gravity / model.nominal_com_height)) {
+  const int separation = static_cast<int>(Gait::kMinFootSeparation);
+  set_parameter(separation, kGaitParameters[separation].default_value);
   state_.size = sizeof(state_);
   state_.mode = GAITD_MODE_WALK_BENT;
   state_.next_side = GAITD_BOTH;
@@ -26,7 +34,8 @@ GaitMachine::GaitMachine(const GaitdModel& model)
 }
 
 void GaitMachine::set_parameter(int index, double value) {
-  parameters_.set(index, value);
+  const bool nominal = index == static_cast<int>(Gait::kMinFootSeparation) && value <= 0.0;
+  parameters_.set(index, nominal ? kNominalShare * model_.nominal_foot_separation : value);
   const double omega = parameters_[Gait::kOmega];
   state_.omega = omega > 0.0 ? omega : nominal_omega_;
 }

@@ -7,6 +7,12 @@
 
 namespace gaitd::walking {
 
+namespace {
+
+constexpr double kLateTime = 0.1;  // s
+
+}  // namespace
+
 using sdk::view;
 
 void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
@@ -37,12 +43,19 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
     state_.start_ecmp_valid = 0;
   }
 
+  // A swing whose touchdown is late goes on for a moment, as the robot does; then, and at the end of
+  // a transfer that waits for the robot, the reference waits too.
+  const double late = gait.time_in_phase - gait.phase_duration;
+  const double longest = gait.phase == GAITD_PHASE_SWING ? kLateTime : 0.0;
+  const bool waiting = !trajectory_.empty() && late > longest;
+  const double remaining = waiting ? -longest : -late;
   IcpTrajectory::Sample s;
   if (trajectory_.empty()) {
     s.icp = s.icp_end = s.ecmp = trajectory_.rest();
     s.icp_velocity.setZero();
   } else {
-    s = trajectory_.evaluate(gait.time_remaining);
+    s = trajectory_.evaluate(remaining);
+    if (waiting) s.ecmp = s.icp;  // stands still until the phase ends
   }
   if (changed) {
     // state_.icp already holds the prediction for this tick.

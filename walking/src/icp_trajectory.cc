@@ -114,10 +114,16 @@ Eigen::Vector2d IcpTrajectory::icp_at_start(int first) const {
 
 IcpTrajectory::Sample IcpTrajectory::evaluate(double remaining) const {
   const Piece& p = pieces_[0];
-  const double left = std::clamp(remaining, 0.0, p.duration);
-  const Eigen::Vector2d slope = (p.end - p.start) / (p.duration * omega_);
   Sample s;
   s.icp_end = icp_at_start(1);
+  if (remaining < 0.0) {
+    s.ecmp = p.end;
+    s.icp = p.end + std::exp(-omega_ * remaining) * (s.icp_end - p.end);
+    s.icp_velocity = omega_ * (s.icp - s.ecmp);
+    return s;
+  }
+  const double left = std::min(remaining, p.duration);
+  const Eigen::Vector2d slope = (p.end - p.start) / (p.duration * omega_);
   s.ecmp = p.end - slope * omega_ * left;
   s.icp = s.ecmp + slope + std::exp(-omega_ * left) * (s.icp_end - p.end - slope);
   s.icp_velocity = omega_ * (s.icp - s.ecmp);

@@ -188,21 +188,18 @@ TEST(SwingTrajectory, AMovedFootholdIsReachedWithoutAJump) {
   }
 }
 
-TEST(SwingTrajectory, ReplanningForTheSameGoalChangesNothing) {
+TEST(SwingTrajectory, ReplanningForTheSameGoalAtEveryTickHardlyChangesThePath) {
   const GaitdFootstep to = landing(pose(0.5, 0.15, 0.05));
   const SwingTrajectory once = swing(pose(0, 0.1, 0), to);
   SwingTrajectory often = once;
-  double worst=0, worst_v=0, worst_a=0;
   for (double t = 0.0; t < kDuration; t += 0.001) {
     often.replan(t, to, kDuration, parameters());
     const auto a = once.evaluate(t);
     const auto b = often.evaluate(t);
-    // A ripple: the curvature at the apex is fitted anew. No jump and no drift.
-    worst = std::max(worst, (a.position - b.position).norm());
-    worst_v = std::max(worst_v, (a.velocity - b.velocity).norm());
-    worst_a = std::max(worst_a, (a.acceleration - b.acceleration).norm());
+    ASSERT_LT((a.position - b.position).head<2>().norm(), 1e-6) << t;
+    ASSERT_LT(std::abs(a.position.z() - b.position.z()), 0.01) << t;
   }
-  printf("replan ripple %g %g %g\n", worst, worst_v, worst_a);
+  EXPECT_LT((often.evaluate(kDuration).position - once.evaluate(kDuration).position).norm(), 1e-9);
 }
 
 TEST(SwingTrajectory, ARotationGoesOnAtItsRateWhenReplanned) {

@@ -147,11 +147,13 @@ TEST_F(Atlas, GivesTheParametersOfTheProfileOverItsOwn) {
   EXPECT_EQ(hardware.peek("legs.straight_knee")->text, "0.3");
 }
 
-TEST_F(Atlas, HasNoImpedanceInSimulationAndSomeOnHardware) {
+TEST_F(Atlas, HasAnImpedanceOfItsOwnInEachProfile) {
   const int ankle = joint_index(robot_->model, "l_leg_aky");
   const int knee = joint_index(robot_->model, "l_leg_kny");
-  EXPECT_EQ(robot_->impedance.swing.stiffness[ankle], 0.0);
-  EXPECT_EQ(robot_->impedance.support.damping[knee], 0.0);
+  EXPECT_GT(robot_->impedance.swing.stiffness[ankle], 0.0);
+  EXPECT_GT(robot_->impedance.swing.stiffness[knee], 0.0);
+  EXPECT_EQ(robot_->impedance.support.stiffness[knee], 0.0);
+  EXPECT_EQ(robot_->impedance.support.stiffness[ankle], 0.0);
   Settings settings;
   Issues issues;
   const auto robot = load_robot(atlas_file(), Profile::kHardware, &settings, &issues);

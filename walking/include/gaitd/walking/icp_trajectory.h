@@ -41,7 +41,8 @@ class IcpTrajectory {
 
   bool empty() const { return count_ == 0; }
   int piece_count() const { return count_; }
-  // Reference with `remaining` seconds left in the current piece. Not for an empty trajectory.
+  // Reference with `remaining` seconds left in the current piece; below zero it goes on around the
+  // last eCMP of the piece, as the robot does. Not for an empty trajectory.
   Sample evaluate(double remaining) const;
   // d icp / d (footstep i and all after it), with `remaining` seconds left in the current piece.
   double gamma(int footstep, double remaining) const;

@@ -1,0 +1,427 @@
+// SPDX-License-Identifier: Apache-2.0
+// The estimator against sensors that are computed for a motion that is known.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+
+#include "kinematic_inertial.h"
+#include "layer_inputs.h"
+#include "walking/test/allocation_counter.h"
+
+namespace gaitd::plugins {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using testing::atlas;
+
+constexpr double kPeriod = 0.001;  // s
+
+struct Noise {
+  double joint = 0.0;          // rad
+  double gyro = 0.0;           // rad/s
+  double gyro_bias = 0.0;      // rad/s, on every axis
+  double accelerometer = 0.0;  // m/s^2
+  double force = 0.0;          // N
+};
+constexpr Noise kNominal = {1e-4, 0.005, 0.002, 0.05, 5.0};
+
+// Atlas on both feet, which stay where they are: legs swing in parallel, so that the pelvis moves
+// up and down, back and forth and sideways without turning.
+class Sway {
+ public:
+  // `size` 0: stands still.
+  explicit Sway(double size) : size_(size), kinematics_(atlas()) {}
+
+  struct Moment {
+    Vector3d position;  // pelvis in W
+    Eigen::VectorXd q, qd;
+  };
+
+  Moment at(double t) {
+    Moment m;
+    m.q = joints(t);
+    constexpr double h = 1e-5;
+    m.qd = (joints(t + h) - joints(t - h)) / (2 * h);
+    m.position = place(m.q);
+    return m;
+  }
+  Vector3d position(double t) { return place(joints(t)); }
+  Vector3d velocity(double t) {
+    constexpr double h = 1e-4;
+    return (position(t + h) - position(t - h)) / (2 * h);
+  }
+  Vector3d acceleration(double t) {
+    constexpr double h = 1e-3;
+    return (position(t + h) - 2.0 * position(t) + position(t - h)) / (h * h);
+  }
+
+ private:
+  Eigen::VectorXd joints(double t) const {
+    Eigen::VectorXd q = sdk::head(atlas().nominal_position, atlas().joint_count);
+    const double s = std::clamp(t, 0.0, 1.0);  // begins at rest
+    const double start = s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
+    const double bend = size_ * start * 0.10 * std::sin(2 * M_PI * 0.5 * t);
+    const double lean = size_ * start * 0.06 * std::sin(2 * M_PI * 0.7 * t);
+    const double roll = size_ * start * 0.05 * std::sin(2 * M_PI * 0.4 * t);
+    for (const GaitdLeg& leg : atlas().legs) {
+      q[leg.hip_pitch] += -bend + lean;
+      q[leg.knee] += 2 * bend;
+      q[leg.ankle_pitch] += -bend - lean;
+      q[leg.joints[1]] += roll;
+      q[leg.ankle_roll] -= roll;
+    }
+    return q;
+  }
+  // Pelvis origin, upright, when the middle of the soles is the origin.
+  Vector3d place(const Eigen::VectorXd& q) {
+    kinematics_.update(Vector3d::Zero(), Quaterniond::Identity(), sdk::Vector6d::Zero(), q,
+                       Eigen::VectorXd::Zero(q.size()));
+    Vector3d middle = Vector3d::Zero();
+    for (const GaitdFoot& foot : atlas().feet) {
+      middle += 0.5 * kinematics_.frame_position(foot.body, sdk::view(foot.sole.origin));
+    }
+    return -middle;
+  }
+
+  double size_;
+  dynamics::Kinematics kinematics_;
+};
+
+class Bench {
+ public:
+  Bench(double sway, const Noise& noise, unsigned seed = 1)
+      : motion(sway),
+        noise_(noise),
+        random_(seed),
+        layer(atlas()),
+        sensors(std::make_unique<GaitdSensors>()),
+        commands(std::make_unique<GaitdJointCommands>()) {
+    walking::GaitMachine machine(atlas());
+    machine.reset(testing::standing_state(atlas()));
+    gait = machine.state();
+    *sensors = {};
+    sensors->size = sizeof(*sensors);
+    sensors->joint_count = atlas().joint_count;
+    sensors->imu_count = atlas().imu_count;
+    sensors->foot_count = 2;
+    *commands = {};
+    share[0] = share[1] = 0.5;
+  }
+
+  void sense() {
+    const double t = tick * kPeriod;
+    const Sway::Moment m = motion.at(t);
+    sensors->tick = tick;
+    sensors->time = t;
+    for (int i = 0; i < atlas().joint_count; ++i) {
+      GaitdJointSensor& joint = sensors->joints[i];
+      joint.info.valid = 1;
+      joint.position = m.q[i] + noise_.joint * normal();
+      joint.velocity = m.qd[i] + 10 * noise_.joint * normal();
+    }
+    GaitdImuSensor& imu = sensors->imus[0];
+    const Quaterniond mount = sdk::quaternion(atlas().imus[0].orientation);
+    imu.info.valid = 1;
+    imu.has_orientation = 0;
+    for (int k = 0; k < 3; ++k) imu.angular_rate[k] = noise_.gyro_bias + noise_.gyro * normal();
+    const Vector3d force =
+        mount.conjugate() * (motion.acceleration(t) + Vector3d(0, 0, atlas().gravity));
+    for (int k = 0; k < 3; ++k) imu.specific_force[k] = force[k] + noise_.accelerometer * normal();
+    const double weight = atlas().total_mass * atlas().gravity;
+    for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
+      const GaitdFoot& foot = atlas().feet[side];
+      GaitdFootForceSensor& sensor = sensors->feet[side];
+      sensor.info.valid = 1;
+      const Quaterniond turn = sdk::quaternion(foot.force_sensor.orientation).conjugate();
+      const Vector3d f = turn * Vector3d(0, 0, share[side] * weight);
+      const Vector3d point = sdk::view(foot.sole.origin) +
+                             sdk::quaternion(foot.sole.orientation) * Vector3d(cop[0], cop[1], 0);
+      const Vector3d arm = turn * (point - sdk::view(foot.force_sensor.origin));
+      sdk::view(sensor.force) = f + noise_.force * Vector3d(normal(), normal(), normal());
+      sdk::view(sensor.moment) = arm.cross(f);
+    }
+  }
+  GaitdStatus process(KinematicInertial& estimator) {
+    GaitdStateEstimatorInput in{};
+    in.size = sizeof(in);
+    in.time = testing::layer_time(kPeriod, tick);
+    in.omega = 3.0;
+    in.start = start;
+    in.sensors = sensors.get();
+    in.gait = &gait;
+    in.commands = commands.get();
+    return estimator.process(in, state);
+  }
+  void run_for(double seconds) {
+    const int last = tick + static_cast<int>(seconds / kPeriod + 0.5);
+    for (; tick < last; ++tick) {
+      sense();
+      if (tamper) tamper();
+      ASSERT_EQ(process(layer), GAITD_OK);
+      if (check) check();
+    }
+  }
+
+  double time() const { return tick * kPeriod; }
+  double position_error() {
+    return (Vector3d(sdk::view(state.pelvis_position)) - motion.position(time())).norm();
+  }
+  double velocity_error() {
+    const Vector3d v = sdk::quaternion(state.pelvis_orientation) *
+                       Vector3d(sdk::view(state.pelvis_twist).tail<3>());
+    return (v - motion.velocity(time())).norm();
+  }
+  double tilt_error() {
+    const Vector3d up = sdk::quaternion(state.pelvis_orientation) * Vector3d::UnitZ();
+    return std::acos(std::min(1.0, up.z()));
+  }
+
+  Sway motion;
+  GaitdGaitState gait{};
+  GaitdRobotState state{};
+  GaitdStart start{};
+  double share[2];
+  double cop[2] = {0.0, 0.0};
+  int tick = 0;
+  std::function<void()> tamper;
+  std::function<void()> check;
+
+ private:
+  double normal() { return std::normal_distribution<double>()(random_); }
+  Noise noise_;
+  std::mt19937 random_;
+
+ public:
+  KinematicInertial layer;
+  std::unique_ptr<GaitdSensors> sensors;
+  std::unique_ptr<GaitdJointCommands> commands;
+};
+
+// Largest errors of a run, after a second to settle.
+struct Errors {
+  double position = 0.0, velocity = 0.0, tilt = 0.0;
+};
+Errors errors_of(Bench& b, double seconds) {
+  Errors e;
+  b.check = [&] {
+    if (b.time() < 1.0) return;
+    e.position = std::max(e.position, b.position_error());
+    e.velocity = std::max(e.velocity, b.velocity_error());
+    e.tilt = std::max(e.tilt, b.tilt_error());
+  };
+  b.run_for(seconds);
+  return e;
+}
+
+TEST(KinematicInertial, FindsARobotThatStandsStill) {
+  Bench b(0.0, {});
+  const Errors e = errors_of(b, 3.0);
+  EXPECT_LT(e.position, 1e-6);
+  EXPECT_LT(e.velocity, 1e-6);
+  EXPECT_LT(e.tilt, 1e-6);
+  EXPECT_EQ(b.state.valid, 1);
+  EXPECT_EQ(b.state.joint_count, atlas().joint_count);
+  const GaitdRobotState expected = testing::standing_state(atlas());
+  EXPECT_LT((Vector3d(sdk::view(b.state.com)) - Vector3d(sdk::view(expected.com))).norm(), 1e-6);
+  EXPECT_LT(
+      (Eigen::Vector2d(sdk::view(b.state.icp)) - Eigen::Vector2d(sdk::view(expected.icp))).norm(),
+      1e-6);
+}
+
+TEST(KinematicInertial, FollowsASwayWithPerfectSensors) {
+  Bench b(1.0, {});
+  const Errors e = errors_of(b, 5.0);
+  EXPECT_LT(e.position, 0.01);
+  EXPECT_LT(e.velocity, 0.03);
+  EXPECT_LT(e.tilt, 0.01);
+  EXPECT_GT((b.motion.position(2.3) - b.motion.position(0.0)).norm(), 0.02);  // it does move
+}
+
+TEST(KinematicInertial, StaysBoundedWithNominalNoise) {
+  for (unsigned seed : {1u, 2u, 3u}) {
+    for (double sway : {0.0, 1.0}) {
+      Bench b(sway, kNominal, seed);
+      const Errors e = errors_of(b, 6.0);
+      EXPECT_LT(e.position, 0.02) << seed << " " << sway;
+      EXPECT_LT(e.velocity, 0.08) << seed << " " << sway;
+      EXPECT_LT(e.tilt, 0.02) << seed << " " << sway;
+    }
+  }
+}
+
+TEST(KinematicInertial, StartsWhereTheOperatorSays) {
+  Bench b(0.0, {});
+  b.start = {{1.5, -0.7, 0.3}, 0.9};
+  b.run_for(1.0);
+  const Vector3d middle =
+      0.5 * (Vector3d(sdk::view(b.state.feet[0].position)) + sdk::view(b.state.feet[1].position));
+  EXPECT_LT((middle - Vector3d(1.5, -0.7, 0.3)).norm(), 1e-6);
+  EXPECT_NEAR(sdk::yaw_of(sdk::quaternion(b.state.pelvis_orientation)), 0.9, 1e-6);
+}
+
+TEST(KinematicInertial, FindsItsTiltAtTheStart) {
+  // The IMU says that the robot leans: the whole robot is turned about the soles.
+  Bench b(0.0, {});
+  const Quaterniond lean = sdk::exp_so3(Vector3d(0.02, 0.03, 0.0));
+  b.tamper = [&] {
+    const Vector3d f = sdk::view(b.sensors->imus[0].specific_force);
+    sdk::view(b.sensors->imus[0].specific_force) = lean.conjugate() * f;
+  };
+  b.run_for(1.0);
+  const Vector3d rpy = sdk::roll_pitch_yaw(sdk::quaternion(b.state.pelvis_orientation));
+  EXPECT_NEAR(rpy.x(), 0.02, 2e-3);
+  EXPECT_NEAR(rpy.y(), 0.03, 2e-3);
+}
+
+TEST(KinematicInertial, ReportsTheCentreOfPressure) {
+  Bench b(0.0, {});
+  b.cop[0] = 0.05;
+  b.cop[1] = -0.02;
+  b.run_for(1.0);
+  for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
+    EXPECT_EQ(b.state.feet[side].cop_valid, 1);
+    EXPECT_NEAR(b.state.feet[side].cop[0], 0.05, 1e-9);
+    EXPECT_NEAR(b.state.feet[side].cop[1], -0.02, 1e-9);
+    EXPECT_NEAR(b.state.feet[side].normal_force, 0.5 * atlas().total_mass * atlas().gravity, 1e-3);
+  }
+  EXPECT_NEAR(b.state.cop[0], 0.05, 1e-6);
+  EXPECT_NEAR(b.state.cop[1], -0.02, 1e-6);
+}
+
+TEST(KinematicInertial, ContactsHaveHysteresis) {
+  Bench b(0.0, {});
+  const double on = testing::parameter_default<KinematicInertial>("contact_on");
+  const double off = testing::parameter_default<KinematicInertial>("contact_off");
+  ASSERT_GT(on, off);
+  const double between = 0.5 * (on + off);
+  b.run_for(0.5);
+  EXPECT_EQ(b.state.feet[GAITD_LEFT].contact, GAITD_CONTACT_FULL);
+  b.share[GAITD_LEFT] = between;
+  b.share[GAITD_RIGHT] = 1.0 - between;
+  b.run_for(0.5);
+  EXPECT_EQ(b.state.feet[GAITD_LEFT].contact, GAITD_CONTACT_FULL);  // not yet off
+  b.share[GAITD_LEFT] = 0.5 * off;
+  b.run_for(0.5);
+  EXPECT_EQ(b.state.feet[GAITD_LEFT].contact, GAITD_CONTACT_NONE);
+  EXPECT_EQ(b.state.feet[GAITD_LEFT].cop_valid, 0);
+  b.share[GAITD_LEFT] = between;
+  b.run_for(0.5);
+  EXPECT_EQ(b.state.feet[GAITD_LEFT].contact, GAITD_CONTACT_NONE);  // not yet on
+  b.share[GAITD_LEFT] = 2.0 * on;
+  b.run_for(0.5);
+  EXPECT_EQ(b.state.feet[GAITD_LEFT].contact, GAITD_CONTACT_FULL);
+  EXPECT_EQ(b.state.feet[GAITD_RIGHT].contact, GAITD_CONTACT_FULL);
+}
+
+TEST(KinematicInertial, AFootThatPullsCarriesNothing) {
+  Bench b(0.0, {});
+  b.run_for(0.3);
+  b.share[GAITD_LEFT] = -0.2;
+  b.share[GAITD_RIGHT] = 1.0;
+  b.run_for(0.3);
+  EXPECT_EQ(b.state.feet[GAITD_LEFT].contact, GAITD_CONTACT_NONE);
+  EXPECT_GE(b.state.feet[GAITD_LEFT].normal_force, 0.0);
+  EXPECT_LT(b.state.feet[GAITD_LEFT].normal_force, 1.0);
+}
+
+TEST(KinematicInertial, SensorsThatAreNotValidAreNotUsed) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Bench b(0.0, {});
+  b.run_for(1.0);
+  b.tamper = [&] {
+    // For a few milliseconds everything says nonsense, and says so.
+    if (b.tick % 100 >= 5) return;
+    for (int i : {0, 7, 20}) {
+      b.sensors->joints[i].info.valid = 0;
+      b.sensors->joints[i].position = nan;
+      b.sensors->joints[i].velocity = nan;
+    }
+    b.sensors->imus[0].info.valid = 0;
+    b.sensors->imus[0].angular_rate[0] = nan;
+    b.sensors->imus[0].specific_force[1] = nan;
+    b.sensors->feet[GAITD_LEFT].info.valid = 0;
+    b.sensors->feet[GAITD_LEFT].force[2] = nan;
+  };
+  const Errors e = errors_of(b, 1.0);
+  EXPECT_LT(e.position, 5e-3);
+  EXPECT_LT(e.velocity, 0.05);
+  EXPECT_LT(e.tilt, 5e-3);
+  EXPECT_TRUE(std::isfinite(b.state.com[0] + b.state.joint_position[7] + b.state.cop[0]));
+}
+
+TEST(KinematicInertial, AWrongNumberOfJointsIsRefused) {
+  Bench b(0.0, {});
+  b.sense();
+  b.sensors->joint_count = atlas().joint_count - 1;
+  EXPECT_EQ(b.process(b.layer), GAITD_INVALID_ARGUMENT);
+}
+
+TEST(KinematicInertial, AnotherInstanceContinuesFromItsState) {
+  Bench b(1.0, {});
+  b.run_for(2.0);
+  GaitdStateEstimatorState state{};
+  b.layer.get_state(state);
+  EXPECT_EQ(state.initialised, 1);
+  KinematicInertial second(atlas());
+  second.set_state(state);
+  Errors e;
+  for (int i = 0; i < 2000; ++i, ++b.tick) {
+    b.sense();
+    ASSERT_EQ(b.process(second), GAITD_OK);
+    e.position = std::max(e.position, b.position_error());
+    e.velocity = std::max(e.velocity, b.velocity_error());
+    e.tilt = std::max(e.tilt, b.tilt_error());
+  }
+  EXPECT_LT(e.position, 5e-3);
+  EXPECT_LT(e.velocity, 0.05);
+  EXPECT_LT(e.tilt, 5e-3);
+}
+
+TEST(KinematicInertial, StateGoesInAndComesOutTheSame) {
+  Bench b(1.0, kNominal);
+  b.run_for(1.0);
+  GaitdStateEstimatorState in{};
+  b.layer.get_state(in);
+  KinematicInertial other(atlas());
+  other.set_state(in);
+  GaitdStateEstimatorState out{};
+  other.get_state(out);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(out.pelvis_position[k], in.pelvis_position[k]);
+    EXPECT_EQ(out.pelvis_velocity[k], in.pelvis_velocity[k]);
+    EXPECT_EQ(out.gyro_bias[k], in.gyro_bias[k]);
+    EXPECT_EQ(out.accelerometer_bias[k], in.accelerometer_bias[k]);
+  }
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(out.pelvis_orientation[k], in.pelvis_orientation[k]);
+  EXPECT_EQ(out.contact[0], in.contact[0]);
+}
+
+TEST(KinematicInertial, GivesTheSameBitsTwice) {
+  GaitdRobotState states[2];
+  for (GaitdRobotState& s : states) {
+    Bench b(1.0, kNominal, 9);
+    b.run_for(1.0);
+    s = b.state;
+  }
+  EXPECT_EQ(std::memcmp(&states[0], &states[1], sizeof(states[0])), 0);
+}
+
+TEST(KinematicInertial, NeverAllocates) {
+  Bench b(1.0, kNominal);
+  int allocations = 0;
+  for (; b.tick < 500; ++b.tick) {
+    b.sense();
+    const int before = testing::allocation_count();
+    b.process(b.layer);
+    allocations += testing::allocation_count() - before;
+  }
+  EXPECT_EQ(allocations, 0);
+}
+
+}  // namespace
+}  // namespace gaitd::plugins

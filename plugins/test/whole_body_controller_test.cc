@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+
+#include "com_height_qp.h"
+#include "gaitd/dynamics/dynamics.h"
+#include "gaitd/walking/objectives.h"
+#include "layer_inputs.h"
+#include "walking/test/allocation_counter.h"
+
+namespace gaitd::plugins {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using testing::atlas;
+using testing::SyntheticWalk;
+
+using Output = GaitdWholeBodyControllerOutput;
+
+double weight() { return atlas().total_mass * atlas().gravity; }
+
+// Atlas in its nominal posture (with a little motion if wanted), with the objectives of a gait.
+class Bench {
+ public:
+  explicit Bench(double period = 0.001)
+      : walk(period),
+        builder(atlas()),
+        objectives(std::make_unique<GaitdObjectives>()),
+        out(std::make_unique<Output>()) {
+    walk.run_for(5 * period);
+    builder.reset(walk.robot, walk.gait());
+    walk.on_update = [this] { make_objectives(); };
+    walk.run_for(0.1);
+  }
+  void make_objectives() {
+    builder.update(walk.dt, walk.robot, walk.gait(), walk.machine.lift_off(), adjustment, {},
+                   *objectives);
+  }
+  GaitdWholeBodyControllerInput input() const {
+    return {sizeof(GaitdWholeBodyControllerInput),
+            0,
+            testing::layer_time(walk.dt),
+            &walk.robot,
+            &walk.gait(),
+            &toe_off,
+            objectives.get()};
+  }
+  GaitdStatus process(ComHeightQp& layer) { return layer.process(input(), *out); }
+  // Small random velocities and joint offsets.
+  void stir(unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < atlas().joint_count; ++i) {
+      walk.robot.joint_position[i] += 0.02 * normal(random);
+      walk.robot.joint_velocity[i] = 0.2 * normal(random);
+    }
+    for (double& v : walk.robot.pelvis_twist) v = 0.1 * normal(random);
+    testing::fill_kinematics(atlas(), walk.gait().omega, walk.robot);
+    make_objectives();
+  }
+
+  SyntheticWalk walk;
+  walking::ObjectiveBuilder builder;
+  GaitdStepAdjustment adjustment{};
+  GaitdToeOff toe_off{};
+  std::unique_ptr<GaitdObjectives> objectives;
+  std::unique_ptr<Output> out;
+};
+
+class Recomputed {
+ public:
+  explicit Recomputed(const Bench& b) : dynamics(atlas()) {
+    const GaitdRobotState& r = b.walk.robot;
+    const int n = atlas().joint_count;
+    dynamics.update(sdk::view(r.pelvis_position), sdk::quaternion(r.pelvis_orientation),
+                    sdk::view(r.pelvis_twist), sdk::head(r.joint_position, n),
+                    sdk::head(r.joint_velocity, n));
+    acceleration.resize(6 + n);
+    acceleration << sdk::view(b.out->info.pelvis_acceleration),
+        sdk::head(b.out->info.joint_acceleration, n);
+    force = dynamics.mass_matrix() * acceleration + dynamics.bias();
+    for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
+      const GaitdFoot& foot = atlas().feet[side];
+      VectorXd applied = VectorXd::Zero(6 + n);
+      dynamics.kinematics().add_wrench(foot.body, sdk::view(foot.sole.origin),
+                                       sdk::view(b.out->info.foot_wrench[side]), applied);
+      force -= applied;
+    }
+    momentum_rate =
+        dynamics.centroidal_momentum_matrix() * acceleration + dynamics.centroidal_bias();
+  }
+  dynamics::Dynamics dynamics;
+  VectorXd acceleration;
+  VectorXd force;  // what the joints have to give; nothing can act on the pelvis
+  dynamics::Vector6d momentum_rate;
+};
+
+void expect_physical(const Bench& b) {
+  const Recomputed r(b);
+  EXPECT_LT(r.force.head<6>().cwiseAbs().maxCoeff(), 1e-6 * weight());
+  for (int i = 0; i < atlas().joint_count; ++i) {
+    const GaitdJoint& joint = atlas().joints[i];
+    const GaitdJointCommand& c = b.out->commands.joints[i];
+    EXPECT_EQ(c.mode, GAITD_JOINT_MODE_TORQUE);
+    EXPECT_NEAR(c.torque, r.force[6 + i] + joint.damping * b.walk.robot.joint_velocity[i],
+                1e-6 * weight())
+        << joint.name;
+    EXPECT_LE(std::abs(c.torque), joint.effort_limit + 1e-6) << joint.name;
+    EXPECT_EQ(c.acceleration, b.out->info.joint_acceleration[i]);
+  }
+}
+
+void expect_sound_contacts(const Bench& b) {
+  const GaitdObjectives& o = *b.objectives;
+  for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
+    const GaitdFoothold& foothold = b.walk.gait().footholds[side];
+    const Vector3d moment = sdk::view(b.out->info.foot_wrench[side]).head<3>();
+    const Vector3d force = sdk::view(b.out->info.foot_wrench[side]).tail<3>();
+    if (foothold.contact == GAITD_CONTACT_NONE) {
+      EXPECT_EQ(force.norm(), 0.0);
+      continue;
+    }
+    double most = 0.0;
+    double friction = 0.0;
+    for (int i = 0; i < o.contact_count; ++i) {
+      if (o.contacts[i].side != side) continue;
+      most += 4.0 * o.contacts[i].rho_max;
+      friction = o.contacts[i].friction;
+    }
+    EXPECT_GT(force.z(), 0.0);
+    EXPECT_LE(force.z(), most + 1e-6);
+    EXPECT_LE(std::abs(force.x()) + std::abs(force.y()), friction * force.z() + 1e-6);
+    // The centre of pressure, in the sole.
+    if (force.z() < 1.0) continue;
+    const Vector3d cop = sdk::quaternion(b.walk.robot.feet[side].orientation).conjugate() *
+                         Vector3d(-moment.y() / force.z(), moment.x() / force.z(), 0.0);
+    walking::ConvexPolygon sole;
+    for (int i = 0; i < atlas().feet[side].point_count; ++i) {
+      sole.add({atlas().feet[side].points[i][0], atlas().feet[side].points[i][1]});
+    }
+    sole.make_hull();
+    EXPECT_GT(sole.inside_distance(cop.head<2>()), -2e-3) << "side " << side;
+  }
+}
+
+TEST(ComHeightQp, StandingAtlasIsHeldUpByBothFeet) {
+  Bench b;
+  ComHeightQp layer(atlas());
+  ASSERT_EQ(b.process(layer), GAITD_OK);
+  ASSERT_EQ(b.out->info.status, GAITD_WBC_SOLVED);
+  EXPECT_GE(b.out->info.iterations, 0);
+  EXPECT_LT(b.out->info.kkt_residual, 1e-6);
+  expect_physical(b);
+  expect_sound_contacts(b);
+  const double left = b.out->info.foot_wrench[GAITD_LEFT][5];
+  const double right = b.out->info.foot_wrench[GAITD_RIGHT][5];
+  EXPECT_NEAR(left + right, weight(), 0.05 * weight());
+  EXPECT_NEAR(left, right, 0.1 * weight());
+  EXPECT_LT(Recomputed(b).acceleration.cwiseAbs().maxCoeff(), 20.0);
+}
+
+TEST(ComHeightQp, SolutionsArePhysicalInStirredStates) {
+  ComHeightQp layer(atlas());
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Bench b;
+    b.stir(seed);
+    ASSERT_EQ(b.process(layer), GAITD_OK);
+    ASSERT_EQ(b.out->info.status, GAITD_WBC_SOLVED) << seed;
+    EXPECT_LT(b.out->info.kkt_residual, 1e-6);
+    expect_physical(b);
+    expect_sound_contacts(b);
+  }
+}
+
+TEST(ComHeightQp, TheMomentumObjectiveIsMetInAllThreeDirections) {
+  Bench b;
+  ComHeightQp layer(atlas());
+  b.adjustment.linear_momentum_rate[0] = 60.0;
+  b.adjustment.linear_momentum_rate[1] = -40.0;
+  b.make_objectives();
+  b.objectives->momentum_rate[5] = 80.0;
+  ASSERT_EQ(b.process(layer), GAITD_OK);
+  ASSERT_EQ(b.out->info.status, GAITD_WBC_SOLVED);
+  const Vector3d rate = Recomputed(b).momentum_rate.tail<3>();
+  const Vector3d wanted(60.0, -40.0, 80.0);
+  EXPECT_LT((rate - wanted).norm(), 0.15 * wanted.norm()) << rate.transpose();
+  EXPECT_NEAR(b.out->info.momentum_residual, (rate - wanted).norm(), 1e-6 * weight());
+}
+
+TEST(ComHeightQp, TheHeightIsTakenWhateverTheMaskSays) {
+  Bench b;
+  ComHeightQp layer(atlas());
+  b.objectives->momentum_mask = 0b011000;
+  b.objectives->momentum_rate[5] = 150.0;
+  ASSERT_EQ(b.process(layer), GAITD_OK);
+  EXPECT_NEAR(Recomputed(b).momentum_rate[5], 150.0, 30.0);
+}
+
+TEST(ComHeightQp, WalksThroughEveryPhaseWithPhysicalSolutions) {
+  Bench b(0.004);
+  ComHeightQp layer(atlas());
+  ASSERT_FALSE(b.walk.machine.walk({.steps = 2, .length = 0.1}).refused());
+  int swings = 0;
+  for (int i = 0; i < 1000; ++i) {
+    b.walk.tick();
+    ASSERT_EQ(b.process(layer), GAITD_OK);
+    ASSERT_EQ(b.out->info.status, GAITD_WBC_SOLVED) << i;
+    if (i % 10 == 0) expect_physical(b);
+    if (b.walk.gait().phase != GAITD_PHASE_SWING) continue;
+    ++swings;
+    const double* wrench = b.out->info.foot_wrench[b.walk.gait().next_side];
+    for (int k = 0; k < 6; ++k) ASSERT_EQ(wrench[k], 0.0);
+  }
+  EXPECT_GT(swings, 200);
+}
+
+TEST(ComHeightQp, TorqueLimitsAreKeptWhenTheyBind) {
+  Bench b;
+  ComHeightQp layer(atlas());
+  testing::set_parameter(layer, "torque_scale", 0.22);
+  b.objectives->momentum_rate[3] = 600.0;
+  b.objectives->momentum_rate[5] = 900.0;
+  ASSERT_EQ(b.process(layer), GAITD_OK);
+  ASSERT_EQ(b.out->info.status, GAITD_WBC_SOLVED);
+  double nearest = 1e9;
+  for (int i = 0; i < atlas().joint_count; ++i) {
+    const double limit = 0.22 * atlas().joints[i].effort_limit;
+    const double torque = std::abs(b.out->commands.joints[i].torque);
+    EXPECT_LE(torque, limit + 1e-5) << atlas().joints[i].name;
+    nearest = std::min(nearest, limit - torque);
+  }
+  EXPECT_LT(nearest, 1e-3);  // or nothing was bound
+}
+
+TEST(ComHeightQp, JointsAtAStopAreNotPushedFurther) {
+  Bench b;
+  ComHeightQp layer(atlas());
+  const int knee = atlas().legs[GAITD_LEFT].knee;
+  b.walk.robot.joint_position[knee] = atlas().joints[knee].position_max;
+  b.walk.robot.joint_velocity[knee] = 0.0;
+  testing::fill_kinematics(atlas(), 3.0, b.walk.robot);
+  b.objectives->privileged_acceleration[knee] = 500.0;
+  b.objectives->privileged_weight[knee] = 1e6;
+  ASSERT_EQ(b.process(layer), GAITD_OK);
+  ASSERT_EQ(b.out->info.status, GAITD_WBC_SOLVED);
+  EXPECT_LE(b.out->info.joint_acceleration[knee], 1e-6);
+}
+
+TEST(ComHeightQp, InputThatIsNoNumberGivesAStatusAndIsForgotten) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Bench b;
+  ComHeightQp layer(atlas());
+  ASSERT_EQ(b.process(layer), GAITD_OK);
+  const Output good = *b.out;
+  double* const poisoned[] = {&b.walk.robot.joint_position[3],
+                              &b.walk.robot.joint_velocity[7],
+                              &b.walk.robot.pelvis_orientation[1],
+                              &b.objectives->momentum_rate[3],
+                              &b.objectives->tasks[0].acceleration[0],
+                              &b.objectives->contacts[0].point[0],
+                              &b.objectives->rho_weight,
+                              &b.objectives->external_wrench[2]};
+  for (double* value : poisoned) {
+    for (double bad : {nan, std::numeric_limits<double>::infinity()}) {
+      const double before = *value;
+      *value = bad;
+      const GaitdStatus status = b.process(layer);
+      EXPECT_TRUE(status != GAITD_OK || b.out->info.status != GAITD_WBC_SOLVED);
+      *value = before;
+      ASSERT_EQ(b.process(layer), GAITD_OK);
+      ASSERT_EQ(b.out->info.status, GAITD_WBC_SOLVED);
+      for (int i = 0; i < atlas().joint_count; ++i) {
+        ASSERT_NEAR(b.out->commands.joints[i].torque, good.commands.joints[i].torque,
+                    0.02 * atlas().joints[i].effort_limit);
+      }
+    }
+  }
+}
+
+TEST(ComHeightQp, GivesTheSameBitsTwice) {
+  Output outputs[2];
+  for (Output& out : outputs) {
+    Bench b(0.004);
+    ComHeightQp layer(atlas());
+    ASSERT_FALSE(b.walk.machine.walk({.steps = 1, .length = 0.1}).refused());
+    for (int i = 0; i < 300; ++i) {
+      b.walk.tick();
+      ASSERT_EQ(b.process(layer), GAITD_OK);
+    }
+    out = *b.out;
+  }
+  EXPECT_EQ(std::memcmp(&outputs[0].commands.joints, &outputs[1].commands.joints,
+                        sizeof(outputs[0].commands.joints)),
+            0);
+  EXPECT_EQ(std::memcmp(outputs[0].info.joint_acceleration, outputs[1].info.joint_acceleration,
+                        sizeof(outputs[0].info.joint_acceleration)),
+            0);
+}
+
+TEST(ComHeightQp, AnotherInstanceContinuesFromItsState) {
+  Bench b;
+  ComHeightQp first(atlas());
+  for (int i = 0; i < 20; ++i) {
+    b.walk.tick();
+    ASSERT_EQ(b.process(first), GAITD_OK);
+  }
+  auto state = std::make_unique<GaitdWholeBodyControllerState>();
+  first.get_state(*state);
+  EXPECT_EQ(state->size, sizeof(*state));
+  ComHeightQp second(atlas());
+  second.set_state(*state);
+  b.walk.tick();
+  ASSERT_EQ(b.process(first), GAITD_OK);
+  const Output expected = *b.out;
+  ASSERT_EQ(b.process(second), GAITD_OK);
+  for (int i = 0; i < atlas().joint_count; ++i) {
+    EXPECT_NEAR(b.out->commands.joints[i].torque, expected.commands.joints[i].torque, 1e-5);
+    EXPECT_NEAR(b.out->commands.joints[i].position, expected.commands.joints[i].position, 1e-9);
+  }
+}
+
+TEST(ComHeightQp, NeverAllocatesAfterTheFirstTicks) {
+  Bench b(0.004);
+  ComHeightQp layer(atlas());
+  for (int i = 0; i < 3; ++i) b.process(layer);
+  ASSERT_FALSE(b.walk.machine.walk({.steps = 1, .length = 0.1}).refused());
+  int allocations = 0;
+  for (int i = 0; i < 400; ++i) {
+    b.walk.tick();
+    const GaitdWholeBodyControllerInput in = b.input();
+    const int before = testing::allocation_count();
+    layer.process(in, *b.out);
+    allocations += testing::allocation_count() - before;
+  }
+  EXPECT_EQ(allocations, 0);
+}
+
+}  // namespace
+}  // namespace gaitd::plugins
