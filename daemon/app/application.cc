@@ -170,9 +170,11 @@ bool Application::load_layers() {
   auto impedance = [&](Impedance state, const JointImpedance& values) {
     pipeline_->objectives().set_impedance(state, values.stiffness, values.damping);
   };
-  impedance(Impedance::kSupport, profile.support);
-  impedance(Impedance::kSwing, profile.swing);
-  impedance(Impedance::kHeelStrike, profile.heel_strike);
+  if (profile.given) {
+    impedance(Impedance::kSupport, profile.support);
+    impedance(Impedance::kSwing, profile.swing);
+    impedance(Impedance::kHeelStrike, profile.heel_strike);
+  }
   if (scenario_) {
     Command mode;
     mode.type = CommandType::kMode;

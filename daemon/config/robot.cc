@@ -48,6 +48,7 @@ void read_impedance_state(MapReader map, RobotGeometry* geometry, JointImpedance
 void read_profile(MapReader map, RobotGeometry* geometry, Settings* settings,
                   ImpedanceProfile* impedance) {
   read_parameters(map.map("parameters"), SettingSource::kProfile, settings, map.issues());
+  impedance->given = map.has("impedance");
   MapReader states = map.map("impedance");
   read_impedance_state(states.map("support"), geometry, &impedance->support);
   read_impedance_state(states.map("swing"), geometry, &impedance->swing);

@@ -21,6 +21,7 @@ struct JointImpedance {
 
 // What a leg uses in each of its states; joints that belong to no leg use `support`.
 struct ImpedanceProfile {
+  bool given = false;          // robot.yaml has a section for it
   JointImpedance support;      // the foot carries load
   JointImpedance swing;        // the foot is in the air
   JointImpedance heel_strike;  // the first moments after touchdown
@@ -32,7 +33,7 @@ struct Robot {
   std::string file;  // robot.yaml
   std::string urdf;  // path of the URDF file
   GaitdModel model{};
-  ImpedanceProfile impedance;  // of the chosen profile; all zero unless it says otherwise
+  ImpedanceProfile impedance;  // of the chosen profile
 };
 
 // Reads robots/<name>/robot.yaml and the URDF it names, fills the model, and puts the parameters of

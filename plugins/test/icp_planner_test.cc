@@ -35,8 +35,6 @@ TYPED_TEST(IcpPlanner, ReferenceNeverJumpsUnderRandomCommands) {
     double dynamics = 0.0;
     for (int i = 0; i < 10000; ++i) {
       storm.disturb(w);
-      w.landing_delay = std::min(w.landing_delay, 0.0);
-      w.icp_error = 0.0;
       w.tick();
       const Eigen::Vector2d icp = sdk::view(w.plan.icp);
       const Eigen::Vector2d rate = sdk::view(w.plan.icp_velocity);

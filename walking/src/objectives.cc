@@ -102,17 +102,32 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
 }
 
 void ObjectiveBuilder::update_impedance(const GaitdGaitState& gait, GaitdObjectives& out) const {
+  constexpr Objective kDamping[] = {Objective::kSupportDriveDamping, Objective::kSwingDriveDamping,
+                                    Objective::kStrikeDriveDamping};
   auto set = [&](int joint, Impedance state) {
-    out.joint_stiffness[joint] = stiffness_[static_cast<int>(state)][joint];
-    out.joint_damping[joint] = damping_[static_cast<int>(state)][joint];
+    const int s = static_cast<int>(state);
+    if (impedance_given_) {
+      out.joint_stiffness[joint] = stiffness_[s][joint];
+      out.joint_damping[joint] = damping_[s][joint];
+      return;
+    }
+    const double limit = model_.joints[joint].effort_limit;
+    out.joint_stiffness[joint] =
+        state == Impedance::kSwing ? parameters_[Objective::kSwingDriveStiffness] * limit : 0.0;
+    out.joint_damping[joint] = parameters_[kDamping[s]] * limit;
   };
-  for (int i = 0; i < model_.joint_count; ++i) set(i, Impedance::kSupport);
+  for (int i = 0; i < model_.joint_count; ++i) {
+    out.joint_stiffness[i] = out.joint_damping[i] = 0.0;
+    if (impedance_given_) set(i, Impedance::kSupport);
+  }
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const bool swing = gait.footholds[side].contact == GAITD_CONTACT_NONE;
     const bool strike = !swing && time_in_contact_[side] < kHeelStrikeTime;
     const GaitdLeg& leg = model_.legs[side];
     for (int i = 0; i < leg.joint_count; ++i) {
-      if (swing || strike) set(leg.joints[i], swing ? Impedance::kSwing : Impedance::kHeelStrike);
+      set(leg.joints[i], swing    ? Impedance::kSwing
+                         : strike ? Impedance::kHeelStrike
+                                  : Impedance::kSupport);
     }
   }
 }

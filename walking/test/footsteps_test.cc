@@ -19,7 +19,8 @@ using testing::footstep;
 using testing::SyntheticWalk;
 
 const GaitParameters& parameters() {
-  static const GaitParameters p(kGaitParameters);
+  // Of a machine: it fills in what the table leaves to the robot.
+  static const GaitParameters p = GaitMachine(atlas()).parameters();
   return p;
 }
 
@@ -127,6 +128,11 @@ double separation(const GaitdPose& stance, const GaitdFootstep& step) {
   const Eigen::Vector3d d = sdk::quaternion(stance.orientation).conjugate() *
                             (sdk::view(step.pose.position) - sdk::view(stance.position));
   return side_sign(step.side) * d.y();
+}
+
+TEST(FootstepGenerator, TheLeastSeparationIsARealOne) {
+  EXPECT_GT(parameters()[Gait::kMinFootSeparation], 0.1);
+  EXPECT_LT(parameters()[Gait::kMinFootSeparation], atlas().nominal_foot_separation);
 }
 
 TEST(FootstepGenerator, SidewaysWalksNeverBringTheFeetCloserThanAllowed) {

@@ -139,17 +139,23 @@ TEST(IcpReference, DoesNotJumpAtEarlyTouchdowns) {
 }
 
 TEST(IcpReference, DoesNotJumpAtLateTouchdowns) {
-  WatchedWalk w;
-  w.landing_delay = 0.08;
-  walk_on(w);
-  finish(w);
+  for (double length : {0.35, 0.7}) {
+    for (double delay : {0.03, 0.08, 0.3}) {
+      WatchedWalk w;
+      w.landing_delay = delay;
+      walk_on(w, length);
+      finish(w);
+    }
+  }
 }
 
 TEST(IcpReference, DoesNotJumpWhenATransferWaitsForTheRobot) {
-  WatchedWalk w;
-  w.icp_error = 0.08;  // forces the whole patience of every transfer
-  walk_on(w);
-  finish(w);
+  for (double length : {0.35, 0.7}) {
+    WatchedWalk w;
+    w.icp_error = 0.08;  // forces the whole patience of every transfer
+    walk_on(w, length);
+    finish(w);
+  }
 }
 
 TEST(IcpReference, DoesNotJumpWhenPausedAndResumed) {
@@ -197,9 +203,6 @@ TEST(IcpReference, DoesNotJumpInRandomSequencesOfCommands) {
     CommandStorm storm(seed);
     for (int i = 0; i < 15000; ++i) {
       storm.disturb(w);
-      // An overdue phase has no reference: late touchdowns have their own test.
-      w.landing_delay = std::min(w.landing_delay, 0.0);
-      w.icp_error = 0.0;
       w.tick();
     }
     EXPECT_LT(w.worst, kLargestJump) << "seed " << seed;
@@ -231,7 +234,7 @@ TEST(IcpReference, AnotherInstanceContinuesFromItsState) {
   b.set_state(state);
   handed_over = true;
   ASSERT_TRUE(w.run_until_stand());
-  EXPECT_LT(difference, 1e-12);
+  EXPECT_LT(difference, 1e-5);
 }
 
 TEST(IcpReference, ReportsGammaForTheFootstepsAheadOnly) {

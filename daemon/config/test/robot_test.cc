@@ -147,17 +147,17 @@ TEST_F(Atlas, GivesTheParametersOfTheProfileOverItsOwn) {
   EXPECT_EQ(hardware.peek("legs.straight_knee")->text, "0.3");
 }
 
-TEST_F(Atlas, HasAnImpedanceOfItsOwnInEachProfile) {
+TEST_F(Atlas, LeavesTheDrivesToTheDefaultsInSimulation) {
   const int ankle = joint_index(robot_->model, "l_leg_aky");
   const int knee = joint_index(robot_->model, "l_leg_kny");
-  EXPECT_GT(robot_->impedance.swing.stiffness[ankle], 0.0);
-  EXPECT_GT(robot_->impedance.swing.stiffness[knee], 0.0);
-  EXPECT_EQ(robot_->impedance.support.stiffness[knee], 0.0);
-  EXPECT_EQ(robot_->impedance.support.stiffness[ankle], 0.0);
+  EXPECT_FALSE(robot_->impedance.given);
+  EXPECT_EQ(robot_->impedance.swing.stiffness[ankle], 0.0);
+  EXPECT_EQ(robot_->impedance.support.damping[knee], 0.0);
   Settings settings;
   Issues issues;
   const auto robot = load_robot(atlas_file(), Profile::kHardware, &settings, &issues);
   ASSERT_TRUE(robot) << issues.error_text();
+  EXPECT_TRUE(robot->impedance.given);
   EXPECT_GT(robot->impedance.swing.stiffness[ankle], 0.0);
   EXPECT_EQ(robot->impedance.swing.stiffness[knee], 0.0);
   EXPECT_GT(robot->impedance.heel_strike.damping[ankle], robot->impedance.support.damping[ankle]);

@@ -25,12 +25,14 @@ class ObjectiveBuilder {
   void set_swing_parameter(int index, double value) { swing_parameters_.set(index, value); }
 
   // What the drives add around their references, by what the leg of the joint does. Joints of no leg
-  // follow `kSupport`. N m/rad and N m s/rad, one per joint.
+  // follow `kSupport`. N m/rad and N m s/rad, one per joint. Without it the drives of the legs get
+  // shares of their effort limits (parameters), the others nothing.
   enum class Impedance { kSupport = 0, kSwing, kHeelStrike, kCount };
   using PerJoint = std::array<double, GAITD_MAX_JOINTS>;
   void set_impedance(Impedance state, const PerJoint& stiffness, const PerJoint& damping) {
     stiffness_[static_cast<int>(state)] = stiffness;
     damping_[static_cast<int>(state)] = damping;
+    impedance_given_ = true;
   }
 
   // Takes the present posture as the start of every reference.
@@ -86,6 +88,7 @@ class ObjectiveBuilder {
   ReferenceFilter yaw_;
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // rad, held while standing, level in a walk
   std::array<double, GAITD_MAX_FEET> time_in_contact_{};
+  bool impedance_given_ = false;
   std::array<PerJoint, static_cast<int>(Impedance::kCount)> stiffness_{};
   std::array<PerJoint, static_cast<int>(Impedance::kCount)> damping_{};
 };

@@ -150,13 +150,17 @@ enum class Objective {
   kToeWeight,
   kToeAngularStiffness,
   kToeAngularWeight,
+  kSupportDriveDamping,
+  kSwingDriveStiffness,
+  kSwingDriveDamping,
+  kStrikeDriveDamping,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 38> kObjectiveParameters = {
+inline constexpr std::array<GaitdParameter, 42> kObjectiveParameters = {
     real_parameter("friction", "", 0.05, 2, 0.7, "coefficient that the controller counts on"),
     real_parameter("com_height", "", 0.5, 1.2, 1.0,
                    "CoM height when standing, over the height in the nominal posture"),
-    real_parameter("reach_length", "", 0.5, 1.2, 0.99,
+    real_parameter("reach_length", "", 0.5, 1.2, 1.0,
                    "hip to ankle of a trailing leg, over the length in the nominal posture"),
     real_parameter("reach_share", "", 0, 1.5, 0.9,
                    "hip ahead of the trailing ankle at the end of a transfer, over the step"),
@@ -169,7 +173,7 @@ inline constexpr std::array<GaitdParameter, 38> kObjectiveParameters = {
                    "linear momentum rate over the mass, horizontal rows"),
     real_parameter("momentum_height_weight", "", 0, 1e6, 1500, "the same, vertical row"),
     real_parameter("rho_weight", "", 1e-6, 1e6, 30, "contact forces in body weights"),
-    real_parameter("rho_rate_weight", "s", 0, 1e6, 6,
+    real_parameter("rho_rate_weight", "s", 0, 1e6, 12,
                    "change of the contact forces per tick, times the period"),
     real_parameter("rho_min", "weight", 0, 0.1, 0.0023, "least force on a basis vector"),
     real_parameter("rho_max", "weight", 0.05, 10, 1.5, "largest force on a basis vector"),
@@ -201,6 +205,12 @@ inline constexpr std::array<GaitdParameter, 38> kObjectiveParameters = {
     real_parameter("toe_angular_stiffness", "1/s^2", 0, 2000, 200,
                    "roll and yaw of the foot in toe-off"),
     real_parameter("toe_angular_weight", "", 0, 1e6, 5, "of them"),
+    real_parameter("support_drive_damping", "limits s/rad", 0, 1, 0.012,
+                   "drives of the legs, where robot.yaml has no impedance; in effort limits"),
+    real_parameter("swing_drive_stiffness", "limits/rad", 0, 10, 0.2, "the same, leg in swing"),
+    real_parameter("swing_drive_damping", "limits s/rad", 0, 1, 0.02, "the same, leg in swing"),
+    real_parameter("strike_drive_damping", "limits s/rad", 0, 1, 0.024,
+                   "the same, just after touchdown"),
 };
 
 }  // namespace gaitd::walking
