@@ -82,8 +82,9 @@ bool Application::read_configuration() {
   if (!robot_file) {
     std::string there;
     for (const std::string& name : paths_.robots()) there += " " + name;
-    issues.add_text({}, "robot", "no robot '" + config_.robot + "'; give a robot.yaml or one of:" +
-                                     (there.empty() ? " (none found)" : there));
+    issues.add_text({}, "robot",
+                    "no robot '" + config_.robot + "'; give a robot.yaml or one of:" +
+                        (there.empty() ? " (none found)" : there));
   } else {
     robot_ = load_robot(robot_file->string(), config_.profile, &settings_, &issues);
   }
@@ -155,7 +156,8 @@ bool Application::load_layers() {
   apply(gait, [&](int i, double v) { pipeline_->gait().set_parameter(i, v); });
   apply(swing, [&](int i, double v) { pipeline_->objectives().set_swing_parameter(i, v); });
   apply(legs, [&](int i, double v) { pipeline_->objectives().set_leg_parameter(i, v); });
-  apply(objectives, [&](int i, double v) { pipeline_->objectives().set_objective_parameter(i, v); });
+  apply(objectives,
+        [&](int i, double v) { pipeline_->objectives().set_objective_parameter(i, v); });
   apply(safety, [&](int i, double v) { pipeline_->safety().set_parameter(i, v); });
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     auto& known = known_variants_[layer];
@@ -254,7 +256,8 @@ LogMetadata Application::metadata() const {
 bool Application::start_telemetry() {
   TelemetryOptions options;
   options.period = config_.period;
-  telemetry_ = std::make_unique<Telemetry>(make_signal_table(robot_->model, known_variants_, truth_), options);
+  telemetry_ = std::make_unique<Telemetry>(
+      make_signal_table(robot_->model, known_variants_, truth_), options);
   if (config_.log.enabled) {
     log_file_ = default_log_file();
     McapOptions mcap;
@@ -283,12 +286,8 @@ nlohmann::json Application::status() const {
     s["layers"][layer]["variant"] = layer_variants_[layer];
   }
   const Telemetry::LogStatus log = telemetry_->log_status();
-  s["log"] = {{"file", log_file_},
-              {"open", log.open},
-              {"error", log.error},
-              {"ticks", log.ticks},
-              {"bytes", log.bytes},
-              {"dropouts", telemetry_->dropouts()}};
+  s["log"] = {{"file", log_file_},  {"open", log.open},   {"error", log.error},
+              {"ticks", log.ticks}, {"bytes", log.bytes}, {"dropouts", telemetry_->dropouts()}};
   return s;
 }
 
@@ -296,8 +295,8 @@ bool Application::start_server() {
   bridge_ = std::make_unique<CommandBridge>();
   Methods methods;
   add_command_methods(&methods, bridge_.get(),
-                      [this](const std::string& method, const nlohmann::json& params)
-                          -> std::variant<Command, RpcError> {
+                      [this](const std::string& method,
+                             const nlohmann::json& params) -> std::variant<Command, RpcError> {
                         std::string error;
                         if (auto command = parse_command(method, params, robot_->model, &error)) {
                           return *command;
@@ -356,7 +355,8 @@ int Application::run() {
     if (paced) {
       enter_realtime(config_.realtime, &realtime);
       for (const std::string& line : realtime.got) spdlog::info("real time: {}", line);
-      for (const std::string& line : realtime.degraded) spdlog::warn("real time, degraded: {}", line);
+      for (const std::string& line : realtime.degraded)
+        spdlog::warn("real time, degraded: {}", line);
       degraded = !realtime.degraded.empty();
       if (degraded && config_.realtime.require) {
         spdlog::error("--require-rt: not running degraded");

@@ -13,26 +13,23 @@ namespace gaitd::daemon {
 
 using nlohmann::json;
 
-void add_robot_metadata(const GaitdModel &model, LogMetadata *metadata) {
+void add_robot_metadata(const GaitdModel& model, LogMetadata* metadata) {
   json joints = json::array();
   for (int i = 0; i < model.joint_count; ++i) {
-    joints.push_back({{"name", model.joints[i].name},
-                      {"effort_limit", model.joints[i].effort_limit}});
+    joints.push_back(
+        {{"name", model.joints[i].name}, {"effort_limit", model.joints[i].effort_limit}});
   }
   json legs;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    const GaitdLeg &leg = model.legs[side];
+    const GaitdLeg& leg = model.legs[side];
     json names = json::array();
-    for (int i = 0; i < leg.joint_count; ++i)
-      names.push_back(model.joints[leg.joints[i]].name);
-    legs[side == GAITD_LEFT ? "left" : "right"] = {
-        {"knee", model.joints[leg.knee].name},
-        {"knee_bend_sign", leg.knee_bend_sign},
-        {"joints", names}};
+    for (int i = 0; i < leg.joint_count; ++i) names.push_back(model.joints[leg.joints[i]].name);
+    legs[side == GAITD_LEFT ? "left" : "right"] = {{"knee", model.joints[leg.knee].name},
+                                                   {"knee_bend_sign", leg.knee_bend_sign},
+                                                   {"joints", names}};
   }
   json faults;
-  for (std::size_t i = 0; i < kFaultNames.size(); ++i)
-    faults[kFaultNames[i]] = i;
+  for (std::size_t i = 0; i < kFaultNames.size(); ++i) faults[kFaultNames[i]] = i;
   (*metadata)["joints"] = joints.dump();
   (*metadata)["legs"] = legs.dump();
   (*metadata)["fault_bits"] = faults.dump();
@@ -41,49 +38,44 @@ void add_robot_metadata(const GaitdModel &model, LogMetadata *metadata) {
 namespace {
 
 // A signal as people read it; null if it is not there or not finite.
-json signal_value(const SignalTable &table, const std::vector<double> &values,
+json signal_value(const SignalTable& table, const std::vector<double>& values,
                   std::string_view name) {
   for (std::size_t i = 0; i < table.size() && i < values.size(); ++i) {
-    const SignalDescription &signal = table[i];
-    if (signal.name != name || !std::isfinite(values[i]))
-      continue;
+    const SignalDescription& signal = table[i];
+    if (signal.name != name || !std::isfinite(values[i])) continue;
     switch (signal.kind) {
-    case SignalDescription::Kind::kReal:
-      return values[i];
-    case SignalDescription::Kind::kInteger:
-      return static_cast<std::int64_t>(values[i]);
-    case SignalDescription::Kind::kBoolean:
-      return values[i] != 0.0;
-    case SignalDescription::Kind::kEnumeration:
-      const auto index = static_cast<std::size_t>(std::max(0.0, values[i]));
-      return index < signal.words.size() ? json(signal.words[index]) : json();
+      case SignalDescription::Kind::kReal:
+        return values[i];
+      case SignalDescription::Kind::kInteger:
+        return static_cast<std::int64_t>(values[i]);
+      case SignalDescription::Kind::kBoolean:
+        return values[i] != 0.0;
+      case SignalDescription::Kind::kEnumeration:
+        const auto index = static_cast<std::size_t>(std::max(0.0, values[i]));
+        return index < signal.words.size() ? json(signal.words[index]) : json();
     }
   }
   return nullptr;
 }
 
-} // namespace
+}  // namespace
 
-json status_of(const Telemetry &telemetry) {
+json status_of(const Telemetry& telemetry) {
   std::vector<double> values;
   json status;
   const bool ticked = telemetry.latest(values);
-  if (!ticked)
-    values.clear();
-  const auto get = [&](const std::string &name) {
+  if (!ticked) values.clear();
+  const auto get = [&](const std::string& name) {
     return signal_value(telemetry.table(), values, name);
   };
-  for (const char *name : {"time", "tick"})
-    status[name] = get(name);
+  for (const char* name : {"time", "tick"}) status[name] = get(name);
   status["state"] = get("safety/state");
-  for (const char *name : {"mode", "phase", "support", "step_index",
-                           "footsteps_ahead", "paused"}) {
+  for (const char* name : {"mode", "phase", "support", "step_index", "footsteps_ahead", "paused"}) {
     status[name] = get(std::string("gait/") + name);
   }
-  const auto pose = [&](const std::string &frame) {
+  const auto pose = [&](const std::string& frame) {
     json axes;
-    for (const char *axis : {"x", "y", "z", "yaw"})
-      axes[axis] = get(frame + "/" + axis);
+    for (const char* axis : {"x", "y", "z", "yaw"}) axes[axis] = get(frame + "/" + axis);
     return axes;
   };
   status["pelvis"] = pose("pelvis");
@@ -91,17 +83,15 @@ json status_of(const Telemetry &telemetry) {
   status["faults"] = json::array();
   const json bits = get("safety/faults");
   for (std::size_t i = 0; bits.is_number() && i < kFaultNames.size(); ++i) {
-    if ((bits.get<std::int64_t>() >> i & 1) != 0)
-      status["faults"].push_back(kFaultNames[i]);
+    if ((bits.get<std::int64_t>() >> i & 1) != 0) status["faults"].push_back(kFaultNames[i]);
   }
   status["tick_us"] = get("tick/total_us");
-  constexpr const char *kLayerTimes[] = {"estimator_us", "planner_us",
-                                         "adjuster_us", "toe_off_us", "wbc_us"};
+  constexpr const char* kLayerTimes[] = {"estimator_us", "planner_us", "adjuster_us", "toe_off_us",
+                                         "wbc_us"};
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
-    status["layers"].push_back(
-        {{"time_us", get(std::string("tick/") + kLayerTimes[layer])}});
+    status["layers"].push_back({{"time_us", get(std::string("tick/") + kLayerTimes[layer])}});
   }
   return status;
 }
 
-} // namespace gaitd::daemon
+}  // namespace gaitd::daemon

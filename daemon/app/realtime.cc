@@ -40,7 +40,8 @@ void lock_memory(const RealtimeConfig& config, RealtimeReport* report) {
   if (first_line("/sys/kernel/realtime") == "1") {
     report->got.push_back("PREEMPT_RT kernel");
   } else {
-    report->degraded.push_back("the kernel is not PREEMPT_RT: wake-ups may be late by milliseconds");
+    report->degraded.push_back(
+        "the kernel is not PREEMPT_RT: wake-ups may be late by milliseconds");
   }
 }
 

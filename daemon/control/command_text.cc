@@ -8,9 +8,9 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr const char* kNames[] = {"arm",    "disarm", "estop", "reset", "mode",
-                                  "walk",   "footsteps", "pause", "resume", "stop",
-                                  "abort",  "param.set", "sim.push", "sim.reset"};
+constexpr const char* kNames[] = {"arm",   "disarm",    "estop",    "reset",    "mode",
+                                  "walk",  "footsteps", "pause",    "resume",   "stop",
+                                  "abort", "param.set", "sim.push", "sim.reset"};
 
 class Writer {
  public:

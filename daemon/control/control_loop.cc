@@ -164,8 +164,8 @@ void ControlLoop::report_changes() {
   const char* comma = "";
   for (std::size_t i = 0; i < kFaultNames.size(); ++i) {
     if ((d.faults >> i & 1u) == 0) continue;
-    length += std::snprintf(text + length, sizeof(text) - length, "%s\"%s\"", comma,
-                            kFaultNames[i]);
+    length +=
+        std::snprintf(text + length, sizeof(text) - length, "%s\"%s\"", comma, kFaultNames[i]);
     comma = ",";
   }
   length += std::snprintf(text + length, sizeof(text) - length, "]}");

@@ -98,8 +98,8 @@ bool LayerChain::toe_off(TickData& d) {
 }
 
 bool LayerChain::control(TickData& d) {
-  const GaitdWholeBodyControllerInput in{sizeof(in), 0, d.time, &d.robot, &d.gait, &d.toe_off,
-                                         &d.objectives};
+  const GaitdWholeBodyControllerInput in{sizeof(in), 0,          d.time,       &d.robot,
+                                         &d.gait,    &d.toe_off, &d.objectives};
   GaitdWbcInfo& info = d.wbc.info;
   const bool ok = run(GAITD_LAYER_WHOLE_BODY_CONTROLLER, in, d.wbc, wbc_, d.times);
   if (!ok && info.status == GAITD_WBC_SOLVED) info.status = GAITD_WBC_NON_FINITE;

@@ -83,10 +83,9 @@ CommandReply Pipeline::execute(const Command& command) {
   reply.request = command.request;
   reply.tick = data_.time.tick;
   walking::Refusal refusal;
-  const bool needs_control = command.type == CommandType::kWalk ||
-                             command.type == CommandType::kFootsteps ||
-                             command.type == CommandType::kPause ||
-                             command.type == CommandType::kResume;
+  const bool needs_control =
+      command.type == CommandType::kWalk || command.type == CommandType::kFootsteps ||
+      command.type == CommandType::kPause || command.type == CommandType::kResume;
   if (needs_control && !safety_.controlled()) {
     return refused(command, safety_.state() == SafetyState::kFault
                                 ? "a fault is latched; see `gaitctl status`, then `gaitctl reset` "

@@ -70,8 +70,7 @@ void Safety::check(const TickData& d, bool estimate_ok) {
     raise(kFaultEstimator);
     return;
   }
-  const Eigen::Vector3d up =
-      sdk::quaternion(d.robot.pelvis_orientation) * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d up = sdk::quaternion(d.robot.pelvis_orientation) * Eigen::Vector3d::UnitZ();
   if (up.z() < std::cos(p_[P::kTiltLimit])) raise(kFaultTilt | kFaultFall);
   const double lower = std::min(d.robot.feet[0].position[2], d.robot.feet[1].position[2]);
   if (d.robot.pelvis_position[2] - lower < p_[P::kFallHeight] * model_.nominal_pelvis_height) {
@@ -167,7 +166,8 @@ void Safety::write(double dt, bool control_ok, TickData& d) {
     default:
       if (control_ok) {
         time_unsolved_ = 0.0;
-        for (int i = 0; i < model_.joint_count; ++i) d.commands.joints[i] = d.wbc.commands.joints[i];
+        for (int i = 0; i < model_.joint_count; ++i)
+          d.commands.joints[i] = d.wbc.commands.joints[i];
       } else {
         fall_back(dt, d);
       }

@@ -10,8 +10,8 @@
 
 namespace gaitd::daemon {
 
-// Plays a scenario against the ticks: hands out its commands and disturbances when they are due, and
-// says when it is over. Decides from the data of the tick alone, so that a run repeats.
+// Plays a scenario against the ticks: hands out its commands and disturbances when they are due,
+// and says when it is over. Decides from the data of the tick alone, so that a run repeats.
 class ScenarioPlayer {
  public:
   // Parses every command before the first tick. Issues say what is wrong with them.

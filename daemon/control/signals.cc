@@ -219,8 +219,8 @@ SignalTable make_signal_table(const GaitdModel& model, const LayerVariants& vari
   data.robot.pelvis_orientation[3] = 1.0;
   visit(Describe(&table), model, data, truth);
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
-    table.push_back({"layer/" + std::string(layer_name(layer)) + "/variant", "",
-                     Kind::kEnumeration, variants[layer]});
+    table.push_back({"layer/" + std::string(layer_name(layer)) + "/variant", "", Kind::kEnumeration,
+                     variants[layer]});
   }
   return table;
 }

@@ -12,12 +12,11 @@ namespace {
 
 // How far the CoM must come down so that a leg can span two footholds.
 double drop(const GaitdPose& a, const GaitdPose& b, const LegReach& r) {
-  const Eigen::Vector3d d = sdk::quaternion(a.orientation).conjugate() *
-                            (sdk::view(b.position) - sdk::view(a.position));
+  const Eigen::Vector3d d =
+      sdk::quaternion(a.orientation).conjugate() * (sdk::view(b.position) - sdk::view(a.position));
   const double sideways = std::max(0.0, std::abs(d.y()) - r.nominal_separation);
   const double horizontal = r.trailing_share * std::hypot(d.x(), sideways);
-  const double vertical =
-      std::sqrt(std::max(0.0, r.longest * r.longest - horizontal * horizontal));
+  const double vertical = std::sqrt(std::max(0.0, r.longest * r.longest - horizontal * horizontal));
   return std::clamp(r.leg_length - vertical, 0.0, r.largest_drop);
 }
 
@@ -28,9 +27,9 @@ double com_height_target(const GaitdGaitState& gait, const LegReach& reach) {
   const GaitdPose& right = gait.footholds[GAITD_RIGHT].pose;
   double ground = 0.5 * (left.position[2] + right.position[2]);
   double lower = drop(left, right, reach);
-  const double share =
-      gait.phase_duration > 0.0 ? std::clamp(gait.time_in_phase / gait.phase_duration, 0.0, 1.0)
-                                : 1.0;
+  const double share = gait.phase_duration > 0.0
+                           ? std::clamp(gait.time_in_phase / gait.phase_duration, 0.0, 1.0)
+                           : 1.0;
   if (gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 && gait.footstep_count > 0) {
     const GaitdPose& trailing = gait.footholds[gait.next_side].pose;
     const GaitdPose& leading = gait.footholds[other_side(gait.next_side)].pose;

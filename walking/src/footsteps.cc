@@ -61,8 +61,8 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, int n
   }
   const Eigen::Vector3d rpy = sdk::roll_pitch_yaw(q);
   const double stance_yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
-  const Eigen::Vector3d d = sdk::from_yaw(-stance_yaw) *
-                            (sdk::view(step.pose.position) - sdk::view(stance.position));
+  const Eigen::Vector3d d =
+      sdk::from_yaw(-stance_yaw) * (sdk::view(step.pose.position) - sdk::view(stance.position));
   const double outwards = side_sign(step.side) * d.y();
   const double turn = std::remainder(rpy.z() - stance_yaw, 2.0 * M_PI);
   if (outwards < p[Gait::kMinFootSeparation] - 0.005) {

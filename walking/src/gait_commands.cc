@@ -56,8 +56,8 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
     first = next;
   } else if (first == GAITD_BOTH) {
     // Into the walk with the foot on the side it goes to, so that the legs never close first.
-    first = walk.lateral > 0.0 || (walk.lateral == 0.0 && walk.turn > 0.0) ? GAITD_LEFT
-                                                                          : GAITD_RIGHT;
+    first =
+        walk.lateral > 0.0 || (walk.lateral == 0.0 && walk.turn > 0.0) ? GAITD_LEFT : GAITD_RIGHT;
   }
   const double width = walk.width > 0.0 ? walk.width : model_.nominal_foot_separation;
   if (width < parameters_[Gait::kMinFootSeparation]) {
@@ -90,7 +90,8 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
   // A transfer has chosen its foot: its footstep may be replaced by one of the same side only.
   const bool committed = state_.phase == GAITD_PHASE_TRANSFER && state_.transfer_final == 0;
   const int kept = replace ? std::min(first_free(), queue_.size()) : queue_.size();
-  if (count < 1 && !(replace && !committed)) return refuse("steps: at least one expected, got none");
+  if (count < 1 && !(replace && !committed))
+    return refuse("steps: at least one expected, got none");
   if (Refusal r = check_room(count - (queue_.size() - kept)); r.refused()) return r;
   GaitdPose feet[2] = {state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose};
   for (int side = 0; side < 2; ++side) feet[side].position[2] -= height_offset_;
@@ -147,8 +148,8 @@ GaitdFootstep GaitMachine::closing_step(const GaitdPose& stance, int side) const
   const double yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
   GaitdPose level = stance;
   sdk::store(sdk::from_yaw(yaw), level.orientation);
-  sdk::view(step.pose.position) = sdk::transform(
-      level, {0.0, side_sign(side) * model_.nominal_foot_separation, 0.0});
+  sdk::view(step.pose.position) =
+      sdk::transform(level, {0.0, side_sign(side) * model_.nominal_foot_separation, 0.0});
   sdk::store(sdk::from_yaw(yaw), step.pose.orientation);
   return step;
 }

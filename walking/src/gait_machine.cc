@@ -154,9 +154,9 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
     case GAITD_PHASE_TRANSFER: {
       const int trailing = state_.trailing_side;
       if (trailing != GAITD_BOTH && state_.transfer_final == 0) {
-        state_.footholds[trailing].contact =
-            toe_off.active != 0 && toe_off.side == trailing ? GAITD_CONTACT_TOE
-                                                            : GAITD_CONTACT_FULL;
+        state_.footholds[trailing].contact = toe_off.active != 0 && toe_off.side == trailing
+                                                 ? GAITD_CONTACT_TOE
+                                                 : GAITD_CONTACT_FULL;
       }
       if (state_.transfer_final != 0) {
         if (queue_.size() > 0 && state_.paused == 0) {
@@ -178,10 +178,10 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
         publish_footsteps();
       }
       const double weight = model_.total_mass * model_.gravity;
-      const bool loaded = robot.feet[state_.next_side].normal_force >
-                          parameters_[Gait::kTouchdownForce] * weight;
-      const bool credible = state_.time_in_phase >=
-                            parameters_[Gait::kTouchdownFraction] * state_.phase_duration;
+      const bool loaded =
+          robot.feet[state_.next_side].normal_force > parameters_[Gait::kTouchdownForce] * weight;
+      const bool credible =
+          state_.time_in_phase >= parameters_[Gait::kTouchdownFraction] * state_.phase_duration;
       state_.late_contact = over && !loaded ? 1 : 0;
       if (loaded && credible) touch_down(robot, !over);
       break;

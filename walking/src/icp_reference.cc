@@ -43,8 +43,8 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
     state_.start_ecmp_valid = 0;
   }
 
-  // A swing whose touchdown is late goes on for a moment, as the robot does; then, and at the end of
-  // a transfer that waits for the robot, the reference waits too.
+  // A swing whose touchdown is late goes on for a moment, as the robot does; then, and at the end
+  // of a transfer that waits for the robot, the reference waits too.
   const double late = gait.time_in_phase - gait.phase_duration;
   const double longest = gait.phase == GAITD_PHASE_SWING ? kLateTime : 0.0;
   const bool waiting = !trajectory_.empty() && late > longest;
@@ -74,11 +74,11 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
   view(plan.offset) = delta;
   view(plan.com) = view(robot.com).head<2>();
   view(plan.com_velocity) = omega * (view(plan.icp) - view(plan.com));
-  plan.kappa = robot.com[2] > 0.0 ? model_.nominal_com_height * omega * omega / model_.gravity : 1.0;
+  plan.kappa =
+      robot.com[2] > 0.0 ? model_.nominal_com_height * omega * omega / model_.gravity : 1.0;
   plan.time_remaining = gait.time_remaining;
   for (int i = 0; i < GAITD_MAX_FOOTSTEPS; ++i) {
-    plan.gamma[i] =
-        i < gait.footstep_count ? trajectory_.gamma(i, gait.time_remaining) : 0.0;
+    plan.gamma[i] = i < gait.footstep_count ? trajectory_.gamma(i, gait.time_remaining) : 0.0;
   }
 
   state_.size = sizeof(state_);

@@ -88,8 +88,7 @@ void IcpTrajectory::build(const GaitdModel& model, const GaitdGaitState& gait,
     const Eigen::Vector2d entry = entry_cmp(stance, side, o);
     const Eigen::Vector2d exit = exit_cmp(stance, side, &landing, o);
     const bool current = i == 0 && gait.phase == GAITD_PHASE_SWING;
-    add(entry, stance_step, exit, stance_step,
-        current ? gait.phase_duration : step.swing_duration);
+    add(entry, stance_step, exit, stance_step, current ? gait.phase_duration : step.swing_duration);
     if (i + 1 < gait.footstep_count) {
       add(exit, stance_step, entry_cmp(landing, step.side, o), i,
           gait.adjusted[i + 1].transfer_duration);

@@ -48,8 +48,8 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
 
   if (gait.mode != GAITD_MODE_WALK_STRAIGHT) {
     // The commanded height bends a leg that carries the robot; only the others need to be told.
-    const bool leaving = gait.phase != GAITD_PHASE_STAND && gait.transfer_final == 0 &&
-                         gait.next_side == side;
+    const bool leaving =
+        gait.phase != GAITD_PHASE_STAND && gait.transfer_final == 0 && gait.next_side == side;
     reference_ = {reference_.state, p[Legs::kBentKnee], p[Legs::kBentStiffness],
                   p[Legs::kBentDamping], leaving ? p[Legs::kBentWeight] : 0.0};
     return reference_;

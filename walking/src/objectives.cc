@@ -12,11 +12,11 @@ namespace {
 
 using sdk::view;
 
-constexpr double kHeightRate = 8.0;  // 1/s, of the reference filter of the CoM height
+constexpr double kHeightRate = 8.0;      // 1/s, of the reference filter of the CoM height
 constexpr double kTouchdownTime = 0.05;  // s, in which the touchdown damping fades
 constexpr double kHeelStrikeTime = 0.1;  // s after touchdown in which the drives damp
-constexpr double kLevelRate = 1.0;   // 1/s, with which a walk levels the pelvis
-constexpr double kYawRate = 6.0;     // 1/s, of the reference filter of the heading
+constexpr double kLevelRate = 1.0;       // 1/s, with which a walk levels the pelvis
+constexpr double kYawRate = 6.0;         // 1/s, of the reference filter of the heading
 constexpr std::uint32_t kAngularRows = 0b000111;
 constexpr std::uint32_t kLinearRows = 0b111000;
 constexpr std::uint32_t kAllRows = 0b111111;
@@ -136,8 +136,8 @@ double ObjectiveBuilder::load_share(int side, const GaitdGaitState& gait) const 
   const double ramp = parameters_[Objective::kContactRamp];
   if (ramp <= 0.0) return 1.0;
   double share = std::min(1.0, time_in_contact_[side] / ramp);
-  const bool leaving = gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 &&
-                       gait.next_side == side;
+  const bool leaving =
+      gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 && gait.next_side == side;
   if (leaving) share = std::min(share, gait.time_remaining / ramp);
   return std::clamp(share, 0.0, 1.0);
 }
@@ -161,8 +161,7 @@ void ObjectiveBuilder::update_contacts(const GaitdGaitState& gait, const GaitdTo
       const Eigen::Vector3d in_sole =
           toe ? Eigen::Vector3d(view(toe_off.toe_point))
               : Eigen::Vector3d(foothold.contact_polygon[i][0], foothold.contact_polygon[i][1], 0);
-      view(c.point) =
-          view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole;
+      view(c.point) = view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole;
       view(c.normal) = sole * Eigen::Vector3d::UnitZ();
       view(c.tangent) = sole * Eigen::Vector3d::UnitX();
       c.friction = parameters_[Objective::kFriction];
@@ -189,10 +188,9 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
   height_.update(dt, out.height_target, kHeightRate);
   const double stiffness = parameters_[Objective::kHeightStiffness];
   const double limit = parameters_[Objective::kHeightAccelerationLimit] * model_.gravity;
-  const double wanted =
-      height_.acceleration() + stiffness * (height_.value() - robot.com[2]) +
-      damping(stiffness, parameters_[Objective::kHeightDampingRatio]) *
-          (height_.velocity() - robot.com_velocity[2]);
+  const double wanted = height_.acceleration() + stiffness * (height_.value() - robot.com[2]) +
+                        damping(stiffness, parameters_[Objective::kHeightDampingRatio]) *
+                            (height_.velocity() - robot.com_velocity[2]);
   for (int i = 0; i < 3; ++i) out.momentum_rate[i] = adjustment.angular_momentum_rate[i];
   out.momentum_rate[3] = adjustment.linear_momentum_rate[0];
   out.momentum_rate[4] = adjustment.linear_momentum_rate[1];
@@ -201,8 +199,9 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
   const double vertical = parameters_[Objective::kMomentumHeightWeight] / (mass * mass);
   for (int i = 0; i < 6; ++i) out.momentum_weight[i] = i == 5 ? vertical : horizontal;
   const bool straight = gait.mode == GAITD_MODE_WALK_STRAIGHT;
-  out.momentum_mask = (static_cast<std::uint32_t>(adjustment.angular_momentum_mask) & kAngularRows) |
-                      (straight ? 0b011000u : kLinearRows);
+  out.momentum_mask =
+      (static_cast<std::uint32_t>(adjustment.angular_momentum_mask) & kAngularRows) |
+      (straight ? 0b011000u : kLinearRows);
 }
 
 GaitdTask& ObjectiveBuilder::add_task(GaitdObjectives& out, int type, int index,
@@ -242,10 +241,9 @@ void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot
                        parameters_[Objective::kPelvisDampingRatio],
                        parameters_[Objective::kPelvisWeight], out);
   if (model_.chest_body > 0) {
-    add_orientation_task(model_.chest_body, goal * chest_in_pelvis_, rate,
-                         parameters_[Objective::kChestStiffness],
-                         parameters_[Objective::kChestDampingRatio],
-                         parameters_[Objective::kChestWeight], out);
+    add_orientation_task(
+        model_.chest_body, goal * chest_in_pelvis_, rate, parameters_[Objective::kChestStiffness],
+        parameters_[Objective::kChestDampingRatio], parameters_[Objective::kChestWeight], out);
   }
   const double stiffness = parameters_[Objective::kPostureStiffness];
   const double rate_gain = damping(stiffness, parameters_[Objective::kPostureDampingRatio]);
@@ -335,9 +333,9 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
   const Eigen::Vector3d kp(kp_xy, kp_xy, kp_z);
   const Eigen::Vector3d kd(damping(kp_xy, ratio), damping(kp_xy, ratio), damping(kp_z, ratio));
   const auto twist = view(now.twist);
-  view(task.acceleration).tail<3>() =
-      s.acceleration + kp.cwiseProduct(s.position - view(now.position)) +
-      kd.cwiseProduct(s.velocity - twist.tail<3>());
+  view(task.acceleration).tail<3>() = s.acceleration +
+                                      kp.cwiseProduct(s.position - view(now.position)) +
+                                      kd.cwiseProduct(s.velocity - twist.tail<3>());
   view(task.acceleration).head<3>() =
       s.angular_acceleration +
       kp_z * rotation_error(s.orientation, sdk::quaternion(now.orientation)) +

@@ -20,8 +20,8 @@ void add_foothold(const GaitdFoothold& foothold, const double (&toe_point)[3],
     polygon.add(to_world(foothold.pose, toe_point[0], toe_point[1]));
   } else if (foothold.contact == GAITD_CONTACT_FULL) {
     for (int i = 0; i < foothold.polygon_count; ++i) {
-      polygon.add(to_world(foothold.pose, foothold.contact_polygon[i][0],
-                           foothold.contact_polygon[i][1]));
+      polygon.add(
+          to_world(foothold.pose, foothold.contact_polygon[i][0], foothold.contact_polygon[i][1]));
     }
   }
 }

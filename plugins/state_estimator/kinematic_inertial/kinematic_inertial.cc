@@ -9,8 +9,8 @@ namespace {
 
 using sdk::view;
 
-// The first attitude comes from one noisy sample. For this long (s) the mean over all samples so far,
-// carried along by the gyroscope, takes its place: what the robot does meanwhile averages out.
+// The first attitude comes from one noisy sample. For this long (s) the mean over all samples so
+// far, carried along by the gyroscope, takes its place: what the robot does meanwhile averages out.
 constexpr double kAveragingTime = 0.2;
 
 // Anchors are at their best while standing: the attitude is levelled this many times faster then.
@@ -117,8 +117,7 @@ void KinematicInertial::update_kinematics(const GaitdRobotState& joints) {
 
 Eigen::Quaterniond KinematicInertial::sole_orientation(int side) const {
   const GaitdFoot& foot = model_.feet[side];
-  return Eigen::Quaterniond(kinematics_.R_WB(foot.body)) *
-         sdk::quaternion(foot.sole.orientation);
+  return Eigen::Quaterniond(kinematics_.R_WB(foot.body)) * sdk::quaternion(foot.sole.orientation);
 }
 
 Eigen::Vector3d KinematicInertial::sole_point(int side, const Eigen::Vector3d& in_sole) const {
@@ -147,9 +146,8 @@ void KinematicInertial::place(const GaitdStateEstimatorInput& in, const GaitdRob
   const double yaw = left + 0.5 * std::remainder(right - left, 2.0 * M_PI);
   orientation_ = (sdk::from_yaw(in.start.yaw - yaw) * orientation_).normalized();
   update_kinematics(joints);
-  const Eigen::Vector3d middle =
-      0.5 * (sole_point(GAITD_LEFT, Eigen::Vector3d::Zero()) +
-             sole_point(GAITD_RIGHT, Eigen::Vector3d::Zero()));
+  const Eigen::Vector3d middle = 0.5 * (sole_point(GAITD_LEFT, Eigen::Vector3d::Zero()) +
+                                        sole_point(GAITD_RIGHT, Eigen::Vector3d::Zero()));
   position_ += view(in.start.position) - middle;
   update_kinematics(joints);
 }
@@ -166,8 +164,8 @@ void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in, doub
   const Eigen::Vector3d turning = lever.squaredNorm() > 0.0 && dt > 0.0
                                       ? Eigen::Vector3d((rate_ - last_rate_) / dt)
                                       : Eigen::Vector3d::Zero();
-  specific_force_ = mount * view(sensor->specific_force) - turning.cross(lever) -
-                    rate_.cross(rate_.cross(lever));
+  specific_force_ =
+      mount * view(sensor->specific_force) - turning.cross(lever) - rate_.cross(rate_.cross(lever));
   last_rate_ = rate_;
 
   orientation_ = (orientation_ * sdk::exp_so3(rate_ * dt)).normalized();
@@ -283,9 +281,8 @@ void KinematicInertial::update_anchors(const GaitdStateEstimatorInput& in, doubl
 }
 
 void KinematicInertial::update_position(const GaitdStateEstimatorInput& in, double dt) {
-  const Eigen::Vector3d acceleration =
-      orientation_ * (specific_force_ - accelerometer_bias_) -
-      model_.gravity * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d acceleration = orientation_ * (specific_force_ - accelerometer_bias_) -
+                                       model_.gravity * Eigen::Vector3d::UnitZ();
   position_ += dt * velocity_W_ + 0.5 * dt * dt * acceleration;
   velocity_W_ += dt * acceleration;
 
@@ -335,8 +332,8 @@ void KinematicInertial::write(const GaitdStateEstimatorInput& in, GaitdRobotStat
     GaitdFootState& state = out.feet[side];
     view(state.position) = sole_point(side, Eigen::Vector3d::Zero());
     sdk::store(sole_orientation(side), state.orientation);
-    view(state.twist) = kinematics_.frame_velocity(model_.feet[side].body,
-                                                   view(model_.feet[side].sole.origin));
+    view(state.twist) =
+        kinematics_.frame_velocity(model_.feet[side].body, view(model_.feet[side].sole.origin));
   }
   const double sigma = 0.01;  // m/s, what the observer reaches with nominal sensors
   for (int i = 0; i < 9; ++i) out.pelvis_velocity_covariance[i] = i % 4 == 0 ? sigma * sigma : 0.0;

@@ -11,9 +11,9 @@ namespace gaitd::plugins {
 
 // Kinematic-inertial fusion from IMU, encoders and foot forces (theory section 7).
 //
-// Joints: an observer of second order on the encoders. Above the legs it is fed with the acceleration
-// that the command expects, so that rates are smooth without being late. In the legs the contacts
-// decide what a command does, and such a feed-forward would excite them.
+// Joints: an observer of second order on the encoders. Above the legs it is fed with the
+// acceleration that the command expects, so that rates are smooth without being late. In the legs
+// the contacts decide what a command does, and such a feed-forward would excite them.
 //
 // Attitude: the gyroscope is integrated, its heading corrected by the heading that each foot in
 // contact had when it came to rest (which also shows the gyroscope's bias). Position
@@ -54,10 +54,11 @@ class KinematicInertial {
                           "the same for all other joints, which follow their commands closely"),
       sdk::real_parameter("position_rate", "1/s", 0.5, 200, 12,
                           "pole of the observer of position, velocity and bias"),
-      sdk::real_parameter("tilt_rate", "1/s", 0, 10, 0.5, "levelling in a walk; three times faster when standing"),
-      sdk::real_parameter("tilt_bias_rate", "1/s^2", 0, 10, 0.05,
-                          "gyroscope bias from the same"),
-      sdk::real_parameter("anchor_rate", "1/s", 0, 50, 2, "correction of the heading by feet at rest"),
+      sdk::real_parameter("tilt_rate", "1/s", 0, 10, 0.5,
+                          "levelling in a walk; three times faster when standing"),
+      sdk::real_parameter("tilt_bias_rate", "1/s^2", 0, 10, 0.05, "gyroscope bias from the same"),
+      sdk::real_parameter("anchor_rate", "1/s", 0, 50, 2,
+                          "correction of the heading by feet at rest"),
       sdk::real_parameter("bias_rate", "1/s^2", 0, 50, 0.5,
                           "gyroscope bias from the same while standing; a twentieth in a walk"),
       sdk::real_parameter("anchor_delay", "s", 0, 1, 0.1,
@@ -78,7 +79,7 @@ class KinematicInertial {
     double time_above = 0.0;    // s, load share above the threshold
     double time_trusted = 0.0;  // s
     int contact = GAITD_CONTACT_NONE;
-    double normal_force = 0.0;  // N, filtered
+    double normal_force = 0.0;                         // N, filtered
     Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  // m, W: the anchored point of the sole
     Eigen::Vector3d anchored_point = Eigen::Vector3d::Zero();  // m, sole frame
     Eigen::Quaterniond anchor_orientation = Eigen::Quaterniond::Identity();
@@ -109,8 +110,8 @@ class KinematicInertial {
   double time_since_start_ = 0.0;
   bool joints_seen_ = false;
   std::array<bool, GAITD_MAX_JOINTS> leg_joint_{};
-  std::array<double, GAITD_MAX_JOINTS> joint_{};       // rad, observed
-  std::array<double, GAITD_MAX_JOINTS> joint_rate_{};  // rad/s, observed
+  std::array<double, GAITD_MAX_JOINTS> joint_{};                     // rad, observed
+  std::array<double, GAITD_MAX_JOINTS> joint_rate_{};                // rad/s, observed
   Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();  // pelvis in W
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();               // pelvis, W
   Eigen::Vector3d velocity_W_ = Eigen::Vector3d::Zero();             // pelvis, W

@@ -41,8 +41,7 @@ class ComHeightQp {
 
   explicit ComHeightQp(const GaitdModel& model);
   void set_parameter(int index, double value) { p_.set(index, value); }
-  GaitdStatus process(const GaitdWholeBodyControllerInput& in,
-                      GaitdWholeBodyControllerOutput& out);
+  GaitdStatus process(const GaitdWholeBodyControllerInput& in, GaitdWholeBodyControllerOutput& out);
   void reset() { qp_.reset(); }
   void get_state(GaitdWholeBodyControllerState& s) const { qp_.get_state(s); }
   void set_state(const GaitdWholeBodyControllerState& s) { qp_.set_state(s); }

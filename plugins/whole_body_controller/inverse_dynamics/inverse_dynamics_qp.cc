@@ -86,8 +86,7 @@ void InverseDynamicsQp::add_contacts(const GaitdObjectives& objectives) {
     const Eigen::Vector3d normal = view(c.normal);
     const Eigen::Vector3d tangent = view(c.tangent);
     const Eigen::Vector3d side = normal.cross(tangent);
-    const Eigen::Vector3d arm =
-        dynamics_.frame_position(c.body, view(c.point)) - dynamics_.com();
+    const Eigen::Vector3d arm = dynamics_.frame_position(c.body, view(c.point)) - dynamics_.com();
     dynamics_.frame_jacobian(c.body, view(c.point), jacobian_);
     for (int k = 0; k < kEdges; ++k) {
       const int j = kEdges * i + k;
@@ -111,8 +110,7 @@ void InverseDynamicsQp::add_rows(const GaitdObjectives& objectives, std::uint32_
       continue;
     }
     dynamics_.frame_jacobian(task.index, view(task.point), jacobian_);
-    const dynamics::Vector6d bias =
-        dynamics_.frame_bias_acceleration(task.index, view(task.point));
+    const dynamics::Vector6d bias = dynamics_.frame_bias_acceleration(task.index, view(task.point));
     const Eigen::Matrix3d axes = sdk::quaternion(task.axes).toRotationMatrix();
     for (int row = 0; row < 6; ++row) {
       if ((task.row_mask >> row & 1u) == 0) continue;
@@ -310,8 +308,7 @@ void InverseDynamicsQp::write_commands(double dt, double reference_leak,
   references_valid_ = true;
 }
 
-void InverseDynamicsQp::write_figures(const GaitdObjectives& objectives,
-                                      GaitdWbcInfo& info) const {
+void InverseDynamicsQp::write_figures(const GaitdObjectives& objectives, GaitdWbcInfo& info) const {
   view(info.pelvis_acceleration) = acceleration_.head<6>();
   for (int i = 0; i < joints_; ++i) info.joint_acceleration[i] = acceleration_[6 + i];
   const dynamics::Vector6d rate =

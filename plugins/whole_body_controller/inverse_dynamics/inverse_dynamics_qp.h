@@ -49,7 +49,8 @@ class InverseDynamicsQp {
   void solve(int max_iterations);
   // Torques, references and figures of the last solve, for a tick of `dt` seconds. The references
   // of the drives are integrated from the solved accelerations and leak towards the measured state
-  // with `reference_leak` (1/s): what a drive adds around them makes good for friction and the like.
+  // with `reference_leak` (1/s): what a drive adds around them makes good for friction and the
+  // like.
   void write(double dt, double reference_leak, const GaitdRobotState& robot,
              const GaitdObjectives& objectives, GaitdWholeBodyControllerOutput& out);
 
@@ -77,12 +78,12 @@ class InverseDynamicsQp {
 
   int row_count_ = 0;
   int rho_count_ = 0;
-  int size_ = 0;                // unknowns
+  int size_ = 0;  // unknowns
   std::uint32_t momentum_mask_ = 0;
-  Eigen::MatrixXd rows_;        // kMaxRows x nv, task rows
-  Eigen::VectorXd targets_;     // kMaxRows
-  Eigen::VectorXd weights_;     // kMaxRows
-  Eigen::MatrixXd weighted_;    // kMaxRows x nv
+  Eigen::MatrixXd rows_;         // kMaxRows x nv, task rows
+  Eigen::VectorXd targets_;      // kMaxRows
+  Eigen::VectorXd weights_;      // kMaxRows
+  Eigen::MatrixXd weighted_;     // kMaxRows x nv
   dynamics::Matrix6X jacobian_;  // 6 x nv, scratch
   Eigen::MatrixXd edges_;        // 3 x kMaxRho, unit forces in W
   Eigen::MatrixXd wrench_;       // 6 x kMaxRho, about the CoM, moment first

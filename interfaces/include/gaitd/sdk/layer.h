@@ -134,9 +134,7 @@ class LayerAdapter {
       return GaitdStatus{GAITD_OK};
     });
   }
-  static GaitdStatus activate(void* self) {
-    return of(self).layer_ ? GAITD_OK : GAITD_NOT_READY;
-  }
+  static GaitdStatus activate(void* self) { return of(self).layer_ ? GAITD_OK : GAITD_NOT_READY; }
   static GaitdStatus process(void* self, const void* input, void* output) {
     LayerAdapter& a = of(self);
     return a.guard_rt([&] {
@@ -185,9 +183,18 @@ class LayerAdapter {
   static void destroy(void* self) { delete &of(self); }
   static const void* get_extension(void*, const char*) { return nullptr; }
 
-  static constexpr GaitdLayerVtable kVtable = {
-      sizeof(GaitdLayerVtable), 0,         &init,      &activate,   &process, &reset, &get_state,
-      &set_state,               &set_parameter, &deactivate, &destroy, &get_extension};
+  static constexpr GaitdLayerVtable kVtable = {sizeof(GaitdLayerVtable),
+                                               0,
+                                               &init,
+                                               &activate,
+                                               &process,
+                                               &reset,
+                                               &get_state,
+                                               &set_state,
+                                               &set_parameter,
+                                               &deactivate,
+                                               &destroy,
+                                               &get_extension};
 
   GaitdHost host_;
   std::unique_ptr<Layer> layer_;
@@ -195,14 +202,15 @@ class LayerAdapter {
 
 }  // namespace gaitd::sdk
 
-#define GAITD_EXPORT_LAYER(LayerClass, layer, id, version, worst_case_us)                          \
-  extern "C" {                                                                                     \
-  extern __attribute__((visibility("default"))) const GaitdPluginDescriptor gaitd_plugin;          \
-  __attribute__((visibility("default"), used, section(GAITD_PLUGIN_SECTION)))                      \
-  constinit const GaitdPluginDescriptor gaitd_plugin = ::gaitd::sdk::make_descriptor(              \
-      layer, id, version, worst_case_us, LayerClass::kParameters);                                 \
-  __attribute__((visibility("default"))) GaitdStatus gaitd_create(const GaitdHost* host,           \
-                                                                  GaitdInstance* instance) {      \
-    return ::gaitd::sdk::LayerAdapter<LayerClass, layer>::create(host, instance);                  \
-  }                                                                                                \
+#define GAITD_EXPORT_LAYER(LayerClass, layer, id, version, worst_case_us)                        \
+  extern "C" {                                                                                   \
+  extern __attribute__((visibility("default"))) const GaitdPluginDescriptor gaitd_plugin;        \
+  __attribute__((                                                                                \
+      visibility("default"), used,                                                               \
+      section(GAITD_PLUGIN_SECTION))) constinit const GaitdPluginDescriptor gaitd_plugin =       \
+      ::gaitd::sdk::make_descriptor(layer, id, version, worst_case_us, LayerClass::kParameters); \
+  __attribute__((visibility("default"))) GaitdStatus gaitd_create(const GaitdHost* host,         \
+                                                                  GaitdInstance* instance) {     \
+    return ::gaitd::sdk::LayerAdapter<LayerClass, layer>::create(host, instance);                \
+  }                                                                                              \
   }

@@ -5,18 +5,18 @@
 
 namespace gaitd::walking {
 
-// Generated footsteps (design: `gaitctl walk`): `steps` advancing footfalls, each `length` ahead of,
-// `lateral` beside and turned by `turn` from the previous one, then one closing step beside the
+// Generated footsteps (design: `gaitctl walk`): `steps` advancing footfalls, each `length` ahead
+// of, `lateral` beside and turned by `turn` from the previous one, then one closing step beside the
 // last. Distances in the frame of the middle of the feet at the start of the walk.
 struct WalkCommand {
   int steps = 0;
-  double length = 0.0;               // m
-  double lateral = 0.0;              // m, positive to the left
-  double width = 0.0;                // m between the soles; 0: the robot's nominal separation
-  double turn = 0.0;                 // rad per footfall, positive to the left
-  double swing_duration = 0.0;       // s; 0: the parameter gait.swing_duration
-  double transfer_duration = 0.0;    // s; 0: the parameter gait.transfer_duration
-  int first_side = GAITD_BOTH;       // GAITD_BOTH: the gait machine chooses
+  double length = 0.0;             // m
+  double lateral = 0.0;            // m, positive to the left
+  double width = 0.0;              // m between the soles; 0: the robot's nominal separation
+  double turn = 0.0;               // rad per footfall, positive to the left
+  double swing_duration = 0.0;     // s; 0: the parameter gait.swing_duration
+  double transfer_duration = 0.0;  // s; 0: the parameter gait.transfer_duration
+  int first_side = GAITD_BOTH;     // GAITD_BOTH: the gait machine chooses
 };
 
 // Largest number of explicit footsteps in one command.

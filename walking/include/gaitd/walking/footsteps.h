@@ -35,13 +35,14 @@ class FootstepQueue {
 };
 
 // Makes the footsteps of a walk command one by one. Footfall k stands at M_k, half the width to
-// its side; M_k = M_{k-1} * (length, lateral, turn); the closing step stands beside the last at M_N.
+// its side; M_k = M_{k-1} * (length, lateral, turn); the closing step stands beside the last at
+// M_N.
 class FootstepGenerator {
  public:
   // `middle` is the pose half-way between the feet (the last footfall's M when already walking).
   // A lateral walk is widened so that the feet never come closer than the least separation.
-  FootstepGenerator(const WalkCommand& walk, const GaitdPose& middle, int first_side,
-                    double width, const GaitParameters& parameters);
+  FootstepGenerator(const WalkCommand& walk, const GaitdPose& middle, int first_side, double width,
+                    const GaitParameters& parameters);
   int count() const { return walk_.steps + 1; }
   // Footstep i of count(), in order; call with i = 0, 1, 2, …
   GaitdFootstep next();

@@ -9,8 +9,8 @@
 namespace gaitd::walking {
 
 // The ICP reference of every tick, continuous whatever happens to the plan (theory section 2).
-// The first transfer out of standing is fitted to the reference so far; at every later change (early
-// or late touchdown, moved, added or re-timed steps) the difference is kept and decays:
+// The first transfer out of standing is fitted to the reference so far; at every later change
+// (early or late touchdown, moved, added or re-timed steps) the difference is kept and decays:
 //   xi_ref = xi_plan + delta,  delta' = -k delta,  r_ref = r_plan + (1 + k/w) delta
 class IcpReference {
  public:

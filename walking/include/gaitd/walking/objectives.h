@@ -24,9 +24,9 @@ class ObjectiveBuilder {
   void set_leg_parameter(int index, double value) { leg_parameters_.set(index, value); }
   void set_swing_parameter(int index, double value) { swing_parameters_.set(index, value); }
 
-  // What the drives add around their references, by what the leg of the joint does. Joints of no leg
-  // follow `kSupport`. N m/rad and N m s/rad, one per joint. Without it the drives of the legs get
-  // shares of their effort limits (parameters), the others nothing.
+  // What the drives add around their references, by what the leg of the joint does. Joints of no
+  // leg follow `kSupport`. N m/rad and N m s/rad, one per joint. Without it the drives of the legs
+  // get shares of their effort limits (parameters), the others nothing.
   enum class Impedance { kSupport = 0, kSwing, kHeelStrike, kCount };
   using PerJoint = std::array<double, GAITD_MAX_JOINTS>;
   void set_impedance(Impedance state, const PerJoint& stiffness, const PerJoint& damping) {

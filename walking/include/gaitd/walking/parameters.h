@@ -37,8 +37,7 @@ inline constexpr std::array<GaitdParameter, 18> kGaitParameters = {
     real_parameter("transfer_duration", "s", 0.05, 10, 0.25, "of footsteps that give none"),
     real_parameter("initial_transfer_duration", "s", 0.3, 10, 1.0,
                    "least duration of the transfer out of standing"),
-    real_parameter("final_transfer_duration", "s", 0.2, 10, 0.8,
-                   "of the transfer into standing"),
+    real_parameter("final_transfer_duration", "s", 0.2, 10, 0.8, "of the transfer into standing"),
     real_parameter("swing_height", "m", 0.01, 0.5, 0.10,
                    "apex above the higher of lift-off and touchdown"),
     real_parameter("touchdown_force", "weight", 0.005, 0.5, 0.06,
@@ -55,10 +54,8 @@ inline constexpr std::array<GaitdParameter, 18> kGaitParameters = {
                    "least sideways distance of the feet; 0: 0.8 of that in the nominal posture"),
     real_parameter("max_foot_separation", "m", 0.1, 2, 0.75,
                    "largest sideways distance of one foothold from the other foot"),
-    real_parameter("max_step_forward", "m", 0.05, 3, 1.0,
-                   "a foothold ahead of the other foot"),
-    real_parameter("max_step_backward", "m", 0.05, 3, 0.6,
-                   "a foothold behind the other foot"),
+    real_parameter("max_step_forward", "m", 0.05, 3, 1.0, "a foothold ahead of the other foot"),
+    real_parameter("max_step_backward", "m", 0.05, 3, 0.6, "a foothold behind the other foot"),
     real_parameter("max_step_height", "m", 0, 2, 0.45, "from one foothold to the next"),
     real_parameter("max_step_turn", "rad", 0, 3, 0.8, "yaw from one foothold to the next"),
     real_parameter("max_step_tilt", "rad", 0, 1, 0.4, "roll or pitch of a foothold"),
@@ -68,8 +65,7 @@ enum class Swing { kTouchdownVelocity, kApexFraction, kLateVelocity, kCount };
 inline constexpr std::array<GaitdParameter, 3> kSwingParameters = {
     real_parameter("touchdown_velocity", "m/s", 0, 2, 0.3, "downwards at the end of the swing"),
     real_parameter("apex_fraction", "", 0.1, 0.9, 0.45, "part of the swing at the highest point"),
-    real_parameter("late_velocity", "m/s", 0, 2, 0.3,
-                   "downwards while the touchdown is overdue"),
+    real_parameter("late_velocity", "m/s", 0, 2, 0.3, "downwards while the touchdown is overdue"),
 };
 
 enum class Legs {
@@ -107,8 +103,7 @@ inline constexpr std::array<GaitdParameter, 15> kLegParameters = {
     real_parameter("collapse_fraction", "", 0, 1, 0.65,
                    "part of the other leg's swing after which the stance leg collapses"),
     real_parameter("collapse_duration", "s", 0.01, 5, 0.3, "of the ramp to the collapsed knee"),
-    real_parameter("extend_fraction", "", 0, 1, 0.5,
-                   "part of its swing after which a leg extends"),
+    real_parameter("extend_fraction", "", 0, 1, 0.5, "part of its swing after which a leg extends"),
 };
 
 enum class Objective {

@@ -29,9 +29,9 @@ class Quintic {
 class SwingTrajectory {
  public:
   struct Sample {
-    Eigen::Vector3d position, velocity, acceleration;               // m, m/s, m/s^2, W
-    Eigen::Quaterniond orientation;                                 // sole in W
-    Eigen::Vector3d angular_velocity, angular_acceleration;         // rad/s, rad/s^2, W
+    Eigen::Vector3d position, velocity, acceleration;        // m, m/s, m/s^2, W
+    Eigen::Quaterniond orientation;                          // sole in W
+    Eigen::Vector3d angular_velocity, angular_acceleration;  // rad/s, rad/s^2, W
   };
 
   // A new swing from rest at `from`, `duration` seconds long.
