@@ -18,12 +18,15 @@ std::size_t width(const std::string& text) {
 
 // A scalar as a person writes it; lists joined; anything deeper as JSON.
 std::string plain(const json& value) {
-  if (value.is_string()) return value.get<std::string>();
+  if (value.is_string()) {
+    const auto text = value.get<std::string>();
+    return text.empty() ? "-" : text;
+  }
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (value.is_null()) return "-";
   if (value.is_number_float()) {
     char text[32];
-    std::snprintf(text, sizeof(text), "%.6g", value.get<double>());
+    std::snprintf(text, sizeof(text), "%.5g", value.get<double>());
     return text;
   }
   if (value.is_array() &&
@@ -31,6 +34,15 @@ std::string plain(const json& value) {
     std::string out;
     for (const json& one : value) out += (out.empty() ? "" : ", ") + plain(one);
     return out.empty() ? "none" : out;
+  }
+  if (value.is_object()) {
+    std::string out;
+    for (const auto& [key, member] : value.items()) {
+      const bool nested = member.is_object();
+      out += out.empty() ? "" : (nested ? "; " : ", ");
+      out += key + (nested ? ": " : " ") + plain(member);
+    }
+    return out;
   }
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }

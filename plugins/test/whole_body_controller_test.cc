@@ -224,8 +224,8 @@ TEST(ComHeightQp, WalksThroughEveryPhaseWithPhysicalSolutions) {
 double largest_share(const Output& out) {
   double share = 0.0;
   for (int i = 0; i < atlas().joint_count; ++i) {
-    share = std::max(share,
-                     std::abs(out.commands.joints[i].torque) / atlas().joints[i].effort_limit);
+    share =
+        std::max(share, std::abs(out.commands.joints[i].torque) / atlas().joints[i].effort_limit);
   }
   return share;
 }

@@ -192,6 +192,23 @@ TEST(IcpTrajectory, GammaIsTheDerivativeByAFootstepAndAllLaterOnes) {
   EXPECT_GT(t.gamma(0, 0.0), t.gamma(1, 0.0));
 }
 
+TEST(IcpTrajectory, TheLastFootstepMovesTheRestingPlaceByHalf) {
+  const GaitdGaitState gait = in_swing(0.4, 1);
+  ASSERT_EQ(gait.footstep_count, 1);
+  const IcpTrajectory t = built(gait);
+  const double h = 1e-4;
+  GaitdGaitState moved = gait;
+  moved.adjusted[0].pose.position[1] += h;
+  const IcpTrajectory m = built(moved);
+  EXPECT_NEAR(m.rest().y(), t.rest().y(), 1e-12);  // that of the feet on the ground
+  for (double left : {0.0, 0.2}) {
+    const double slope = (m.evaluate(left).icp.y() - t.evaluate(left).icp.y()) / h;
+    EXPECT_NEAR(slope, t.gamma(0, left), 1e-6);
+    EXPECT_GT(slope, 1e-3);
+    EXPECT_LT(slope, 0.5);
+  }
+}
+
 TEST(IcpTrajectory, FittedStartBeginsAtTheMeasuredIcp) {
   SyntheticWalk walk;
   ASSERT_FALSE(walk.machine.walk({.steps = 3, .length = 0.3}).refused());

@@ -274,6 +274,17 @@ TEST(Safety, FaultsStayUntilTheyAreClearedAndThenTheRobotIsDisarmed) {
   }
 }
 
+TEST(Safety, ThereIsNothingToClearWithoutAFault) {
+  Bench b;
+  b.stand();
+  EXPECT_EQ(b.safety.clear(), nullptr);
+  EXPECT_EQ(b.safety.state(), SafetyState::kStanding);
+  b.walking = true;
+  b.tick();
+  EXPECT_EQ(b.safety.clear(), nullptr);
+  EXPECT_EQ(b.safety.state(), SafetyState::kWalking);
+}
+
 TEST(Safety, FaultsAddUp) {
   Bench b;
   b.stand();
