@@ -24,7 +24,10 @@ class Writer {
   }
   void add_quoted(const char* text) {
     add("\"");
-    for (; *text != '\0'; ++text) add(*text == '"' || *text == '\\' ? "\\%c" : "%c", *text);
+    for (; *text != '\0'; ++text) {
+      const bool control = static_cast<unsigned char>(*text) < 0x20;
+      add(*text == '"' || *text == '\\' ? "\\%c" : "%c", control ? ' ' : *text);
+    }
     add("\"");
   }
   std::string_view text() const { return {buffer_, length_}; }

@@ -93,7 +93,8 @@ ControlLoop::Outcome ControlLoop::tick() {
 }
 
 void ControlLoop::take_commands() {
-  if (scenario_ != nullptr) {
+  // Commands of a scenario wait until the robot stands.
+  if (scenario_ != nullptr && pipeline_->safety().state() != SafetyState::kReadying) {
     const double time = static_cast<double>(tick_) * options_.period;
     while (const Command* command = scenario_->next_command(time)) execute(*command, false);
     while (const GaitdDisturbance* push = scenario_->next_disturbance(pipeline_->data())) {

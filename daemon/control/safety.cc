@@ -21,6 +21,7 @@ const char* Safety::arm() {
   state_ = SafetyState::kReadying;
   time_in_state_ = 0.0;
   time_settled_ = 0.0;
+  time_unsolved_ = 0.0;
   start_taken_ = false;
   return nullptr;
 }
@@ -146,7 +147,7 @@ void Safety::fall_back(double dt, TickData& d) {
     GaitdJointCommand& c = d.commands.joints[i];
     c = {};
     c.mode = GAITD_JOINT_MODE_TORQUE;
-    c.torque = share * last_torque_[i];
+    c.torque = share * last_good_torque_[i];
     c.damping = (1.0 - share) * p_[P::kFaultDamping] * model_.joints[i].effort_limit;
   }
 }
@@ -166,8 +167,10 @@ void Safety::write(double dt, bool control_ok, TickData& d) {
     default:
       if (control_ok) {
         time_unsolved_ = 0.0;
-        for (int i = 0; i < model_.joint_count; ++i)
+        for (int i = 0; i < model_.joint_count; ++i) {
           d.commands.joints[i] = d.wbc.commands.joints[i];
+          last_good_torque_[i] = d.wbc.commands.joints[i].torque;
+        }
       } else {
         fall_back(dt, d);
       }

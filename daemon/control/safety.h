@@ -91,6 +91,7 @@ class Safety {
   bool start_taken_ = false;
   std::array<double, GAITD_MAX_JOINTS> start_position_{};  // where the ramp began
   std::array<double, GAITD_MAX_JOINTS> last_torque_{};
+  std::array<double, GAITD_MAX_JOINTS> last_good_torque_{};  // of a solved problem
 };
 
 }  // namespace gaitd::daemon

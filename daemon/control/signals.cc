@@ -97,7 +97,7 @@ void visit_gait(V& v, const TickData& d) {
   v.word(static_cast<int>(d.safety),
          {"disarmed", "readying", "standing", "walking", "stopping", "fault"}, "safety/state");
   v.integer(d.faults, "safety/faults");
-  v.word(d.gait.mode, {"stand", "walk_straight", "walk_bent"}, "gait/mode");
+  v.word(d.gait.mode, {"stand", "walk-straight", "walk-bent"}, "gait/mode");
   v.word(d.gait.phase, {"stand", "transfer", "swing"}, "gait/phase");
   v.word(d.gait.support, {"left", "right", "both"}, "gait/support");
   v.integer(d.gait.step_index, "gait/step_index");

@@ -36,6 +36,9 @@ double com_height_target(const GaitdGaitState& gait, const LegReach& reach) {
     const double start = gait.trailing_side == GAITD_BOTH ? ground : trailing.position[2];
     ground = start + share * (leading.position[2] - start);
     lower = std::max(lower, share * drop(leading, gait.adjusted[0].pose, reach));
+  } else if (gait.phase == GAITD_PHASE_TRANSFER && gait.trailing_side != GAITD_BOTH) {
+    const double start = gait.footholds[gait.trailing_side].pose.position[2];
+    ground = start + share * (ground - start);
   } else if (gait.phase == GAITD_PHASE_SWING) {
     const GaitdPose& stance = gait.footholds[gait.support].pose;
     ground = stance.position[2];

@@ -59,6 +59,22 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, int n
     return refuse("footstep %d (%s): pose must be finite numbers; correct it and send again",
                   number, side);
   }
+  // Zero stands for the parameter of the gait.
+  const auto allowed = [](double value, double low, double high) {
+    return value == 0.0 || (value >= low && value <= high);
+  };
+  if (!allowed(step.swing_duration, 0.05, 20.0) || !allowed(step.transfer_duration, 0.02, 20.0) ||
+      !allowed(step.swing_height, 0.001, 1.0)) {
+    return refuse(
+        "footstep %d (%s): swing %g s, transfer %g s, height %g m; 0.05 to 20 s, 0.02 to 20 s and "
+        "0.001 to 1 m expected, or 0 for the default",
+        number, side, step.swing_duration, step.transfer_duration, step.swing_height);
+  }
+  if (step.polygon_count < 0 || step.polygon_count > GAITD_MAX_FOOT_POINTS ||
+      step.region_count < 0 || step.region_count > GAITD_MAX_REGION_POINTS) {
+    return refuse("footstep %d (%s): polygon of %d and region of %d points, at most %d expected",
+                  number, side, step.polygon_count, step.region_count, GAITD_MAX_FOOT_POINTS);
+  }
   const Eigen::Vector3d rpy = sdk::roll_pitch_yaw(q);
   const double stance_yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
   const Eigen::Vector3d d =

@@ -32,7 +32,7 @@ Refusal GaitMachine::set_mode(int mode) {
   if (mode < GAITD_MODE_STAND || mode > GAITD_MODE_WALK_BENT) {
     return refuse("mode %d: stand, walk-straight or walk-bent expected", mode);
   }
-  if (mode == GAITD_MODE_STAND && walking()) stop();
+  if (mode == GAITD_MODE_STAND && (walking() || queue_.size() > 0)) stop();
   pending_mode_ = mode;
   return {};
 }
@@ -41,6 +41,7 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
   if (pending_mode_ == GAITD_MODE_STAND) {
     return refuse("walk: the gait mode is stand; choose one to walk in: gaitctl mode walk-bent");
   }
+  if (walk.steps < 1) return refuse("walk: at least 1 step expected, got %d", walk.steps);
   if (Refusal r = check_room(walk.steps + 1); r.refused()) return r;
   // The feet from which the first new footstep is taken: the last two places on the way.
   GaitdPose feet[2] = {state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose};

@@ -18,8 +18,9 @@ using sdk::view;
 void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                           const CmpOffsets& offsets, double decay, double fit_limit,
                           GaitdIcpPlan& plan) {
-  const bool first = state_.size == 0;
-  const bool changed = first || state_.plan_revision != gait.plan_revision;
+  const bool first = state_.plan_revision == kNotStarted;
+  const bool changed = first || resumed_ || state_.plan_revision != gait.plan_revision;
+  resumed_ = false;
   auto icp = view(state_.icp);
   auto delta = view(state_.offset);
   auto start = view(state_.start_ecmp);

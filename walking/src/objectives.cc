@@ -138,7 +138,9 @@ double ObjectiveBuilder::load_share(int side, const GaitdGaitState& gait) const 
   double share = std::min(1.0, time_in_contact_[side] / ramp);
   const bool leaving =
       gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 && gait.next_side == side;
-  if (leaving) share = std::min(share, gait.time_remaining / ramp);
+  // A transfer that waits for the ICP past its time needs both feet.
+  const bool waiting = gait.time_in_phase > gait.phase_duration;
+  if (leaving && !waiting) share = std::min(share, gait.time_remaining / ramp);
   return std::clamp(share, 0.0, 1.0);
 }
 

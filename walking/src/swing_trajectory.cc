@@ -11,6 +11,13 @@ namespace {
 
 constexpr double kShortest = 0.01;  // s, of one polynomial
 
+bool same_goal(const GaitdFootstep& a, const GaitdFootstep& b) {
+  return sdk::view(a.pose.position) == sdk::view(b.pose.position) &&
+         sdk::quaternion(a.pose.orientation).coeffs() ==
+             sdk::quaternion(b.pose.orientation).coeffs() &&
+         a.swing_height == b.swing_height;
+}
+
 }  // namespace
 
 void Quintic::fit(double x0, double v0, double a0, double x1, double v1, double a1, double T) {
@@ -44,13 +51,16 @@ void SwingTrajectory::begin(const GaitdPose& from, const GaitdFootstep& to, doub
   now.angular_velocity.setZero();
   now.angular_acceleration.setZero();
   apex_ = parameters[Swing::kApexFraction] * duration;
-  apex_height_ = std::max(from.position[2], to.pose.position[2]) + to.swing_height;
+  lift_off_height_ = from.position[2];
   plan(0.0, now, to, duration, parameters);
 }
 
 void SwingTrajectory::replan(double t, const GaitdFootstep& to, double duration,
                              const SwingParameters& parameters) {
   if (t >= duration - kShortest) return;  // too late to change anything
+  if (duration == duration_ && same_goal(goal_, to)) return;
+  // The apex keeps its place in what is left of the swing.
+  if (apex_ > t) apex_ = t + (apex_ - t) * (duration - t) / std::max(duration_ - t, kShortest);
   plan(t, evaluate(t), to, duration, parameters);
 }
 
@@ -59,14 +69,16 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   start_ = t;
   duration_ = std::max(duration, t + kShortest);
   late_velocity_ = parameters[Swing::kLateVelocity];
+  goal_ = to;
   const double T = duration_ - t;
   const Eigen::Vector3d end = sdk::view(to.pose.position);
   x_.fit(now.position.x(), now.velocity.x(), now.acceleration.x(), end.x(), 0.0, 0.0, T);
   y_.fit(now.position.y(), now.velocity.y(), now.acceleration.y(), end.y(), 0.0, 0.0, T);
   const double down = -parameters[Swing::kTouchdownVelocity];
   if (apex_ - t > kShortest) {
+    apex_height_ = std::max(lift_off_height_, end.z()) + to.swing_height;
     // Curvature of a parabola of this height over the swing: no flat top, no hard corner.
-    const double rise = apex_height_ - 0.5 * (now.position.z() + end.z());
+    const double rise = apex_height_ - 0.5 * (lift_off_height_ + end.z());
     const double curvature = -6.0 * std::max(rise, 0.0) / (duration_ * duration_);
     z_up_.fit(now.position.z(), now.velocity.z(), now.acceleration.z(), apex_height_, 0.0,
               curvature, apex_ - t);
@@ -78,10 +90,10 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   }
   from_orientation_ = now.orientation;
   const Eigen::Quaterniond goal = sdk::quaternion(to.pose.orientation);
-  rotation_ = sdk::log_so3(goal * now.orientation.conjugate());
-  const double angle = rotation_.norm();
-  const double rate = angle > 1e-9 ? now.angular_velocity.dot(rotation_) / (angle * angle) : 0.0;
-  angle_.fit(0.0, rate, 0.0, 1.0, 0.0, 0.0, T);
+  const Eigen::Vector3d turn = sdk::log_so3(goal * now.orientation.conjugate());
+  for (int i = 0; i < 3; ++i) {
+    turn_[i].fit(0.0, now.angular_velocity[i], now.angular_acceleration[i], turn[i], 0.0, 0.0, T);
+  }
 }
 
 SwingTrajectory::Sample SwingTrajectory::evaluate(double t) const {
@@ -94,10 +106,16 @@ SwingTrajectory::Sample SwingTrajectory::evaluate(double t) const {
   s.position = {x_.position(u), y_.position(u), z.position(uz)};
   s.velocity = {x_.velocity(u), y_.velocity(u), z.velocity(uz)};
   s.acceleration = {x_.acceleration(u), y_.acceleration(u), z.acceleration(uz)};
-  const double share = angle_.position(u);
-  s.orientation = sdk::exp_so3(share * rotation_) * from_orientation_;
-  s.angular_velocity = angle_.velocity(u) * rotation_;
-  s.angular_acceleration = angle_.acceleration(u) * rotation_;
+  Eigen::Vector3d turn, rate, acceleration;
+  for (int i = 0; i < 3; ++i) {
+    turn[i] = turn_[i].position(u);
+    rate[i] = turn_[i].velocity(u);
+    acceleration[i] = turn_[i].acceleration(u);
+  }
+  s.orientation = sdk::exp_so3(turn) * from_orientation_;
+  // First order of the left Jacobian of SO(3); exact while the axis stays.
+  s.angular_velocity = rate + 0.5 * turn.cross(rate);
+  s.angular_acceleration = acceleration + 0.5 * turn.cross(acceleration);
   if (t > duration_) {
     s.position.z() -= late_velocity_ * (t - duration_);
     s.velocity = {0.0, 0.0, -late_velocity_};

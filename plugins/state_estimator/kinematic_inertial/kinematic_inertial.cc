@@ -16,6 +16,18 @@ constexpr double kAveragingTime = 0.2;
 // Anchors are at their best while standing: the attitude is levelled this many times faster then.
 constexpr double kStandingFactor = 3.0;
 
+// A number that is none must not get into the state, whatever the sensor says of itself.
+bool usable(const GaitdJointSensor& joint) {
+  return joint.info.valid != 0 && std::isfinite(joint.position) && std::isfinite(joint.velocity);
+}
+bool usable(const GaitdImuSensor& imu) {
+  return imu.info.valid != 0 && view(imu.angular_rate).allFinite() &&
+         view(imu.specific_force).allFinite();
+}
+bool usable(const GaitdFootForceSensor& foot) {
+  return foot.info.valid != 0 && view(foot.force).allFinite() && view(foot.moment).allFinite();
+}
+
 double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * hertz * dt); }
 
 // Smallest rotation that takes the measured specific force to the vertical.
@@ -35,6 +47,10 @@ KinematicInertial::KinematicInertial(const GaitdModel& model)
 void KinematicInertial::reset() {
   initialised_ = false;
   time_since_start_ = 0.0;
+  rate_.setZero();
+  last_rate_.setZero();
+  specific_force_.setZero();
+  last_cop_.setZero();
   joints_seen_ = false;
   orientation_.setIdentity();
   position_.setZero();
@@ -72,7 +88,7 @@ void KinematicInertial::set_state(const GaitdStateEstimatorState& s) {
 
 const GaitdImuSensor* KinematicInertial::imu(const GaitdSensors& sensors, int& index) const {
   for (int i = 0; i < sensors.imu_count && i < model_.imu_count; ++i) {
-    if (sensors.imus[i].info.valid != 0) {
+    if (usable(sensors.imus[i])) {
       index = i;
       return &sensors.imus[i];
     }
@@ -85,7 +101,7 @@ void KinematicInertial::read_joints(const GaitdStateEstimatorInput& in, GaitdRob
   const double decays[] = {std::exp(-p_[P::kUpperBodyPole] * dt), std::exp(-p_[P::kLegPole] * dt)};
   for (int i = 0; i < model_.joint_count; ++i) {
     const GaitdJointSensor& joint = in.sensors->joints[i];
-    if (joint.info.valid == 0) {
+    if (!usable(joint)) {
       // Keeps its last position; the host decides what the fault means.
       joint_rate_[i] = 0.0;
     } else if (!joints_seen_ || p_[leg_joint_[i] ? P::kLegPole : P::kUpperBodyPole] <= 0.0) {
@@ -126,6 +142,15 @@ Eigen::Vector3d KinematicInertial::sole_point(int side, const Eigen::Vector3d& i
       foot.body, view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole);
 }
 
+bool KinematicInertial::complete(const GaitdSensors& sensors) const {
+  int index = 0;
+  if (imu(sensors, index) == nullptr) return false;
+  for (int i = 0; i < model_.joint_count; ++i) {
+    if (!usable(sensors.joints[i])) return false;
+  }
+  return true;
+}
+
 void KinematicInertial::initialise(const GaitdStateEstimatorInput& in,
                                    const GaitdRobotState& joints) {
   int index = 0;
@@ -155,7 +180,10 @@ void KinematicInertial::place(const GaitdStateEstimatorInput& in, const GaitdRob
 void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in, double dt) {
   int index = 0;
   const GaitdImuSensor* sensor = imu(*in.sensors, index);
-  if (sensor == nullptr) return;  // coast on the last rate
+  if (sensor == nullptr) {  // coast on the last rate
+    orientation_ = (orientation_ * sdk::exp_so3(rate_ * dt)).normalized();
+    return;
+  }
   const GaitdFrame& frame = model_.imus[index];
   const Eigen::Quaterniond mount = sdk::quaternion(frame.orientation);
   rate_ = mount * view(sensor->angular_rate) - gyro_bias_;
@@ -201,7 +229,7 @@ void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobot
         sole.conjugate() * (view(foot.force_sensor.origin) - view(foot.sole.origin));
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-    if (sensor.info.valid != 0) {
+    if (usable(sensor)) {
       force = turn * view(sensor.force);
       moment = turn * view(sensor.moment) + lever.cross(force);
     }
@@ -343,6 +371,10 @@ void KinematicInertial::write(const GaitdStateEstimatorInput& in, GaitdRobotStat
 GaitdStatus KinematicInertial::process(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
   if (in.sensors->joint_count != model_.joint_count) return GAITD_INVALID_ARGUMENT;
   const double dt = in.time.period;
+  if (!initialised_ && !complete(*in.sensors)) {
+    out.valid = 0;  // nothing to begin with
+    return GAITD_OK;
+  }
   read_joints(in, out);
   if (!initialised_) initialise(in, out);
   update_attitude(in, dt);

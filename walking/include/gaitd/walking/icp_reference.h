@@ -14,11 +14,19 @@ namespace gaitd::walking {
 //   xi_ref = xi_plan + delta,  delta' = -k delta,  r_ref = r_plan + (1 + k/w) delta
 class IcpReference {
  public:
-  explicit IcpReference(const GaitdModel& model) : model_(model) {}
+  explicit IcpReference(const GaitdModel& model) : model_(model) { reset(); }
 
-  void reset() { state_ = {}; }
+  void reset() {
+    state_ = {};
+    state_.size = sizeof(state_);
+    state_.plan_revision = kNotStarted;
+  }
   void get_state(GaitdIcpPlannerState& state) const { state = state_; }
-  void set_state(const GaitdIcpPlannerState& state) { state_ = state; }
+  // Goes on from the reference of another instance, which may have had another plan.
+  void set_state(const GaitdIcpPlannerState& state) {
+    state_ = state;
+    resumed_ = true;
+  }
 
   // One tick of `dt` seconds. `decay` is k (1/s); `fit_limit` bounds how far the start of a first
   // transfer may move (m).
@@ -28,7 +36,9 @@ class IcpReference {
  private:
   const GaitdModel model_;
   IcpTrajectory trajectory_;
+  static constexpr int kNotStarted = -1;  // plan_revision before the first tick
   GaitdIcpPlannerState state_{};
+  bool resumed_ = false;
 };
 
 }  // namespace gaitd::walking

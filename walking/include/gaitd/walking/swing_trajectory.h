@@ -53,9 +53,10 @@ class SwingTrajectory {
   double apex_height_ = 0.0;
   double late_velocity_ = 0.0;
   Quintic x_, y_, z_up_, z_down_;
-  Quintic angle_;  // share of the rotation still to go
+  Quintic turn_[3];  // rotation vector from from_orientation_, W, rad
   Eigen::Quaterniond from_orientation_ = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d rotation_ = Eigen::Vector3d::Zero();  // rotation vector to the end, W
+  GaitdFootstep goal_{};          // what the polynomials lead to
+  double lift_off_height_ = 0.0;  // m
 };
 
 }  // namespace gaitd::walking
