@@ -3,11 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 #include "cli/print.h"
 #include "cli/rpc_client.h"
@@ -18,6 +20,18 @@ namespace gaitd::cli {
 namespace {
 
 using nlohmann::json;
+
+// Waits, at most 15 s, until the robot has the posture in which it takes commands.
+void wait_until_ready(RpcClient* client) {
+  using std::chrono::milliseconds;
+  for (milliseconds waited{0}; waited < milliseconds(15000); waited += milliseconds(50)) {
+    std::this_thread::sleep_for(milliseconds(50));
+    const daemon::RpcResult status = client->call("status", nullptr);
+    const json* value = std::get_if<json>(&status);
+    if (value == nullptr || !value->is_object()) return;
+    if (value->value("state", json()) != "readying") return;
+  }
+}
 
 // Sends the request and prints the answer; returns the exit code.
 int ask(const Context& context, const std::string& method, const json& params) {
@@ -38,6 +52,7 @@ int ask(const Context& context, const std::string& method, const json& params) {
     }
     return kFailed;
   }
+  if (method == "arm" || method == "sim.reset") wait_until_ready(client.get());
   const json& value = std::get<json>(result);
   std::cout << (context.json ? json_text(value) : result_text(method, value));
   return kDone;

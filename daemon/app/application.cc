@@ -4,6 +4,8 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <ctime>
 #include <filesystem>
 #include <thread>
@@ -332,6 +334,29 @@ bool Application::prepare() {
   return load_backend() && start_telemetry() && start_server();
 }
 
+// Says on the terminal what the control thread cannot: faults, when they come and go.
+void Application::watch_faults(const std::atomic<bool>& running) const {
+  const int signal = find_signal(telemetry_->table(), "safety/faults");
+  std::vector<double> values;
+  std::uint32_t last = 0;
+  while (running) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    if (signal < 0 || !telemetry_->latest(values)) continue;
+    const auto faults = static_cast<std::uint32_t>(values[signal]);
+    if (faults == last) continue;
+    std::string names;
+    for (std::size_t i = 0; i < kFaultNames.size(); ++i) {
+      if ((faults >> i & 1u) != 0) names += std::string(" ") + kFaultNames[i];
+    }
+    if (faults != 0) {
+      spdlog::error("fault:{}; the joints are damped until `gaitctl reset`", names);
+    } else {
+      spdlog::info("faults cleared");
+    }
+    last = faults;
+  }
+}
+
 int Application::run() {
   const GaitdBackendInstance& backend = backend_->instance();
   RealtimeReport realtime;
@@ -351,6 +376,8 @@ int Application::run() {
                                         telemetry_.get(), bridge_.get(), player_.get());
   LoopReport report;
   bool degraded = false;
+  std::atomic<bool> running{true};
+  std::thread watch([&] { watch_faults(running); });
   std::thread control([&] {
     if (paced) {
       enter_realtime(config_.realtime, &realtime);
@@ -366,6 +393,8 @@ int Application::run() {
     report = loop_->run();
   });
   control.join();
+  running = false;
+  watch.join();
   backend.vtable->stop(backend.self);
   server_.reset();
   const double simulated = static_cast<double>(report.ticks) * config_.period;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -51,6 +52,7 @@ class Application {
   bool start_telemetry();
   bool start_server();
   std::string default_log_file() const;
+  void watch_faults(const std::atomic<bool>& running) const;
   void report_issues(const Issues& issues) const;
   nlohmann::json status() const;
   LogMetadata metadata() const;

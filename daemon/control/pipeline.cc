@@ -10,8 +10,9 @@
 namespace gaitd::daemon {
 namespace {
 
-CommandReply refused(const Command& command, const char* why) {
+CommandReply refused(const Command& command, std::int64_t tick, const char* why) {
   CommandReply reply;
+  reply.tick = tick;
   reply.request = command.request;
   std::snprintf(reply.message.data(), reply.message.size(), "%s", why);
   return reply;
@@ -32,16 +33,14 @@ Pipeline::Pipeline(const GaitdModel& model, LayerChain::Layers layers, const Gai
 }
 
 void Pipeline::reset() {
-  const SafetyState before = safety_.state();
   layers_.reset();
-  safety_.clear();
-  safety_.disarm();
+  safety_.reset();
   const auto variants = data_.variants;
   data_ = TickData{};
   data_.variants = variants;
   gait_.reset(data_.robot);
   data_.gait = gait_.state();
-  if (before != SafetyState::kDisarmed) safety_.arm();
+  safety_.arm();
 }
 
 void Pipeline::begin_control() {
@@ -87,7 +86,7 @@ CommandReply Pipeline::execute(const Command& command) {
       command.type == CommandType::kWalk || command.type == CommandType::kFootsteps ||
       command.type == CommandType::kPause || command.type == CommandType::kResume;
   if (needs_control && !safety_.controlled()) {
-    return refused(command, safety_.state() == SafetyState::kFault
+    return refused(command, data_.time.tick, safety_.state() == SafetyState::kFault
                                 ? "a fault is latched; see `gaitctl status`, then `gaitctl reset` "
                                   "and `gaitctl arm`"
                                 : "the robot is not standing yet; arm it (`gaitctl arm`) and wait "
@@ -96,7 +95,10 @@ CommandReply Pipeline::execute(const Command& command) {
   const char* why = nullptr;
   switch (command.type) {
     case CommandType::kArm:
-      why = safety_.arm();
+      why = data_.robot.valid != 0 && !safety_.upright(data_.robot)
+                ? "arm: the robot is not upright; set it on its feet (simulation: `gaitctl sim "
+                  "reset`), then arm"
+                : safety_.arm();
       break;
     case CommandType::kDisarm:
       why = safety_.disarm();
@@ -131,10 +133,10 @@ CommandReply Pipeline::execute(const Command& command) {
       safety_.stopping();
       break;
     default:
-      return refused(command, "this command is not for the control pipeline");
+      return refused(command, data_.time.tick, "this command is not for the control pipeline");
   }
-  if (why != nullptr) return refused(command, why);
-  if (refusal.refused()) return refused(command, refusal.message);
+  if (why != nullptr) return refused(command, data_.time.tick, why);
+  if (refusal.refused()) return refused(command, data_.time.tick, refusal.message);
   reply.accepted = true;
   return reply;
 }

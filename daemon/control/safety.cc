@@ -42,6 +42,12 @@ const char* Safety::clear() {
   return nullptr;
 }
 
+void Safety::reset() {
+  state_ = SafetyState::kDisarmed;
+  faults_ = 0;
+  time_unsolved_ = 0.0;
+}
+
 void Safety::raise(std::uint32_t fault) {
   if (state_ == SafetyState::kDisarmed && fault != kFaultEstop) return;
   faults_ |= fault;
@@ -55,6 +61,18 @@ void Safety::stopping() {
 bool Safety::stale(const GaitdSignalInfo& info) const {
   return info.valid == 0 || info.age > p_[P::kSensorTimeout];
 }
+
+bool Safety::tilted(const GaitdRobotState& robot) const {
+  const Eigen::Vector3d up = sdk::quaternion(robot.pelvis_orientation) * Eigen::Vector3d::UnitZ();
+  return up.z() < std::cos(p_[P::kTiltLimit]);
+}
+
+bool Safety::low(const GaitdRobotState& robot) const {
+  const double lower = std::min(robot.feet[0].position[2], robot.feet[1].position[2]);
+  return robot.pelvis_position[2] - lower < p_[P::kFallHeight] * model_.nominal_pelvis_height;
+}
+
+bool Safety::upright(const GaitdRobotState& robot) const { return !tilted(robot) && !low(robot); }
 
 void Safety::check(const TickData& d, bool estimate_ok) {
   if (state_ == SafetyState::kDisarmed || state_ == SafetyState::kFault) return;
@@ -71,12 +89,8 @@ void Safety::check(const TickData& d, bool estimate_ok) {
     raise(kFaultEstimator);
     return;
   }
-  const Eigen::Vector3d up = sdk::quaternion(d.robot.pelvis_orientation) * Eigen::Vector3d::UnitZ();
-  if (up.z() < std::cos(p_[P::kTiltLimit])) raise(kFaultTilt | kFaultFall);
-  const double lower = std::min(d.robot.feet[0].position[2], d.robot.feet[1].position[2]);
-  if (d.robot.pelvis_position[2] - lower < p_[P::kFallHeight] * model_.nominal_pelvis_height) {
-    raise(kFaultFall);
-  }
+  if (tilted(d.robot)) raise(kFaultTilt | kFaultFall);
+  if (low(d.robot)) raise(kFaultFall);
 }
 
 bool Safety::update(double dt, const TickData& d, bool walking) {

@@ -63,9 +63,12 @@ class Safety {
   const char* arm();
   const char* disarm();
   const char* clear();  // of a latched fault: disarmed again
+  void reset();         // whatever the state: disarmed, no faults (a simulation starts over)
   void raise(std::uint32_t fault);
   void stopping();
 
+  // Whether the pelvis is up and level enough not to count as fallen.
+  bool upright(const GaitdRobotState& robot) const;
   // Looks at sensors and estimate; raises what it finds. `estimate_ok` as the layer said.
   void check(const TickData& data, bool estimate_ok);
   // Follows the gait once the controller has the joints. True in the tick it is handed over.
@@ -78,6 +81,8 @@ class Safety {
   void hold(const TickData& data, GaitdJointCommands& commands) const;
   void damp(GaitdJointCommands& commands) const;
   void clamp(double dt, const TickData& data, GaitdJointCommands& commands);
+  bool tilted(const GaitdRobotState& robot) const;
+  bool low(const GaitdRobotState& robot) const;
   bool stale(const GaitdSignalInfo& info) const;
 
   const GaitdModel model_;
