@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -140,6 +141,15 @@ void judge(const Scenario& scenario, RunReport* report) {
   if (!log->finished()) {
     report->problems.push_back("the log is cut off: " + log->break_reason());
   }
+  for (const daemon::Event& event : log->events()) {
+    if (event.kind != daemon::event_kind_name(daemon::EventKind::kCommand)) continue;
+    const json command = json::parse(event.text, nullptr, false);
+    if (!command.is_object() || command.value("accepted", json()) != false) continue;
+    char when[32];
+    std::snprintf(when, sizeof(when), "%.3f s", event.time);
+    report->refusals.push_back("refused at " + std::string(when) + ": " +
+                               command.value("reason", "no reason given"));
+  }
   report->verdict = daemon::compute_verdict(*log, scenario.expect);
 }
 
@@ -204,6 +214,7 @@ RunReport run_scenario(const std::string& name, const RunOptions& options,
 
 std::string report_text(const RunReport& report) {
   std::string out = report.scenario + ": " + (report.pass() ? "PASS" : "FAIL") + "\n";
+  for (const std::string& refusal : report.refusals) out += with_newline("  " + refusal);
   for (const std::string& problem : report.problems) out += with_newline("  " + problem);
   if (report.verdict) out += with_newline(daemon::verdict_text(*report.verdict));
   if (!report.log.empty()) out += "log: " + report.log + "\n";
@@ -211,8 +222,10 @@ std::string report_text(const RunReport& report) {
 }
 
 json report_json(const RunReport& report) {
-  json out = {{"scenario", report.scenario}, {"file", report.file},         {"log", report.log},
-              {"pass", report.pass()},       {"problems", report.problems}, {"verdict", nullptr}};
+  json out = {{"scenario", report.scenario}, {"file", report.file},
+              {"log", report.log},           {"pass", report.pass()},
+              {"refusals", report.refusals}, {"problems", report.problems},
+              {"verdict", nullptr}};
   if (report.verdict) {
     out["verdict"] = json::parse(daemon::verdict_json(*report.verdict), nullptr, false);
   }

@@ -86,11 +86,12 @@ CommandReply Pipeline::execute(const Command& command) {
       command.type == CommandType::kWalk || command.type == CommandType::kFootsteps ||
       command.type == CommandType::kPause || command.type == CommandType::kResume;
   if (needs_control && !safety_.controlled()) {
-    return refused(command, data_.time.tick, safety_.state() == SafetyState::kFault
-                                ? "a fault is latched; see `gaitctl status`, then `gaitctl reset` "
-                                  "and `gaitctl arm`"
-                                : "the robot is not standing yet; arm it (`gaitctl arm`) and wait "
-                                  "until `gaitctl status` says standing");
+    return refused(command, data_.time.tick,
+                   safety_.state() == SafetyState::kFault
+                       ? "a fault is latched; see `gaitctl status`, then `gaitctl reset` "
+                         "and `gaitctl arm`"
+                       : "the robot is not standing yet; arm it (`gaitctl arm`) and wait "
+                         "until `gaitctl status` says standing");
   }
   const char* why = nullptr;
   switch (command.type) {
