@@ -11,12 +11,12 @@
 #include "daemon/config/settings.h"
 #include "gaitd/abi/backend.h"
 #include "gaitd/abi/plugin.h"
+#include "gaitd/sdk/layer_names.h"
 
 namespace gaitd::daemon {
 
 // Names of the layers in the order of GAITD_LAYER_*: the scopes of their parameters.
-inline constexpr std::array<std::string_view, GAITD_LAYER_COUNT> kLayerNames = {
-    "state_estimator", "icp_planner", "step_adjuster", "toe_off", "whole_body_controller"};
+using sdk::kLayerNames;
 
 enum class OverrunPolicy { kReport, kSafeStop };
 

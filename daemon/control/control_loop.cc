@@ -174,7 +174,7 @@ void ControlLoop::report_changes() {
                          d.time.tick, d.time.time, std::string_view(text, length));
 }
 
-bool ControlLoop::wait_for_next_period() {
+void ControlLoop::wait_for_next_period() {
   const std::int64_t period = std::llround(1e9 * options_.period);
   const std::int64_t before = now_ns();
   next_wake_ns_ += period;
@@ -191,10 +191,9 @@ bool ControlLoop::wait_for_next_period() {
   const timespec wake{static_cast<time_t>(next_wake_ns_ / 1000000000),
                       static_cast<long>(next_wake_ns_ % 1000000000)};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr) != 0) {
-    if (stop_.load(std::memory_order_relaxed)) return false;
+    if (stop_.load(std::memory_order_relaxed)) return;
   }
   pipeline_->data().times.jitter_us = 1e-3 * static_cast<double>(now_ns() - next_wake_ns_);
-  return true;
 }
 
 }  // namespace gaitd::daemon

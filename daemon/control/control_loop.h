@@ -18,7 +18,6 @@ struct LoopOptions {
   bool arm = true;        // by itself at the first tick: a simulated robot
   bool safe_stop_on_overrun = false;
   double overrun_run = 0.01;  // s of overruns in a row that count
-  int priority = 0;           // SCHED_FIFO; 0: ordinary
 };
 
 // What the loop found about time, for reports.
@@ -51,7 +50,7 @@ class ControlLoop {
   CommandReply simulate(const Command& command);
   void record();
   void report_changes();
-  bool wait_for_next_period();
+  void wait_for_next_period();
 
   const LoopOptions options_;
   const GaitdModel& model_;

@@ -1,33 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/host/layers.h"
 
-#include <array>
-#include <utility>
+#include "gaitd/sdk/layer_names.h"
 
 namespace gaitd::daemon {
 namespace {
 
-constexpr std::array<std::pair<int, std::string_view>, 6> kLayers{{
-    {GAITD_LAYER_STATE_ESTIMATOR, "state_estimator"},
-    {GAITD_LAYER_ICP_PLANNER, "icp_planner"},
-    {GAITD_LAYER_STEP_ADJUSTER, "step_adjuster"},
-    {GAITD_LAYER_TOE_OFF, "toe_off"},
-    {GAITD_LAYER_WHOLE_BODY_CONTROLLER, "whole_body_controller"},
-    {GAITD_LAYER_BACKEND, "backend"},
-}};
+constexpr std::string_view kBackend = "backend";
 
 }  // namespace
 
 std::string_view layer_name(int layer) {
-  for (const auto& [number, name] : kLayers) {
-    if (number == layer) return name;
-  }
-  return "unknown";
+  if (layer == GAITD_LAYER_BACKEND) return kBackend;
+  return layer >= 0 && layer < GAITD_LAYER_COUNT ? sdk::kLayerNames[layer] : "unknown";
 }
 
 std::optional<int> layer_from_name(std::string_view name) {
-  for (const auto& [number, known] : kLayers) {
-    if (known == name) return number;
+  if (name == kBackend) return GAITD_LAYER_BACKEND;
+  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
+    if (sdk::kLayerNames[layer] == name) return layer;
   }
   return std::nullopt;
 }
