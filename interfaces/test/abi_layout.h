@@ -8,34 +8,34 @@
 
 /* clang-format off */
 #define GAITD_ABI_SIZES(X) \
-  X(GaitdBody, 136) \
-  X(GaitdJoint, 192) \
-  X(GaitdFrame, 112) \
-  X(GaitdFoot, 384) \
-  X(GaitdLeg, 96) \
-  X(GaitdModel, 23160) \
+  X(GaitdBody, 152) \
+  X(GaitdJoint, 224) \
+  X(GaitdFrame, 128) \
+  X(GaitdFoot, 448) \
+  X(GaitdLeg, 128) \
+  X(GaitdModel, 26504) \
   X(GaitdSignalInfo, 24) \
-  X(GaitdJointSensor, 48) \
-  X(GaitdImuSensor, 112) \
-  X(GaitdFootForceSensor, 72) \
-  X(GaitdSensors, 3696) \
-  X(GaitdFootState, 208) \
-  X(GaitdRobotState, 1760) \
+  X(GaitdJointSensor, 64) \
+  X(GaitdImuSensor, 144) \
+  X(GaitdFootForceSensor, 88) \
+  X(GaitdSensors, 4880) \
+  X(GaitdFootState, 240) \
+  X(GaitdRobotState, 1824) \
   X(GaitdPose, 56) \
-  X(GaitdFootstep, 424) \
-  X(GaitdFoothold, 192) \
-  X(GaitdGaitState, 14048) \
+  X(GaitdFootstep, 488) \
+  X(GaitdFoothold, 224) \
+  X(GaitdGaitState, 16160) \
   X(GaitdIcpPlan, 264) \
   X(GaitdStepAdjustment, 128) \
   X(GaitdToeOff, 104) \
-  X(GaitdContactPoint, 104) \
-  X(GaitdTask, 168) \
-  X(GaitdObjectives, 10304) \
-  X(GaitdJointCommand, 56) \
-  X(GaitdJointCommands, 3600) \
+  X(GaitdContactPoint, 136) \
+  X(GaitdTask, 232) \
+  X(GaitdObjectives, 12864) \
+  X(GaitdJointCommand, 72) \
+  X(GaitdJointCommands, 4656) \
   X(GaitdWbcInfo, 688) \
-  X(GaitdFootTruth, 104) \
-  X(GaitdTruth, 1912) \
+  X(GaitdFootTruth, 136) \
+  X(GaitdTruth, 1976) \
   X(GaitdParameter, 216) \
   X(GaitdPluginDescriptor, 20928) \
   X(GaitdHost, 24) \
@@ -46,7 +46,7 @@
   X(GaitdStepAdjusterInput, 64) \
   X(GaitdToeOffInput, 64) \
   X(GaitdWholeBodyControllerInput, 64) \
-  X(GaitdWholeBodyControllerOutput, 4296) \
+  X(GaitdWholeBodyControllerOutput, 5352) \
   X(GaitdStateEstimatorState, 208) \
   X(GaitdIcpPlannerState, 64) \
   X(GaitdStepAdjusterState, 80) \
@@ -65,6 +65,7 @@
   X(GaitdBody, mass, 56) \
   X(GaitdBody, com, 64) \
   X(GaitdBody, inertia, 88) \
+  X(GaitdBody, reserve, 136) \
   X(GaitdJoint, name, 0) \
   X(GaitdJoint, type, 48) \
   X(GaitdJoint, parent_body, 52) \
@@ -79,17 +80,20 @@
   X(GaitdJoint, effort_limit, 168) \
   X(GaitdJoint, rotor_inertia, 176) \
   X(GaitdJoint, damping, 184) \
+  X(GaitdJoint, reserve, 192) \
   X(GaitdFrame, name, 0) \
   X(GaitdFrame, body, 48) \
   X(GaitdFrame, reserved, 52) \
   X(GaitdFrame, origin, 56) \
   X(GaitdFrame, orientation, 80) \
+  X(GaitdFrame, reserve, 112) \
   X(GaitdFoot, body, 0) \
   X(GaitdFoot, point_count, 4) \
   X(GaitdFoot, sole, 8) \
-  X(GaitdFoot, points, 120) \
-  X(GaitdFoot, toe_point, 248) \
-  X(GaitdFoot, force_sensor, 272) \
+  X(GaitdFoot, points, 136) \
+  X(GaitdFoot, toe_point, 264) \
+  X(GaitdFoot, force_sensor, 288) \
+  X(GaitdFoot, reserve, 416) \
   X(GaitdLeg, joint_count, 0) \
   X(GaitdLeg, joints, 4) \
   X(GaitdLeg, hip_pitch, 52) \
@@ -100,6 +104,7 @@
   X(GaitdLeg, knee_bend_sign, 72) \
   X(GaitdLeg, hip_pitch_bend_sign, 80) \
   X(GaitdLeg, ankle_pitch_bend_sign, 88) \
+  X(GaitdLeg, reserve, 96) \
   X(GaitdModel, size, 0) \
   X(GaitdModel, body_count, 4) \
   X(GaitdModel, joint_count, 8) \
@@ -108,16 +113,16 @@
   X(GaitdModel, total_mass, 64) \
   X(GaitdModel, gravity, 72) \
   X(GaitdModel, bodies, 80) \
-  X(GaitdModel, joints, 8920) \
-  X(GaitdModel, imus, 21208) \
-  X(GaitdModel, feet, 21656) \
-  X(GaitdModel, legs, 22424) \
-  X(GaitdModel, chest_body, 22616) \
-  X(GaitdModel, reserved, 22620) \
-  X(GaitdModel, nominal_position, 22624) \
-  X(GaitdModel, nominal_pelvis_height, 23136) \
-  X(GaitdModel, nominal_com_height, 23144) \
-  X(GaitdModel, nominal_foot_separation, 23152) \
+  X(GaitdModel, joints, 9960) \
+  X(GaitdModel, imus, 24296) \
+  X(GaitdModel, feet, 24808) \
+  X(GaitdModel, legs, 25704) \
+  X(GaitdModel, chest_body, 25960) \
+  X(GaitdModel, reserved, 25964) \
+  X(GaitdModel, nominal_position, 25968) \
+  X(GaitdModel, nominal_pelvis_height, 26480) \
+  X(GaitdModel, nominal_com_height, 26488) \
+  X(GaitdModel, nominal_foot_separation, 26496) \
   X(GaitdSignalInfo, stamp_ns, 0) \
   X(GaitdSignalInfo, age, 8) \
   X(GaitdSignalInfo, sequence, 16) \
@@ -126,15 +131,18 @@
   X(GaitdJointSensor, position, 24) \
   X(GaitdJointSensor, velocity, 32) \
   X(GaitdJointSensor, torque, 40) \
+  X(GaitdJointSensor, reserve, 48) \
   X(GaitdImuSensor, info, 0) \
   X(GaitdImuSensor, has_orientation, 24) \
   X(GaitdImuSensor, reserved, 28) \
   X(GaitdImuSensor, orientation, 32) \
   X(GaitdImuSensor, angular_rate, 64) \
   X(GaitdImuSensor, specific_force, 88) \
+  X(GaitdImuSensor, reserve, 112) \
   X(GaitdFootForceSensor, info, 0) \
   X(GaitdFootForceSensor, force, 24) \
   X(GaitdFootForceSensor, moment, 48) \
+  X(GaitdFootForceSensor, reserve, 72) \
   X(GaitdSensors, size, 0) \
   X(GaitdSensors, joint_count, 4) \
   X(GaitdSensors, imu_count, 8) \
@@ -142,8 +150,8 @@
   X(GaitdSensors, tick, 16) \
   X(GaitdSensors, time, 24) \
   X(GaitdSensors, joints, 32) \
-  X(GaitdSensors, imus, 3104) \
-  X(GaitdSensors, feet, 3552) \
+  X(GaitdSensors, imus, 4128) \
+  X(GaitdSensors, feet, 4704) \
   X(GaitdFootState, contact, 0) \
   X(GaitdFootState, cop_valid, 4) \
   X(GaitdFootState, position, 8) \
@@ -153,6 +161,7 @@
   X(GaitdFootState, normal_force, 160) \
   X(GaitdFootState, cop, 168) \
   X(GaitdFootState, cop_world, 184) \
+  X(GaitdFootState, reserve, 208) \
   X(GaitdRobotState, size, 0) \
   X(GaitdRobotState, joint_count, 4) \
   X(GaitdRobotState, valid, 8) \
@@ -167,8 +176,8 @@
   X(GaitdRobotState, icp, 1192) \
   X(GaitdRobotState, cop, 1208) \
   X(GaitdRobotState, feet, 1224) \
-  X(GaitdRobotState, pelvis_velocity_covariance, 1640) \
-  X(GaitdRobotState, external_wrench, 1712) \
+  X(GaitdRobotState, pelvis_velocity_covariance, 1704) \
+  X(GaitdRobotState, external_wrench, 1776) \
   X(GaitdPose, position, 0) \
   X(GaitdPose, orientation, 24) \
   X(GaitdFootstep, side, 0) \
@@ -183,10 +192,12 @@
   X(GaitdFootstep, reserved, 100) \
   X(GaitdFootstep, contact_polygon, 104) \
   X(GaitdFootstep, landing_region, 232) \
+  X(GaitdFootstep, reserve, 424) \
   X(GaitdFoothold, pose, 0) \
   X(GaitdFoothold, contact, 56) \
   X(GaitdFoothold, polygon_count, 60) \
   X(GaitdFoothold, contact_polygon, 64) \
+  X(GaitdFoothold, reserve, 192) \
   X(GaitdGaitState, size, 0) \
   X(GaitdGaitState, mode, 4) \
   X(GaitdGaitState, phase, 8) \
@@ -207,8 +218,8 @@
   X(GaitdGaitState, time_remaining, 80) \
   X(GaitdGaitState, final_transfer_duration, 88) \
   X(GaitdGaitState, footholds, 96) \
-  X(GaitdGaitState, commanded, 480) \
-  X(GaitdGaitState, adjusted, 7264) \
+  X(GaitdGaitState, commanded, 544) \
+  X(GaitdGaitState, adjusted, 8352) \
   X(GaitdIcpPlan, size, 0) \
   X(GaitdIcpPlan, reserved, 4) \
   X(GaitdIcpPlan, icp, 8) \
@@ -247,6 +258,7 @@
   X(GaitdContactPoint, friction, 80) \
   X(GaitdContactPoint, rho_min, 88) \
   X(GaitdContactPoint, rho_max, 96) \
+  X(GaitdContactPoint, reserve, 104) \
   X(GaitdTask, type, 0) \
   X(GaitdTask, index, 4) \
   X(GaitdTask, row_mask, 8) \
@@ -255,6 +267,7 @@
   X(GaitdTask, axes, 40) \
   X(GaitdTask, acceleration, 72) \
   X(GaitdTask, weight, 120) \
+  X(GaitdTask, reserve, 168) \
   X(GaitdObjectives, size, 0) \
   X(GaitdObjectives, contact_count, 4) \
   X(GaitdObjectives, task_count, 8) \
@@ -273,7 +286,7 @@
   X(GaitdObjectives, joint_stiffness, 2240) \
   X(GaitdObjectives, joint_damping, 2752) \
   X(GaitdObjectives, contacts, 3264) \
-  X(GaitdObjectives, tasks, 4928) \
+  X(GaitdObjectives, tasks, 5440) \
   X(GaitdJointCommand, mode, 0) \
   X(GaitdJointCommand, reserved, 4) \
   X(GaitdJointCommand, torque, 8) \
@@ -282,10 +295,12 @@
   X(GaitdJointCommand, stiffness, 32) \
   X(GaitdJointCommand, damping, 40) \
   X(GaitdJointCommand, acceleration, 48) \
+  X(GaitdJointCommand, reserve, 56) \
   X(GaitdJointCommands, size, 0) \
   X(GaitdJointCommands, joint_count, 4) \
   X(GaitdJointCommands, tick, 8) \
   X(GaitdJointCommands, joints, 16) \
+  X(GaitdJointCommands, reserve, 4624) \
   X(GaitdWbcInfo, status, 0) \
   X(GaitdWbcInfo, iterations, 4) \
   X(GaitdWbcInfo, kkt_residual, 8) \
@@ -300,6 +315,7 @@
   X(GaitdFootTruth, side_force, 40) \
   X(GaitdFootTruth, position, 48) \
   X(GaitdFootTruth, orientation, 72) \
+  X(GaitdFootTruth, reserve, 104) \
   X(GaitdTruth, size, 0) \
   X(GaitdTruth, body_contact, 4) \
   X(GaitdTruth, time, 8) \
@@ -309,9 +325,9 @@
   X(GaitdTruth, com, 120) \
   X(GaitdTruth, com_velocity, 144) \
   X(GaitdTruth, feet, 168) \
-  X(GaitdTruth, joint_position, 376) \
-  X(GaitdTruth, joint_velocity, 888) \
-  X(GaitdTruth, joint_torque, 1400) \
+  X(GaitdTruth, joint_position, 440) \
+  X(GaitdTruth, joint_velocity, 952) \
+  X(GaitdTruth, joint_torque, 1464) \
   X(GaitdParameter, name, 0) \
   X(GaitdParameter, unit, 48) \
   X(GaitdParameter, description, 64) \
@@ -380,7 +396,7 @@
   X(GaitdWholeBodyControllerOutput, size, 0) \
   X(GaitdWholeBodyControllerOutput, reserved, 4) \
   X(GaitdWholeBodyControllerOutput, commands, 8) \
-  X(GaitdWholeBodyControllerOutput, info, 3608) \
+  X(GaitdWholeBodyControllerOutput, info, 4664) \
   X(GaitdStateEstimatorState, size, 0) \
   X(GaitdStateEstimatorState, initialised, 4) \
   X(GaitdStateEstimatorState, pelvis_position, 8) \

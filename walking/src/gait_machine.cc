@@ -43,6 +43,7 @@ void GaitMachine::set_parameter(int index, double value) {
 void GaitMachine::reset(const GaitdRobotState& robot) {
   queue_.truncate(0);
   shift_.setZero();
+  time_shift_ = 0.0;
   height_offset_ = 0.0;
   state_.step_index = 0;
   state_.paused = 0;
@@ -110,6 +111,7 @@ void GaitMachine::begin_swing(const GaitdRobotState& robot) {
   state_.late_contact = 0;
   state_.footholds[side].contact = GAITD_CONTACT_NONE;
   shift_.setZero();
+  time_shift_ = 0.0;
   sdk::view(lift_off_.position) = sdk::view(robot.feet[side].position);
   sdk::store(sdk::quaternion(robot.feet[side].orientation), lift_off_.orientation);
   changed();
@@ -127,6 +129,7 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   state_.early_contact = early ? 1 : 0;
   queue_.pop();
   shift_.setZero();
+  time_shift_ = 0.0;
   apply_pending_mode();
   begin_transfer(other_side(side));
 }
@@ -173,7 +176,8 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
     case GAITD_PHASE_SWING: {
       if (adjustment.active != 0) {
         shift_ = sdk::view(adjustment.shift);
-        state_.phase_duration += adjustment.time_shift;
+        state_.phase_duration += adjustment.time_shift - time_shift_;
+        time_shift_ = adjustment.time_shift;
         changed();
         publish_footsteps();
       }

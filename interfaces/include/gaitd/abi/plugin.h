@@ -170,8 +170,8 @@ typedef struct GaitdStateEstimatorState {
   double pelvis_position[3];
   double pelvis_orientation[4];
   double pelvis_velocity[3]; /* m/s, W */
-  double gyro_bias[3];       /* rad/s, IMU frame */
-  double accelerometer_bias[3];
+  double gyro_bias[3];          /* rad/s, pelvis frame */
+  double accelerometer_bias[3]; /* m/s^2, pelvis frame */
   int32_t contact[GAITD_MAX_FEET];
   double anchor[GAITD_MAX_FEET][3]; /* m, W: sole origin of a foot in contact */
   double anchor_yaw[GAITD_MAX_FEET];

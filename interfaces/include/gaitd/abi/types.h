@@ -10,6 +10,7 @@
  *   Sole frame: origin at the middle of the sole, x towards the toe, y left, z up.
  *   Feet are indexed GAITD_LEFT, GAITD_RIGHT. Masks: bit i is row or joint i.
  * Structs are frozen: fields are only ever appended at the tail, `size` says how much is there.
+ * Structs that stand in arrays or inside others have no `size`: they grow into their `reserve`.
  */
 #ifndef GAITD_ABI_TYPES_H_
 #define GAITD_ABI_TYPES_H_
@@ -50,6 +51,7 @@ typedef struct GaitdBody {
   double mass;       /* kg */
   double com[3];     /* m, body frame */
   double inertia[6]; /* kg m^2 about the centre of mass, body axes: xx xy xz yy yz zz */
+  double reserve[2]; /* 0 */
 } GaitdBody;
 
 /* The frame of the child body equals the joint frame at position zero. */
@@ -68,6 +70,7 @@ typedef struct GaitdJoint {
   double effort_limit;   /* N m or N, > 0 */
   double rotor_inertia;  /* kg m^2 at the output, >= 0 */
   double damping;        /* N m s/rad, viscous, >= 0 */
+  double reserve[4]; /* 0 */
 } GaitdJoint;
 
 typedef struct GaitdFrame {
@@ -76,6 +79,7 @@ typedef struct GaitdFrame {
   int32_t reserved;
   double origin[3];      /* m, body frame */
   double orientation[4]; /* frame in the body frame */
+  double reserve[2]; /* 0 */
 } GaitdFrame;
 
 typedef struct GaitdFoot {
@@ -85,6 +89,7 @@ typedef struct GaitdFoot {
   double points[GAITD_MAX_FOOT_POINTS][2];  /* m, sole frame, physical outline, counter-clockwise */
   double toe_point[3];                      /* m, sole frame: middle of the front edge */
   GaitdFrame force_sensor;
+  double reserve[4]; /* 0 */
 } GaitdFoot;
 
 /* Joint indices; -1 where the robot has no such joint. `bend` is +1 when a positive knee position
@@ -100,6 +105,7 @@ typedef struct GaitdLeg {
   double knee_bend_sign;         /* +1 or -1 */
   double hip_pitch_bend_sign;    /* sign of the hip pitch that goes with a bending knee */
   double ankle_pitch_bend_sign;  /* likewise; also the sign of dorsiflexion */
+  double reserve[4]; /* 0 */
 } GaitdLeg;
 
 typedef struct GaitdModel {
@@ -137,6 +143,7 @@ typedef struct GaitdJointSensor {
   double position; /* rad */
   double velocity; /* rad/s */
   double torque;   /* N m */
+  double reserve[2]; /* 0 */
 } GaitdJointSensor;
 
 typedef struct GaitdImuSensor {
@@ -146,6 +153,7 @@ typedef struct GaitdImuSensor {
   double orientation[4];    /* IMU frame in W */
   double angular_rate[3];   /* rad/s, IMU frame */
   double specific_force[3]; /* m/s^2, IMU frame: acceleration minus gravity */
+  double reserve[4]; /* 0 */
 } GaitdImuSensor;
 
 /* Wrench of the ground on the foot, in the sensor frame, about the sensor origin. */
@@ -153,6 +161,7 @@ typedef struct GaitdFootForceSensor {
   GaitdSignalInfo info;
   double force[3];  /* N */
   double moment[3]; /* N m */
+  double reserve[2]; /* 0 */
 } GaitdFootForceSensor;
 
 typedef struct GaitdSensors {
@@ -181,6 +190,7 @@ typedef struct GaitdFootState {
   double normal_force;     /* N, filtered, along the normal of the sole, >= 0 */
   double cop[2];           /* m, sole frame */
   double cop_world[3];     /* m, W */
+  double reserve[4]; /* 0 */
 } GaitdFootState;
 
 typedef struct GaitdRobotState {
@@ -225,6 +235,7 @@ typedef struct GaitdFootstep {
   int32_t reserved;
   double contact_polygon[GAITD_MAX_FOOT_POINTS][2];   /* m, sole frame, counter-clockwise */
   double landing_region[GAITD_MAX_REGION_POINTS][3];  /* m, W, convex, counter-clockwise */
+  double reserve[8]; /* 0 */
 } GaitdFootstep;
 
 /* Where a foot stands or stood last, with the part of the sole that may carry load. */
@@ -233,6 +244,7 @@ typedef struct GaitdFoothold {
   int32_t contact; /* commanded: GAITD_CONTACT_* */
   int32_t polygon_count;
   double contact_polygon[GAITD_MAX_FOOT_POINTS][2]; /* m, sole frame, never empty */
+  double reserve[4]; /* 0 */
 } GaitdFoothold;
 
 typedef struct GaitdGaitState {
@@ -281,7 +293,7 @@ typedef struct GaitdStepAdjustment {
   uint32_t size;
   int32_t active;
   double shift[3];                  /* m, W, absolute against the commanded foothold */
-  double time_shift;                /* s, change of the remaining time of the phase */
+  double time_shift;                /* s, absolute against the planned duration of the phase */
   double ecmp[2];                   /* m, desired */
   double cmp[2];                    /* m, desired, inside the support polygon plus excursion */
   double kappa;                     /* that was used between the two */
@@ -321,6 +333,7 @@ typedef struct GaitdContactPoint {
   double friction;
   double rho_min;    /* N, of each basis vector */
   double rho_max;    /* N, of each basis vector; may be 0 while a point is being loaded */
+  double reserve[4]; /* 0 */
 } GaitdContactPoint;
 
 enum { GAITD_TASK_FRAME = 0, GAITD_TASK_JOINT = 1 };
@@ -337,6 +350,7 @@ typedef struct GaitdTask {
   double axes[4];  /* quaternion */
   double acceleration[GAITD_MAX_TASK_ROWS];
   double weight[GAITD_MAX_TASK_ROWS];
+  double reserve[8]; /* 0 */
 } GaitdTask;
 
 typedef struct GaitdObjectives {
@@ -378,6 +392,7 @@ typedef struct GaitdJointCommand {
   double stiffness; /* N m/rad */
   double damping;   /* N m s/rad */
   double acceleration; /* rad/s^2, expected under this command; 0 if nothing is expected */
+  double reserve[2]; /* 0 */
 } GaitdJointCommand;
 
 typedef struct GaitdJointCommands {
@@ -385,6 +400,7 @@ typedef struct GaitdJointCommands {
   int32_t joint_count;
   int64_t tick;
   GaitdJointCommand joints[GAITD_MAX_JOINTS];
+  double reserve[4]; /* 0 */
 } GaitdJointCommands;
 
 enum {
@@ -415,6 +431,7 @@ typedef struct GaitdFootTruth {
   double side_force;    /* N, on vertical faces */
   double position[3];   /* m, sole origin in W */
   double orientation[4];
+  double reserve[4]; /* 0 */
 } GaitdFootTruth;
 
 /* Simulation only; no layer ever reads it. */

@@ -67,6 +67,7 @@ class GaitMachine {
   GaitdGaitState state_{};
   GaitdPose lift_off_{};
   Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();  // of the current step
+  double time_shift_ = 0.0;                            // s, of the current phase
   double height_offset_ = 0.0;  // m, measured minus commanded height of the ground so far
   int pending_mode_ = GAITD_MODE_WALK_BENT;
   std::uint32_t next_id_ = 1;
