@@ -4,6 +4,8 @@
 #include <functional>
 #include <string>
 
+#include "daemon/usage/completion.h"
+
 namespace gaitd::cli {
 
 /// Exit codes of gaitctl.
@@ -18,6 +20,7 @@ struct Context {
   std::string socket;  ///< of --socket; empty: look in the usual places
   bool json = false;
   std::function<int()> action;
+  usage::ValueSources values;  ///< what completion offers for an option beyond its fixed words
 };
 
 }  // namespace gaitd::cli

@@ -8,7 +8,10 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "cli/failure.h"
+#include "cli/print.h"
 #include "daemon/telemetry/export_csv.h"
 #include "daemon/telemetry/log_info.h"
 #include "daemon/telemetry/log_reader.h"
@@ -18,9 +21,14 @@ namespace {
 
 using daemon::LogReader;
 
-int fail(const std::string& error) {
-  std::cerr << "gaitctl: log: " << error << "\n";
-  return kFailed;
+std::string signal_list(const LogReader& log) {
+  std::vector<std::vector<std::string>> rows;
+  for (const daemon::SignalDescription& signal : log.signals()) {
+    std::string words;
+    for (const std::string& word : signal.words) words += (words.empty() ? "" : ", ") + word;
+    rows.push_back({signal.name, signal.unit, words});
+  }
+  return table({"signal", "unit", "words"}, rows);
 }
 
 std::string with_newline(std::string text) {
@@ -28,33 +36,58 @@ std::string with_newline(std::string text) {
   return text;
 }
 
-int show_info(const std::string& file, bool json) {
+int show_info(const Context& context, const std::string& file, bool signals) {
   std::string error;
   const auto log = LogReader::open(file, &error);
-  if (!log) return fail(error);
-  std::cout << with_newline(json ? daemon::log_info_json(*log) : daemon::log_info_text(*log));
+  if (!log) return fail(context, kFailed, "log info", error);
+  if (context.json) {
+    std::cout << with_newline(daemon::log_info_json(*log));
+  } else if (signals) {
+    std::cout << signal_list(*log);
+  } else {
+    std::cout << with_newline(daemon::log_info_text(*log));
+  }
   return kDone;
 }
 
-int export_to(const LogReader& log, const daemon::CsvOptions& options, std::ostream& out,
-              const std::string& name) {
+struct ExportOptions {
+  std::string file;
+  std::string signals;
+  std::string output;
+};
+
+int export_log(const Context& context, const ExportOptions& options) {
+  const auto failed = [&](const std::string& why) {
+    return fail(context, kFailed, "log export", why);
+  };
+  const bool to_file = !options.output.empty() && options.output != "-";
+  if (context.json && !to_file) {
+    return fail(context, kUsage, "log export",
+                "with --json, standard output holds JSON: give a file for the CSV with -o FILE");
+  }
   std::string error;
-  if (!daemon::export_csv(log, options, out, &error)) return fail(error);
+  const auto log = LogReader::open(options.file, &error);
+  if (!log) return failed(error);
+  daemon::CsvOptions csv;
+  csv.signals = options.signals;
+  std::ofstream file;
+  if (to_file) {
+    file.open(options.output, std::ios::binary | std::ios::trunc);
+    if (!file) return failed(options.output + ": cannot write: " + std::strerror(errno));
+  }
+  std::ostream& out = to_file ? file : std::cout;
+  if (!daemon::export_csv(*log, csv, out, &error)) return failed(error);
   out.flush();
-  if (!out) return fail(name + ": cannot write: " + std::strerror(errno));
+  if (!out) {
+    return failed((to_file ? options.output : "output") +
+                  ": cannot write: " + std::strerror(errno));
+  }
+  if (context.json) {
+    std::cout << json_text({{"file", options.output},
+                            {"rows", log->tick_count()},
+                            {"signals", log->match(options.signals)}});
+  }
   return kDone;
-}
-
-int export_log(const std::string& file, const std::string& signals, const std::string& output) {
-  std::string error;
-  const auto log = LogReader::open(file, &error);
-  if (!log) return fail(error);
-  daemon::CsvOptions options;
-  options.signals = signals;
-  if (output.empty() || output == "-") return export_to(*log, options, std::cout, "output");
-  std::ofstream out(output, std::ios::binary | std::ios::trunc);
-  if (!out) return fail(output + ": cannot write: " + std::strerror(errno));
-  return export_to(*log, options, out, output);
 }
 
 }  // namespace
@@ -62,23 +95,27 @@ int export_log(const std::string& file, const std::string& signals, const std::s
 void add_log_commands(CLI::App* app, Context* context) {
   auto* log = app->add_subcommand("log", "Read a log file");
   log->require_subcommand(1);
-  auto file = std::make_shared<std::string>();
-  auto signals = std::make_shared<std::string>();
-  auto output = std::make_shared<std::string>();
 
   auto* info = log->add_subcommand("info", "What is in a log: length, signals, events, versions");
-  info->add_option("FILE", *file, "A log of gaitd (.mcap)")->required();
-  info->callback([context, file] {
-    context->action = [context, file] { return show_info(*file, context->json); };
+  auto file = std::make_shared<std::string>();
+  auto list = std::make_shared<bool>(false);
+  info->add_option("FILE", *file, "A log of gaitd (.mcap)")->required()->type_name("FILE");
+  info->add_flag("--signals", *list, "List the signals with their units instead");
+  info->callback([context, file, list] {
+    context->action = [context, file, list] { return show_info(*context, *file, *list); };
   });
 
   auto* csv = log->add_subcommand("export", "Signals as CSV, one row per tick");
-  csv->add_option("FILE", *file, "A log of gaitd (.mcap)")->required();
-  csv->add_option("--signals", *signals,
-                  "Comma-separated globs, e.g. 'time,icp/*,foot/*/force/z'; all if left out");
-  csv->add_option("-o,--output", *output, "File to write; standard output if left out");
-  csv->callback([context, file, signals, output] {
-    context->action = [file, signals, output] { return export_log(*file, *signals, *output); };
+  auto options = std::make_shared<ExportOptions>();
+  csv->add_option("FILE", options->file, "A log of gaitd (.mcap)")->required()->type_name("FILE");
+  csv->add_option("--signals", options->signals,
+                  "Comma-separated globs, e.g. 'time,icp/*,foot/*/force/z'; all if left out")
+      ->type_name("GLOBS");
+  csv->add_option("-o,--output", options->output,
+                  "File to write; standard output if left out. With --json it is needed")
+      ->type_name("FILE");
+  csv->callback([context, options] {
+    context->action = [context, options] { return export_log(*context, *options); };
   });
 }
 

@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // gaitctl: the command line of gaitd.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <string>
+#include <string_view>
 
+#include "cli/completion_command.h"
 #include "cli/context.h"
 #include "cli/daemon_commands.h"
+#include "cli/failure.h"
 #include "cli/log_commands.h"
+#include "cli/man_text.h"
+#include "cli/param_commands.h"
+#include "cli/plugin_commands.h"
 #include "cli/run_command.h"
+#include "cli/usage_error.h"
+#include "cli/watch_command.h"
 #include "gaitd/abi/plugin.h"
 
 namespace {
@@ -24,19 +33,31 @@ int run(int argc, char** argv) {
   Context context;
   app.require_subcommand(1);
   app.fallthrough();
-  app.set_version_flag("--version", version());
+  app.set_version_flag("--version", version(), "Show the version and exit");
   app.add_option("--socket", context.socket,
                  "Socket of the daemon; by default /run/gaitd/gaitd.sock, then "
-                 "$XDG_RUNTIME_DIR/gaitd.sock, then /tmp/gaitd-<uid>/gaitd.sock");
-  app.add_flag("--json", context.json, "Print results as JSON");
+                 "$XDG_RUNTIME_DIR/gaitd.sock, then /tmp/gaitd-<uid>/gaitd.sock")
+      ->type_name("FILE");
+  app.add_flag("--json", context.json, "Print results, and errors too, as JSON");
   app.footer("Exit codes: 0 done, 1 refused or failed, 2 usage, 3 no daemon.");
   add_daemon_commands(&app, &context);
+  add_plugin_commands(&app, &context);
+  add_param_commands(&app, &context);
+  add_watch_command(&app, &context);
   add_run_command(&app, &context);
   add_log_commands(&app, &context);
+  add_completion_command(&app, &context);
+  const auto man = [&app] { return gaitd::usage::man_page(app, man_text()); };
+  if (gaitd::usage::answer_hidden_request(argc, argv, app, context.values, man)) return kDone;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kDone : kUsage;
+    if (e.get_exit_code() == 0) return app.exit(e);
+    // What was not parsed may have held --json too.
+    context.json |= std::any_of(argv, argv + argc,
+                                [](std::string_view argument) { return argument == "--json"; });
+    const UsageError error = usage_error(app, e);
+    return fail(context, kUsage, error.command, error.message);
   }
   return context.action();
 }

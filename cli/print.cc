@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "cli/param_view.h"
+
 namespace gaitd::cli {
 namespace {
 
@@ -147,11 +149,14 @@ std::string table(const std::vector<std::string>& header,
   return out;
 }
 
-std::string result_text(const std::string& method, const json& result) {
+std::string result_text(const std::string& command, const std::string& method, const json& result) {
   if (!result.is_object()) return plain(result) + "\n";
+  if (const std::string text = param_text(method, result); !text.empty()) return text;
   if (method == "plugin.list") return plugin_list_text(result);
   if (result.value("accepted", json()) == true && result.contains("tick")) {
-    return method + ": accepted at tick " + plain(result["tick"]) + "\n";
+    const json note = result.value("note", json());
+    return command + ": accepted at tick " + plain(result["tick"]) +
+           (note.is_string() ? "; " + note.get<std::string>() : "") + "\n";
   }
   return object_text(result, {"state", "mode", "phase", "support", "step_index", "time", "faults",
                               "robot", "backend", "clock", "log"});

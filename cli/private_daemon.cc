@@ -14,34 +14,13 @@
 #include <system_error>
 #include <thread>
 
+#include "cli/stop_signals.h"
+
 namespace gaitd::cli {
 namespace {
 
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
-
-volatile std::sig_atomic_t stop_requested = 0;
-
-void request_stop(int) { stop_requested = 1; }
-
-// Takes SIGINT and SIGTERM while it lives, so that the child is ended and its directory removed.
-class StopSignals {
- public:
-  StopSignals() {
-    stop_requested = 0;
-    struct sigaction action {};
-    action.sa_handler = request_stop;
-    sigaction(SIGINT, &action, &before_[0]);
-    sigaction(SIGTERM, &action, &before_[1]);
-  }
-  ~StopSignals() {
-    sigaction(SIGINT, &before_[0], nullptr);
-    sigaction(SIGTERM, &before_[1], nullptr);
-  }
-
- private:
-  struct sigaction before_[2];
-};
 
 // A directory that goes away with its object.
 class PrivateDirectory {
@@ -111,13 +90,13 @@ DaemonEnd wait_for(pid_t pid, const std::string& socket, const Watch& watch) {
     const pid_t ended = waitpid(pid, &status, WNOHANG);
     if (ended == pid || (ended < 0 && errno != EINTR)) {
       // A terminal interrupts both of us: it may have ended before it was told to.
-      end.interrupted |= stop_requested != 0;
+      end.interrupted |= StopSignals::requested();
       if (ended == pid && WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
       if (ended == pid && WIFSIGNALED(status)) end.signal = WTERMSIG(status);
       return end;
     }
     const Clock::time_point now = Clock::now();
-    if (stop_requested != 0 && !end.interrupted) {
+    if (StopSignals::requested() && !end.interrupted) {
       end.interrupted = true;
       kill_at = now + kPatience;
       kill(pid, SIGTERM);

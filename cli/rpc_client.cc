@@ -3,6 +3,7 @@
 
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -34,15 +35,31 @@ int connect_to(const std::string& path) {
 }
 
 std::string why_not(const std::string& path, int error) {
-  std::string out = "\n  " + path + ": " + std::strerror(error);
-  if (error == ECONNREFUSED) out += " (a socket that no daemon listens on)";
-  if (error == EACCES) out += " (be root or a member of the group gaitd)";
-  return out;
+  const std::string out = "\n  " + path + ": ";
+  switch (error) {
+    case ENOENT:
+      return out + "no such socket";
+    case ECONNREFUSED: {
+      struct stat info {};
+      const bool socket = stat(path.c_str(), &info) == 0 && S_ISSOCK(info.st_mode);
+      return out + (socket ? "nobody listens on this socket: its gaitd is gone" : "not a socket");
+    }
+    case EACCES:
+    case EPERM:
+      return out + "permission denied: be root or a member of the group that owns it (gaitd)";
+    case ENAMETOOLONG:
+      return out + "the path is too long for a socket";
+    default:
+      return out + std::strerror(error);
+  }
 }
 
 daemon::RpcError broken(const std::string& what) {
   return {daemon::rpc_code::kInternalError, what, nullptr};
 }
+
+constexpr const char* kGone =
+    "gaitd closed the connection before it answered; see its log or journalctl -u gaitd";
 
 }  // namespace
 
@@ -55,7 +72,7 @@ std::unique_ptr<RpcClient> RpcClient::connect(const std::vector<std::string>& pa
     reasons += why_not(path, errno);
   }
   *error =
-      "no gaitd listens:" + reasons +
+      "no gaitd can be reached:" + reasons +
       "\nStart one with `gaitd --backend simbody`, or `systemctl start gaitd` on a robot; give "
       "its socket with --socket PATH. `gaitctl run` needs none.";
   return nullptr;
@@ -76,9 +93,9 @@ daemon::RpcResult RpcClient::call(const std::string& method, const json& params,
     }
   }
   for (;;) {
-    std::string problem;
+    daemon::RpcError problem;
     const std::string line = read_line(deadline, &problem);
-    if (!problem.empty()) return broken(problem);
+    if (!problem.message.empty()) return problem;
     json answer = json::parse(line, nullptr, false);
     if (!answer.is_object() || (!answer.contains("result") && !answer.contains("error"))) {
       return broken("what listens on the socket does not speak the protocol of gaitd");
@@ -108,7 +125,7 @@ bool RpcClient::send_all(const std::string& bytes) {
   return true;
 }
 
-std::string RpcClient::read_line(Clock::time_point deadline, std::string* problem) {
+std::string RpcClient::read_line(Clock::time_point deadline, daemon::RpcError* problem) {
   for (std::size_t searched = 0;;) {
     const std::size_t end = buffer_.find('\n', searched);
     if (end != std::string::npos) {
@@ -123,15 +140,15 @@ std::string RpcClient::read_line(Clock::time_point deadline, std::string* proble
     const int ready = left <= 0 ? 0 : poll(&entry, 1, static_cast<int>(left));
     if (ready < 0 && errno == EINTR) continue;
     if (ready <= 0) {
-      *problem = "gaitd did not answer in time; it may hang, see its log or journalctl -u gaitd";
+      *problem =
+          broken("gaitd did not answer in time; it may hang, see its log or journalctl -u gaitd");
       return "";
     }
     char chunk[65536];
     const ssize_t n = recv(fd_, chunk, sizeof(chunk), 0);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) {
-      *problem =
-          "gaitd closed the connection before it answered; see its log or journalctl -u gaitd";
+      *problem = {kConnectionLost, kGone, nullptr};
       return "";
     }
     buffer_.append(chunk, static_cast<std::size_t>(n));

@@ -11,6 +11,9 @@
 
 namespace gaitd::cli {
 
+/// Code of the error that a lost connection is reported as; no code of JSON-RPC.
+inline constexpr int kConnectionLost = 1;
+
 /// A blocking connection to gaitd, one request at a time.
 class RpcClient {
  public:
@@ -31,7 +34,7 @@ class RpcClient {
   explicit RpcClient(int fd) : fd_(fd) {}
   bool send_all(const std::string& bytes);
   // The next line, or empty with what went wrong in `problem`.
-  std::string read_line(std::chrono::steady_clock::time_point deadline, std::string* problem);
+  std::string read_line(std::chrono::steady_clock::time_point deadline, daemon::RpcError* problem);
 
   int fd_;
   int next_id_ = 1;

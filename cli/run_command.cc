@@ -12,8 +12,10 @@
 #include <system_error>
 #include <vector>
 
+#include "cli/failure.h"
 #include "cli/print.h"
 #include "cli/scenario_run.h"
+#include "daemon/config/paths.h"
 
 namespace gaitd::cli {
 namespace {
@@ -39,13 +41,13 @@ void show_progress(const std::string& scenario, double time, double duration) {
   std::fflush(stderr);
 }
 
-int run(const Arguments& arguments, bool json) {
+int run(const Context& context, const Arguments& arguments) {
   std::error_code ignored;
   if (arguments.scenarios.size() > 1 && !arguments.log.empty() && !arguments.log.ends_with('/') &&
       !fs::is_directory(arguments.log, ignored)) {
-    std::cerr << "gaitctl: run: --log " << arguments.log
-              << ": one file for several scenarios; give a folder (ending in /)\n";
-    return kUsage;
+    return fail(
+        context, kUsage, "run",
+        "--log " + arguments.log + ": one file for several scenarios; give a folder (ending in /)");
   }
   const RunOptions options{beside_this_program(), arguments.settings, arguments.log};
   const bool terminal = isatty(STDERR_FILENO) != 0;
@@ -60,7 +62,7 @@ int run(const Arguments& arguments, bool json) {
     if (terminal) std::cerr << "\r\033[K";
     pass &= report.pass();
     ++done;
-    if (json) {
+    if (context.json) {
       reports.push_back(report_json(report));
     } else {
       std::cout << (done > 1 ? "\n" : "") << report_text(report) << std::flush;
@@ -68,7 +70,7 @@ int run(const Arguments& arguments, bool json) {
     interrupted = report.interrupted;
     if (interrupted) break;
   }
-  if (json) std::cout << json_text({{"pass", pass}, {"scenarios", reports}});
+  if (context.json) std::cout << json_text({{"pass", pass}, {"scenarios", reports}});
   if (interrupted) return kInterrupted;
   return pass ? kDone : kFailed;
 }
@@ -80,21 +82,28 @@ void add_run_command(CLI::App* app, Context* context) {
       "run", "Play scenarios on a private gaitd in lockstep and judge what the logs show");
   command->footer("Exit code 0 only if every expectation of every scenario holds.");
   auto arguments = std::make_shared<Arguments>();
+  const auto* scenario =
+      command
+          ->add_option("SCENARIO", arguments->scenarios,
+                       "Name of a scenario (flat-0.35), or the path of a scenario file")
+          ->required()
+          ->type_name("NAME|FILE");
+  context->values[scenario] = [] { return daemon::Paths::detect().scenarios(); };
   command
-      ->add_option("SCENARIO", arguments->scenarios,
-                   "Name of a scenario (flat-0.35), or the path of a scenario file")
-      ->required();
-  command
-      ->add_option("--set", arguments->settings,
-                   "KEY=VALUE over the configuration and the scenario, in YAML; may be repeated")
+      ->add_option(
+          "--set", arguments->settings,
+          "Any key of the configuration or the scenario, the value in YAML; may be repeated")
+      ->type_name("KEY=VALUE")
       ->take_all()
       ->expected(1);
-  command->add_option("--log", arguments->log,
-                      "Log file, or folder for several (ending in /); by default a new file in "
-                      "$XDG_STATE_HOME/gaitd/logs (~/.local/state/gaitd/logs). The output of gaitd "
-                      "goes beside it as .txt");
+  command
+      ->add_option("--log", arguments->log,
+                   "Log file, or folder for several (ending in /); by default a new file in "
+                   "$XDG_STATE_HOME/gaitd/logs (~/.local/state/gaitd/logs). The output of gaitd "
+                   "goes beside it as .txt")
+      ->type_name("FILE|FOLDER/");
   command->callback([context, arguments] {
-    context->action = [context, arguments] { return run(*arguments, context->json); };
+    context->action = [context, arguments] { return run(*context, *arguments); };
   });
 }
 

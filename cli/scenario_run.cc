@@ -141,16 +141,11 @@ void judge(const Scenario& scenario, RunReport* report) {
   if (!log->finished()) {
     report->problems.push_back("the log is cut off: " + log->break_reason());
   }
-  for (const daemon::Event& event : log->events()) {
-    if (event.kind != daemon::event_kind_name(daemon::EventKind::kCommand)) continue;
-    const json command = json::parse(event.text, nullptr, false);
-    if (!command.is_object() || command.value("accepted", json()) != false) continue;
-    char when[32];
-    std::snprintf(when, sizeof(when), "%.3f s", event.time);
-    report->refusals.push_back("refused at " + std::string(when) + ": " +
-                               command.value("reason", "no reason given"));
-  }
   report->verdict = daemon::compute_verdict(*log, scenario.expect);
+}
+
+std::vector<std::string> refusals(const RunReport& report) {
+  return report.verdict ? report.verdict->refusals : std::vector<std::string>();
 }
 
 std::string with_newline(std::string text) {
@@ -214,7 +209,9 @@ RunReport run_scenario(const std::string& name, const RunOptions& options,
 
 std::string report_text(const RunReport& report) {
   std::string out = report.scenario + ": " + (report.pass() ? "PASS" : "FAIL") + "\n";
-  for (const std::string& refusal : report.refusals) out += with_newline("  " + refusal);
+  for (const std::string& refusal : refusals(report)) {
+    out += with_newline("  refused at " + refusal);
+  }
   for (const std::string& problem : report.problems) out += with_newline("  " + problem);
   if (report.verdict) out += with_newline(daemon::verdict_text(*report.verdict));
   if (!report.log.empty()) out += "log: " + report.log + "\n";
@@ -222,10 +219,10 @@ std::string report_text(const RunReport& report) {
 }
 
 json report_json(const RunReport& report) {
-  json out = {{"scenario", report.scenario}, {"file", report.file},
-              {"log", report.log},           {"pass", report.pass()},
-              {"refusals", report.refusals}, {"problems", report.problems},
-              {"verdict", nullptr}};
+  json out = {
+      {"scenario", report.scenario}, {"file", report.file},          {"log", report.log},
+      {"pass", report.pass()},       {"refusals", refusals(report)}, {"problems", report.problems},
+      {"verdict", nullptr}};
   if (report.verdict) {
     out["verdict"] = json::parse(daemon::verdict_json(*report.verdict), nullptr, false);
   }

@@ -26,7 +26,6 @@ struct RunReport {
   std::string scenario;  ///< as asked for
   std::string file;
   std::string log;
-  std::vector<std::string> refusals;  ///< commands of the scenario that gaitd refused, and why
   std::vector<std::string> problems;  ///< what went wrong apart from the expectations
   bool interrupted = false;
   std::optional<daemon::Verdict> verdict;

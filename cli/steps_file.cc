@@ -4,6 +4,7 @@
 #include <iostream>
 #include <iterator>
 
+#include "daemon/config/command_parse.h"
 #include "daemon/config/issues.h"
 #include "daemon/config/node.h"
 
@@ -24,7 +25,7 @@ std::optional<nlohmann::json> read_steps(const std::string& file, bool replace,
     root = daemon::load_yaml_file(file, &issues);
   }
   if (root == nullptr || !issues.ok()) {
-    *error = issues.error_text();
+    *error = "\n" + issues.error_text();
     return std::nullopt;
   }
   NodePtr list = root;
@@ -40,8 +41,10 @@ std::optional<nlohmann::json> read_steps(const std::string& file, bool replace,
     issues.add(list->where, "footsteps", "a list of footsteps {side, x, y, z, yaw, ...}",
                daemon::describe(*list), "see `gaitctl steps --help`");
   }
+  // The daemon checks them as well, but does not know the lines of this file.
+  if (issues.ok()) daemon::parse_command("footsteps", list, nullptr, "", &issues);
   if (!issues.ok()) {
-    *error = issues.error_text();
+    *error = "\n" + issues.error_text();
     return std::nullopt;
   }
   return nlohmann::json{{"footsteps", daemon::to_json(*list)}, {"replace", replace}};

@@ -9,6 +9,8 @@
 #include <thread>
 
 #include "daemon/app/application.h"
+#include "daemon/app/check_config.h"
+#include "daemon/app/command_line.h"
 
 namespace {
 
@@ -20,6 +22,7 @@ class StopSignals {
     sigaddset(&set_, SIGINT);
     sigaddset(&set_, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+    std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files ends the log, not the robot
   }
   template <class Function>
   void on_signal(Function function) {
@@ -45,21 +48,11 @@ class StopSignals {
 
 int main(int argc, char** argv) {
   gaitd::daemon::Options options;
-  CLI::App app{"gaitd: real-time walking daemon for torque-controlled humanoids"};
-  app.set_version_flag("--version", GAITD_VERSION " (" GAITD_BUILD ")");
-  app.add_option("--config", options.config, "Configuration file (default: gaitd.yaml found)");
-  app.add_option("--backend", options.backend, "simbody, socketcan or mock");
-  app.add_option("--robot", options.robot, "Name of a robot or path of a robot.yaml");
-  app.add_option("--scenario", options.scenario, "Scenario to play: name or file");
-  app.add_option("--clock", options.clock, "realtime or lockstep")
-      ->check(CLI::IsMember({"realtime", "lockstep"}));
-  app.add_option("--socket", options.socket, "Unix socket for commands");
-  app.add_option("--log", options.log, "Log file (MCAP)");
-  app.add_option("--set", options.set, "KEY=VALUE, any configuration key; may be repeated")
-      ->allow_extra_args(false);
-  app.add_flag("--require-rt", options.require_rt, "Refuse to run without all real-time means");
-  app.add_flag("--check-config", options.check_config,
-               "Check configuration, robot and scenario, then exit");
+  CLI::App app("Real-time walking daemon for torque-controlled humanoids", "gaitd");
+  gaitd::usage::ValueSources values;
+  gaitd::daemon::add_options(&app, &options, &values);
+  const auto man = [&app] { return gaitd::usage::man_page(app, gaitd::daemon::man_text()); };
+  if (gaitd::usage::answer_hidden_request(argc, argv, app, values, man)) return 0;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -69,6 +62,12 @@ int main(int argc, char** argv) {
 
   StopSignals signals;
   try {
+    gaitd::daemon::Issues issues;
+    if (!options.check_file.empty() &&
+        !gaitd::daemon::choose_checked_file(&options, &issues)) {
+      spdlog::error("{}", issues.error_text());
+      return 1;
+    }
     gaitd::daemon::Application application(options);
     if (!application.prepare()) return 1;
     if (options.check_config) {

@@ -25,6 +25,10 @@ class Gaitctl : public ::testing::Test {
     for (const char* name : {"arm", "disarm", "estop", "reset", "mode", "walk", "footsteps",
                              "pause", "resume", "stop", "abort", "sim.push", "sim.reset"}) {
       methods.add(name, [this, name](const json& params) -> RpcResult {
+        if (params.is_object() && params.value("mode", "") == "stand") {
+          return RpcError{daemon::rpc_code::kInvalidParams,
+                          "mode.mode: expected a word\nmode: other"};
+        }
         const std::lock_guard lock(mutex_);
         method_ = name;
         params_ = params;
@@ -34,6 +38,7 @@ class Gaitctl : public ::testing::Test {
     methods.add("resume", [](const json&) -> RpcResult {
       return RpcError{daemon::rpc_code::kRefused, "not paused; nothing to resume", {{"tick", 7}}};
     });
+    methods.add_snapshot("version", [] { return json{{"version", "9.9"}}; });
     methods.add_snapshot("status", [] {
       return json{
           {"state", "walking"},
@@ -125,10 +130,12 @@ TEST_F(Gaitctl, SendsFootstepsFromYamlJsonAndStandardInput) {
 TEST_F(Gaitctl, NamesFileAndLineOfABadStepsFile) {
   workspace_.write("bad.yaml", "footsteps: 3\nother: 4\n");
   const Outcome outcome = gaitctl("steps " + workspace_.file("bad.yaml"));
-  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_HAS(outcome.err, "bad.yaml:1");
   EXPECT_HAS(outcome.err, "bad.yaml:2");
-  EXPECT_EQ(gaitctl("steps /nowhere.yaml").exit_code, 2);
+  workspace_.write("key.yaml", "- {side: left, x: 0.2, y: 0.1}\n- {side: right, xx: 0.2, y: 0}\n");
+  EXPECT_HAS(gaitctl("steps " + workspace_.file("key.yaml")).err, "key.yaml:2: footsteps[1].xx");
+  EXPECT_EQ(gaitctl("steps /nowhere.yaml").exit_code, 1);
 }
 
 TEST_F(Gaitctl, ShowsResultsForPeopleAndAsJson) {
@@ -160,6 +167,45 @@ TEST_F(Gaitctl, ARefusalIsExitCode1WithItsReason) {
   const json error = json::parse(gaitctl("resume --json").out)["error"];
   EXPECT_EQ(error["code"], -32000);
   EXPECT_EQ(error["data"]["tick"], 7);
+}
+
+TEST_F(Gaitctl, NamesTheCommandOnceAndADaemonOfAnotherVersion) {
+  const Outcome outcome = gaitctl("mode stand");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_HAS(outcome.err, "gaitctl: mode:\n  mode: expected a word\n  other\n  this gaitd is ");
+  EXPECT_HAS(outcome.err, "this gaitd is version 9.9, gaitctl is ");
+}
+
+TEST_F(Gaitctl, ErrorsAsJsonHaveTheSameMembersWhoeverFoundThem) {
+  for (const auto& [arguments, kind] : std::vector<std::pair<std::string, std::string>>{
+           {"resume", "refused"}, {"walk", "usage"}, {"log info /nowhere.mcap", "failed"}}) {
+    const Outcome outcome = gaitctl("--json " + arguments);
+    const json error = json::parse(outcome.out).at("error");
+    for (const char* member : {"command", "exit_code", "kind", "message", "code", "data"}) {
+      EXPECT_TRUE(error.contains(member)) << arguments << ": " << member;
+    }
+    EXPECT_EQ(error["kind"], kind);
+    EXPECT_EQ(error["exit_code"], outcome.exit_code);
+  }
+  server_.reset();
+  EXPECT_EQ(json::parse(gaitctl("--json status").out)["error"]["kind"], "no_daemon");
+}
+
+TEST_F(Gaitctl, NamesUnknownCommandsAndOptionsWithNearOnes) {
+  EXPECT_HAS(gaitctl("wlak").err, "no command 'wlak'; did you mean 'walk'?");
+  EXPECT_HAS(gaitctl("fly").err, "no command 'fly'; known: ");
+  EXPECT_HAS(gaitctl("plugin lits").err,
+             "gaitctl: plugin: no command 'lits'; did you mean 'list'?");
+  EXPECT_HAS(gaitctl("walk --stepz 3").err, "no option '--stepz'; did you mean '--steps'?");
+  const std::string error = gaitctl("walk --steps 0").err;
+  EXPECT_HAS(error, "expected a whole number from 1 up, got 0");
+}
+
+TEST_F(Gaitctl, WatchPrintsLinesWhereThereIsNoTerminal) {
+  const Outcome outcome = gaitctl("watch --once");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_HAS(outcome.out, "12.50 s  walking");
+  EXPECT_EQ(json::parse(gaitctl("watch --once --json").out)["state"], "walking");
 }
 
 TEST_F(Gaitctl, AWrongCommandLineIsExitCode2AndSendsNothing) {

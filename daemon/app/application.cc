@@ -8,14 +8,16 @@
 #include <chrono>
 #include <ctime>
 #include <filesystem>
+#include <sstream>
 #include <thread>
 
+#include "daemon/app/check_config.h"
 #include "daemon/app/metadata.h"
 #include "daemon/app/realtime.h"
 #include "daemon/config/command_parse.h"
+#include "daemon/control/parameter_methods.h"
 #include "daemon/host/layers.h"
 #include "daemon/host/plugin_json.h"
-#include "gaitd/walking/parameters.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -26,11 +28,6 @@ void log_plugin(int level, std::string_view plugin, std::string_view message) {
   constexpr spdlog::level::level_enum kLevels[] = {spdlog::level::debug, spdlog::level::info,
                                                    spdlog::level::warn, spdlog::level::err};
   spdlog::log(kLevels[std::clamp(level, 0, 3)], "{}: {}", plugin, message);
-}
-
-template <class Set>
-void apply(const std::vector<double>& values, Set&& set) {
-  for (std::size_t i = 0; i < values.size(); ++i) set(static_cast<int>(i), values[i]);
 }
 
 nlohmann::json settings_json(const Settings& settings) {
@@ -45,13 +42,16 @@ Application::Application(const Options& options) : options_(options), paths_(Pat
 Application::~Application() = default;
 
 void Application::report_issues(const Issues& issues) const {
-  for (const Issue& issue : issues.all()) {
-    spdlog::log(issue.warning ? spdlog::level::warn : spdlog::level::err, "{}", issue.text());
-  }
+  const auto each_line = [](spdlog::level::level_enum level, const std::string& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) spdlog::log(level, "{}", line);
+  };
+  each_line(spdlog::level::warn, issues.warning_text());
+  each_line(spdlog::level::err, issues.error_text());
 }
 
-bool Application::read_configuration() {
-  Issues issues;
+void Application::read_configuration(Issues* all) {
+  Issues& issues = *all;
   auto override_key = [this](const char* key, const std::string& value) {
     if (!value.empty()) {
       settings_.set(SettingSource::kCommandLine, key, make_scalar(value, {"command line", 0}));
@@ -72,7 +72,9 @@ bool Application::read_configuration() {
   if (!options_.scenario.empty()) {
     const auto file = paths_.scenario(options_.scenario);
     if (!file) {
-      issues.add_text({}, "--scenario", "no scenario '" + options_.scenario + "'");
+      issues.add_text({}, "--scenario",
+                      "no scenario '" + options_.scenario + "'; " +
+                          suggestion(options_.scenario, paths_.scenarios()));
     } else {
       scenario_ = load_scenario(file->string(), &settings_, &issues);
     }
@@ -82,33 +84,35 @@ bool Application::read_configuration() {
   if (options_.require_rt) config_.realtime.require = true;
   const auto robot_file = paths_.robot(config_.robot);
   if (!robot_file) {
-    std::string there;
-    for (const std::string& name : paths_.robots()) there += " " + name;
-    issues.add_text({}, "robot",
-                    "no robot '" + config_.robot + "'; give a robot.yaml or one of:" +
-                        (there.empty() ? " (none found)" : there));
+    issues.add_text(place_of("robot"), "robot",
+                    "no robot '" + config_.robot + "'; give a robot.yaml or a name; " +
+                        suggestion(config_.robot, paths_.robots()));
   } else {
     robot_ = load_robot(robot_file->string(), config_.profile, &settings_, &issues);
   }
   if (scenario_ && robot_) {
     check_scenario(*scenario_, robot_->model, &issues);
-    player_ = std::make_unique<ScenarioPlayer>(*scenario_, robot_->model, &issues);
   }
-  report_issues(issues);
-  return issues.ok();
+  check_log(config_.log, place_of(config_.log.file.empty() ? "log.directory" : "log.file"),
+            &issues);
 }
 
-bool Application::load_layers() {
+Location Application::place_of(std::string_view key) const {
+  const NodePtr value = settings_.peek(key);
+  return value ? value->where : Location{};
+}
+
+// Everything about the plugins that can be said without loading them, and the parameters.
+Application::LayerRequests Application::choose_layers(Issues* all) {
   const PluginDirectory directory(paths_.plugin_folders());
-  Issues issues;
+  Issues& issues = *all;
   for (const PluginEntry& entry : directory.list()) {
     if (entry.layer < GAITD_LAYER_COUNT) {
       settings_.declare_variant(layer_name(entry.layer), entry.variant);
       known_variants_[entry.layer].push_back(entry.variant);
     }
   }
-  bool loaded = true;
-  std::vector<LoadedLayer::Request> requests;
+  LayerRequests requests;
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     const std::string& variant = config_.variants[layer];
     std::string error;
@@ -116,8 +120,9 @@ bool Application::load_layers() {
     Refusal refusal;
     const auto file = path ? read_plugin_file(*path, layer, &refusal) : std::nullopt;
     if (!file) {
-      spdlog::error("{}", path ? refusal.text() : error);
-      loaded = false;
+      const std::string key = std::string(layer_name(layer)) + ".variant";
+      issues.add_text(place_of(key), key, path ? refusal.text() : error);
+      settings_.subtree(layer_name(layer));  // nobody can say which of them are right
       continue;
     }
     const GaitdPluginDescriptor& d = file->descriptor;
@@ -125,25 +130,34 @@ bool Application::load_layers() {
     LoadedLayer::Request request;
     request.path = *path;
     request.layer = layer;
-    request.model = &robot_->model;
+    request.model = robot_ ? &robot_->model : nullptr;
     request.parameters =
         settings_.resolve(layer_name(layer), {d.parameters, d.parameter_count}, &issues, d.id);
     request.log = log_plugin;
+    parameters_.add(layer, layer_name(layer), d.id, {d.parameters, d.parameter_count},
+                    request.parameters);
     requests.push_back(std::move(request));
   }
-  auto resolve = [&](const char* scope, std::span<const GaitdParameter> table) {
-    return settings_.resolve(scope, table, &issues);
-  };
-  const auto gait = resolve("gait", walking::kGaitParameters);
-  const auto swing = resolve("swing", walking::kSwingParameters);
-  const auto legs = resolve("legs", walking::kLegParameters);
-  const auto objectives = resolve("objectives", walking::kObjectiveParameters);
-  const auto safety = resolve("safety", kSafetyParameters);
+  for (const DaemonScope& scope : daemon_scopes()) {
+    parameters_.add(scope.owner, scope.name, "", scope.table,
+                    settings_.resolve(scope.name, scope.table, &issues));
+  }
+  parameters_.set_restart_keys(settings_.known_keys());
+  if (scenario_ && robot_) {
+    player_ = std::make_unique<ScenarioPlayer>(*scenario_, robot_->model, parameters_, &issues);
+  }
+  std::string error;
+  Refusal refusal;
+  const auto backend = directory.find(GAITD_LAYER_BACKEND, config_.backend, &error);
+  if (!backend || !read_plugin_file(*backend, GAITD_LAYER_BACKEND, &refusal)) {
+    issues.add_text(place_of("backend"), "backend", backend ? refusal.text() : error);
+  }
+  settings_.subtree("sim");  // the backend checks it
   settings_.report_unknown(&issues);
-  report_issues(issues);
-  if (!loaded || !issues.ok()) return false;
-  if (options_.check_config) return true;
+  return requests;
+}
 
+bool Application::load_layers(const LayerRequests& requests) {
   for (const LoadedLayer::Request& request : requests) {
     Refusal refusal;
     layers_[request.layer] = LoadedLayer::load(request, &refusal);
@@ -153,14 +167,8 @@ bool Application::load_layers() {
     }
   }
   const GaitdStart start = scenario_ ? scenario_->start : GaitdStart{};
-  pipeline_ = std::make_unique<Pipeline>(robot_->model, std::move(layers_), start, config_.limits,
+  pipeline_ = std::make_unique<Pipeline>(robot_->model, std::move(layers_), start, &parameters_,
                                          config_.period);
-  apply(gait, [&](int i, double v) { pipeline_->gait().set_parameter(i, v); });
-  apply(swing, [&](int i, double v) { pipeline_->objectives().set_swing_parameter(i, v); });
-  apply(legs, [&](int i, double v) { pipeline_->objectives().set_leg_parameter(i, v); });
-  apply(objectives,
-        [&](int i, double v) { pipeline_->objectives().set_objective_parameter(i, v); });
-  apply(safety, [&](int i, double v) { pipeline_->safety().set_parameter(i, v); });
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     auto& known = known_variants_[layer];
     if (std::find(known.begin(), known.end(), layer_variants_[layer]) == known.end()) {
@@ -266,7 +274,12 @@ bool Application::start_telemetry() {
     mcap.compression = config_.log.compression == LogCompression::kNone ? McapCompression::kNone
                                                                         : McapCompression::kZstd;
     std::string error;
-    if (!telemetry_->open_log(log_file_, metadata(), mcap, &error)) {
+    // A verdict comes from one file.
+    LogLimits limits;
+    if (!scenario_) {
+      limits = {static_cast<std::uint64_t>(1e6 * config_.log.max_size), config_.log.keep};
+    }
+    if (!telemetry_->open_log(log_file_, metadata(), mcap, &error, limits)) {
       spdlog::error("{}", error);
       return false;
     }
@@ -288,13 +301,19 @@ nlohmann::json Application::status() const {
     s["layers"][layer]["variant"] = layer_variants_[layer];
   }
   const Telemetry::LogStatus log = telemetry_->log_status();
-  s["log"] = {{"file", log_file_},  {"open", log.open},   {"error", log.error},
-              {"ticks", log.ticks}, {"bytes", log.bytes}, {"dropouts", telemetry_->dropouts()}};
+  s["log"] = {{"file", log.file},
+              {"part", log.part},
+              {"open", log.open},
+              {"error", log.error},
+              {"ticks", log.ticks},
+              {"bytes", log.bytes},
+              {"dropouts", telemetry_->dropouts()}};
   return s;
 }
 
 bool Application::start_server() {
   bridge_ = std::make_unique<CommandBridge>();
+  bridge_->show_effect_first([this] { return telemetry_->newest_tick(); });
   Methods methods;
   add_command_methods(&methods, bridge_.get(),
                       [this](const std::string& method,
@@ -305,9 +324,13 @@ bool Application::start_server() {
                         }
                         return RpcError{rpc_code::kInvalidParams, error};
                       });
+  add_parameter_methods(&methods, bridge_.get(), &parameters_);
   methods.add_snapshot("status", [this] { return status(); });
   methods.add_snapshot("version", [] {
-    return nlohmann::json{{"version", GAITD_VERSION}, {"build", GAITD_BUILD}};
+    return nlohmann::json{
+        {"version", GAITD_VERSION},
+        {"build", GAITD_BUILD},
+        {"abi", std::to_string(GAITD_ABI_MAJOR) + "." + std::to_string(GAITD_ABI_MINOR)}};
   });
   methods.add_snapshot("plugin.list", [this] {
     std::map<std::string, std::string> active;
@@ -329,21 +352,33 @@ bool Application::start_server() {
 }
 
 bool Application::prepare() {
-  if (!read_configuration() || !load_layers()) return false;
+  Issues issues;
+  read_configuration(&issues);
+  const LayerRequests requests = choose_layers(&issues);
+  report_issues(issues);
+  if (!issues.ok() || !load_layers(requests) || !load_backend()) return false;
   if (options_.check_config) return true;
-  return load_backend() && start_telemetry() && start_server();
+  return start_telemetry() && start_server();
 }
 
-// Says on the terminal what the control thread cannot: faults, when they come and go.
-void Application::watch_faults(const std::atomic<bool>& running) const {
+// Says on the terminal what other threads cannot: faults, when they come and go, and where the log
+// goes on or why it ended.
+void Application::watch_telemetry(const std::atomic<bool>& running) const {
   const int signal = find_signal(telemetry_->table(), "safety/faults");
   std::vector<double> values;
-  std::uint32_t last = 0;
+  std::uint32_t last_faults = 0;
+  Telemetry::LogStatus last_log = telemetry_->log_status();
   while (running) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    const Telemetry::LogStatus log = telemetry_->log_status();
+    if (log.part != last_log.part) spdlog::info("log: full, goes on in {}", log.file);
+    if (log.error != last_log.error) {
+      spdlog::error("{}; the log ends here, the robot goes on", log.error);
+    }
+    last_log = log;
     if (signal < 0 || !telemetry_->latest(values)) continue;
     const auto faults = static_cast<std::uint32_t>(values[signal]);
-    if (faults == last) continue;
+    if (faults == last_faults) continue;
     std::string names;
     for (std::size_t i = 0; i < kFaultNames.size(); ++i) {
       if ((faults >> i & 1u) != 0) names += std::string(" ") + kFaultNames[i];
@@ -353,7 +388,7 @@ void Application::watch_faults(const std::atomic<bool>& running) const {
     } else {
       spdlog::info("faults cleared");
     }
-    last = faults;
+    last_faults = faults;
   }
 }
 
@@ -374,10 +409,12 @@ int Application::run() {
   options.overrun_run = config_.realtime.overrun_run;
   loop_ = std::make_unique<ControlLoop>(options, robot_->model, pipeline_.get(), backend,
                                         telemetry_.get(), bridge_.get(), player_.get());
+  running_loop_ = loop_.get();
+  if (stop_requested_) loop_->stop();
   LoopReport report;
   bool degraded = false;
   std::atomic<bool> running{true};
-  std::thread watch([&] { watch_faults(running); });
+  std::thread watch([&] { watch_telemetry(running); });
   std::thread control([&] {
     if (paced) {
       enter_realtime(config_.realtime, &realtime);
@@ -413,7 +450,8 @@ int Application::run() {
 }
 
 void Application::request_stop() {
-  if (loop_ != nullptr) loop_->stop();
+  stop_requested_ = true;
+  if (ControlLoop* loop = running_loop_) loop->stop();
 }
 
 }  // namespace gaitd::daemon

@@ -14,6 +14,7 @@
 #include "daemon/control/signals.h"
 #include "daemon/host/loaded_plugin.h"
 #include "daemon/host/plugin_directory.h"
+#include "daemon/parameters/live_parameters.h"
 #include "daemon/server/command_server.h"
 
 namespace gaitd::daemon {
@@ -30,6 +31,7 @@ struct Options {
   std::vector<std::string> set;
   bool require_rt = false;
   bool check_config = false;
+  std::string check_file;  // with check_config: a configuration, robot.yaml or scenario
 };
 
 // gaitd put together: configuration, robot, plugins, backend, telemetry, command server and the
@@ -46,14 +48,19 @@ class Application {
   void request_stop();
 
  private:
-  bool read_configuration();
-  bool load_layers();
+  using LayerRequests = std::vector<LoadedLayer::Request>;
+
+  void read_configuration(Issues* issues);
+  LayerRequests choose_layers(Issues* issues);
+  bool load_layers(const LayerRequests& requests);
   bool load_backend();
   bool start_telemetry();
   bool start_server();
   std::string default_log_file() const;
-  void watch_faults(const std::atomic<bool>& running) const;
+  void watch_telemetry(const std::atomic<bool>& running) const;
   void report_issues(const Issues& issues) const;
+  // Where the value that holds for a key was written.
+  Location place_of(std::string_view key) const;
   nlohmann::json status() const;
   LogMetadata metadata() const;
 
@@ -63,6 +70,7 @@ class Application {
   DaemonConfig config_;
   std::optional<Robot> robot_;
   std::optional<Scenario> scenario_;
+  LiveParameters parameters_;
   std::unique_ptr<ScenarioPlayer> player_;
   LayerChain::Layers layers_;
   std::vector<std::string> layer_variants_;  // in use
@@ -74,6 +82,9 @@ class Application {
   std::unique_ptr<CommandBridge> bridge_;
   std::unique_ptr<Pipeline> pipeline_;
   std::unique_ptr<ControlLoop> loop_;
+  // The server answers, and signals come, before there is a loop to stop.
+  std::atomic<ControlLoop*> running_loop_{nullptr};
+  std::atomic<bool> stop_requested_{false};
   std::unique_ptr<CommandServer> server_;
 };
 

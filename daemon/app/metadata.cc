@@ -85,11 +85,26 @@ json status_of(const Telemetry& telemetry) {
   for (std::size_t i = 0; bits.is_number() && i < kFaultNames.size(); ++i) {
     if ((bits.get<std::int64_t>() >> i & 1) != 0) status["faults"].push_back(kFaultNames[i]);
   }
+  const json state = status["state"];
+  const bool controlled = state == "standing" || state == "walking" || state == "stopping";
+  const json icp[] = {get("icp/x"), get("icp/y"), get("icp/desired/x"), get("icp/desired/y")};
+  const bool measured = controlled && std::all_of(std::begin(icp), std::end(icp),
+                                                  [](const json& v) { return v.is_number(); });
+  status["icp_error"] = measured ? json(std::hypot(icp[0].get<double>() - icp[2].get<double>(),
+                                                   icp[1].get<double>() - icp[3].get<double>()))
+                                 : json();
+  // Of the last tick, and the longest within a second or two.
+  const std::vector<double> longest = telemetry.recent_maxima();
+  const auto get_longest = [&](const std::string& name) {
+    return signal_value(telemetry.table(), longest, name);
+  };
   status["tick_us"] = get("tick/total_us");
+  status["tick_longest_us"] = get_longest("tick/total_us");
   constexpr const char* kLayerTimes[] = {"estimator_us", "planner_us", "adjuster_us", "toe_off_us",
                                          "wbc_us"};
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
-    status["layers"].push_back({{"time_us", get(std::string("tick/") + kLayerTimes[layer])}});
+    const std::string signal = std::string("tick/") + kLayerTimes[layer];
+    status["layers"].push_back({{"time_us", get(signal)}, {"longest_us", get_longest(signal)}});
   }
   return status;
 }

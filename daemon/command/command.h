@@ -39,7 +39,7 @@ struct Command {
   int footstep_count = 0;
   std::array<GaitdFootstep, walking::kMaxFootstepsPerCommand> footsteps;
   GaitdDisturbance push;
-  int parameter_index = -1;  // into the table of all live parameters
+  int parameter_index = -1;  // into the rows of LiveParameters
   double parameter_value = 0.0;
 };
 
@@ -48,7 +48,12 @@ struct CommandReply {
   std::uint64_t request = 0;
   bool accepted = false;
   std::int64_t tick = 0;
-  std::array<char, 256> message{};  // why it was refused: what, where, expected, got, what to do
+  // Why it was refused: what, where, expected, got, what to do. Accepted: what is worth knowing
+  // about its effect, empty if it simply does what its name says.
+  std::array<char, 256> message{};
+  bool changed_value = false;  // an accepted kSetParameter: these two are set
+  double old_value = 0.0;
+  double new_value = 0.0;
 };
 
 }  // namespace gaitd::daemon

@@ -102,6 +102,9 @@ void read_landing_region(MapReader* map, GaitdFootstep* footstep) {
   std::string why;
   if (!is_convex_counter_clockwise(points, 3, &why)) {
     map->fail("landing_region", "a convex outline, counter-clockwise from above", why, "");
+  } else if (const double* p = footstep->pose.position; !is_inside(points, 3, p[0], p[1])) {
+    map->fail("landing_region", "a region around the foothold itself", "one beside it",
+              "it may be shifted inside the region only: move the region or the footstep");
   }
 }
 

@@ -90,6 +90,8 @@ void read_log(SettingReader* reader, Issues* issues, LogConfig* log) {
   reader->text("log.file", true, &log->file);
   log->compression = static_cast<LogCompression>(
       reader->choice("log.compression", kCompressions, static_cast<int>(LogCompression::kZstd)));
+  reader->number("log.max_size", {0.0, 1e6, "MB"}, &log->max_size);
+  reader->integer("log.keep", 0, 100000, &log->keep);
 }
 
 }  // namespace
@@ -129,9 +131,6 @@ DaemonConfig read_daemon_config(Settings* settings, Issues* issues) {
     reader.text(std::string(kLayerNames[layer]) + ".variant", false, &config.variants[layer]);
   }
   read_realtime(&reader, issues, &config.realtime);
-  reader.number("limits.torque_ratio", {0.0, 1.0, ""}, &config.limits.torque_ratio);
-  reader.number("limits.velocity_ratio", {0.0, 1.0, ""}, &config.limits.velocity_ratio);
-  reader.number("limits.position_margin", {0.0, 0.5, "rad"}, &config.limits.position_margin);
   read_log(&reader, issues, &config.log);
   reader.text("socket", true, &config.socket);
   return config;

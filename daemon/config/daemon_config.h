@@ -29,13 +29,6 @@ struct RealtimeConfig {
   double overrun_run = 0.01;  // s of overruns in a row that lead to a safe stop
 };
 
-// Clamps of the daemon after the plugins, against the limits of the model.
-struct LimitsConfig {
-  double torque_ratio = 1.0;     // of the effort limit
-  double velocity_ratio = 1.0;   // of the velocity limit
-  double position_margin = 0.0;  // rad or m, inside the position limits
-};
-
 enum class LogCompression { kNone, kZstd };
 
 struct LogConfig {
@@ -43,6 +36,8 @@ struct LogConfig {
   std::string directory;  // where logs get a name by time; "" with a file
   std::string file;       // this file instead; "" for none
   LogCompression compression = LogCompression::kZstd;
+  double max_size = 500.0;  // MB of one file, then the next begins; 0: no limit
+  int keep = 10;            // files of one run, the oldest are deleted; 0: all
 };
 
 // etc/gaitd.yaml with everything laid over it.
@@ -55,7 +50,6 @@ struct DaemonConfig {
   std::array<std::string, GAITD_LAYER_COUNT> variants = {"kinematic_inertial", "heel_to_toe",
                                                          "fixed_steps", "never", "com_height_qp"};
   RealtimeConfig realtime;
-  LimitsConfig limits;
   LogConfig log;
   std::string socket;  // "": the default place for the user
 };

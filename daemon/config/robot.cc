@@ -131,8 +131,8 @@ void finish_model(const Location& posture, GaitdModel* model, Issues* issues) {
   model->nominal_foot_separation = figures.foot_separation();
 }
 
-dynamics::UrdfResult load_urdf_of(MapReader* root, const std::string& file, Robot* robot,
-                                  Issues* issues) {
+dynamics::UrdfResult load_urdf_of(MapReader* root, const std::string& file, const UrdfLoader& load,
+                                  Robot* robot, Issues* issues) {
   const auto urdf = root->text("urdf");
   const auto pelvis = root->text("pelvis");
   dynamics::UrdfResult result;
@@ -143,7 +143,7 @@ dynamics::UrdfResult load_urdf_of(MapReader* root, const std::string& file, Robo
   robot->urdf = (std::filesystem::path(file).parent_path() / *urdf).lexically_normal().string();
   dynamics::UrdfOptions options;
   options.root_link = pelvis.value_or("");
-  result = dynamics::load_urdf(robot->urdf, options);
+  result = load(robot->urdf, options);
   for (const std::string& error : result.errors) {
     issues->add_text(root->where("urdf"), "urdf", error);
   }
@@ -156,6 +156,15 @@ std::optional<Robot> load_robot(const std::string& file, Profile profile, Settin
                                 Issues* issues) {
   Issues found;
   const NodePtr document = load_yaml_file(file, &found);
+  std::optional<Robot> robot;
+  if (document) robot = read_robot(document, file, profile, dynamics::load_urdf, settings, &found);
+  issues->append(found);
+  return found.ok() ? robot : std::nullopt;
+}
+
+std::optional<Robot> read_robot(const NodePtr& document, const std::string& file, Profile profile,
+                                const UrdfLoader& load, Settings* settings, Issues* issues) {
+  Issues found;
   MapReader root(document, "", &found);
   Robot robot;
   robot.file = file;
@@ -168,7 +177,7 @@ std::optional<Robot> load_robot(const std::string& file, Profile profile, Settin
     root.fail("name", "at most 47 characters", std::to_string(robot.name.size()), "shorten it");
   }
 
-  const dynamics::UrdfResult urdf = load_urdf_of(&root, file, &robot, &found);
+  const dynamics::UrdfResult urdf = load_urdf_of(&root, file, load, &robot, &found);
   robot.model = urdf.model;
   std::strncpy(robot.model.name, robot.name.c_str(), GAITD_NAME_SIZE - 1);
   robot.model.name[GAITD_NAME_SIZE - 1] = '\0';

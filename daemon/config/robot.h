@@ -2,12 +2,18 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "daemon/config/issues.h"
 #include "daemon/config/settings.h"
 #include "gaitd/abi/types.h"
+
+namespace gaitd::dynamics {
+struct UrdfOptions;
+struct UrdfResult;
+}  // namespace gaitd::dynamics
 
 namespace gaitd::daemon {
 
@@ -42,5 +48,12 @@ struct Robot {
 // posture outside the joint limits or in which the soles are not level and side by side.
 std::optional<Robot> load_robot(const std::string& file, Profile profile, Settings* settings,
                                 Issues* issues);
+
+// The same from a document that has been read. `load` reads the URDF file; a relative path in the
+// document is meant from the folder of `file`.
+using UrdfLoader = std::function<dynamics::UrdfResult(const std::string& path,
+                                                      const dynamics::UrdfOptions& options)>;
+std::optional<Robot> read_robot(const NodePtr& document, const std::string& file, Profile profile,
+                                const UrdfLoader& load, Settings* settings, Issues* issues);
 
 }  // namespace gaitd::daemon

@@ -104,12 +104,14 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
   scenario.mode = root.choice("mode", kModes).value_or(GAITD_MODE_STAND);
   scenario.terrain = read_terrain(root.map("terrain"));
   scenario.start = read_start(root.map("start"), scenario.terrain, root.where());
+  scenario.start_where = root.where(root.has("start") ? "start" : "");
   scenario.sensors = read_sensors(root.map("sensors"));
   scenario.actuators = read_actuators(root.map("actuators"));
   scenario.model_error = read_model_error(root.map("model_error"));
   scenario.commands = read_scenario_commands(&root, scenario.duration);
-  scenario.disturbances = read_disturbances(&root, scenario.duration, scenario.commands);
-  scenario.expect = read_expectations(root.map("expect"));
+  const CommandedSteps steps = check_commands(scenario.commands, scenario.mode, &found);
+  scenario.disturbances = read_disturbances(&root, scenario.duration, steps);
+  scenario.expect = read_expectations(root.map("expect"), steps, scenario.duration);
   if (const NodePtr set = root.node("set")) {
     MapReader map(set, "set", &found);
     if (map.valid()) settings->set_tree(SettingSource::kScenario, *set, &found);
@@ -124,6 +126,7 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
 }
 
 void check_scenario(const Scenario& scenario, const GaitdModel& model, Issues* issues) {
+  check_start(scenario, model, issues);
   for (const ScenarioCommand& command : scenario.commands) {
     if (command.method != "sim.push") continue;
     parse_command(command.method, from_json(command.params, command.where), &model, "push", issues);

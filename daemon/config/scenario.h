@@ -49,6 +49,7 @@ struct Scenario {
   double duration = 0.0;  // s, simulated
   std::uint64_t seed = 1;
   GaitdStart start{};  // middle of the feet
+  Location start_where;
   int mode = GAITD_MODE_STAND;
   // Of the simulator's configuration, as written there.
   nlohmann::json terrain;
@@ -72,7 +73,7 @@ std::optional<Scenario> read_scenario(const NodePtr& root, const std::string& fi
                                       Settings* settings, Issues* issues);
 
 // What could only be checked with the robot: the links that commands, disturbances and model errors
-// name.
+// name, and whether there is room at the start.
 void check_scenario(const Scenario& scenario, const GaitdModel& model, Issues* issues);
 
 }  // namespace gaitd::daemon

@@ -83,20 +83,6 @@ void read_command(MapReader map, double duration, const std::vector<Verb>& verbs
   map.finish();
 }
 
-// How many swings the commands ask for, closing steps included.
-long long commanded_steps(const std::vector<ScenarioCommand>& commands) {
-  long long steps = 0;
-  for (const ScenarioCommand& command : commands) {
-    Issues ignored;
-    const auto parsed = parse_command(command.method, from_json(command.params, command.where),
-                                      nullptr, "", &ignored);
-    if (!parsed) continue;
-    if (parsed->type == CommandType::kWalk) steps += parsed->walk.steps + 1;
-    if (parsed->type == CommandType::kFootsteps) steps += parsed->footstep_count;
-  }
-  return steps;
-}
-
 void read_when(MapReader map, double duration, ScenarioDisturbance* disturbance) {
   constexpr std::array<std::string_view, 2> kPhases = {"transfer", "swing"};
   disturbance->at_step = map.has("step");
@@ -147,19 +133,18 @@ std::vector<ScenarioCommand> read_scenario_commands(MapReader* root, double dura
 }
 
 std::vector<ScenarioDisturbance> read_disturbances(MapReader* root, double duration,
-                                                   const std::vector<ScenarioCommand>& commands) {
+                                                   const CommandedSteps& steps) {
   const std::vector<NodePtr> nodes = root->list("disturbances", 0, kMaxEvents);
-  const long long steps = commanded_steps(commands);
+  const long long swings = steps.advancing + steps.closing;
   std::vector<ScenarioDisturbance> result;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const std::string path = "disturbances[" + std::to_string(i) + "]";
     result.push_back(read_disturbance(MapReader(nodes[i], path, root->issues()), duration));
     const ScenarioDisturbance& disturbance = result.back();
-    if (disturbance.at_step && disturbance.step > steps) {
-      root->issues()->warn(
-          disturbance.where, path + ".when.step",
-          "step " + std::to_string(disturbance.step) + " of " + std::to_string(steps) +
-              " that are commanded: it may never happen; lower it or walk further");
+    if (disturbance.at_step && disturbance.step > swings) {
+      root->issues()->add(disturbance.where, path + ".when.step",
+                          "at most the last step that is commanded, " + std::to_string(swings),
+                          std::to_string(disturbance.step), "lower it or walk further");
     }
   }
   return result;

@@ -82,7 +82,7 @@ SignalCheck read_check(MapReader map) {
 
 }  // namespace
 
-Expectations read_expectations(MapReader map) {
+Expectations read_expectations(MapReader map, const CommandedSteps& steps, double duration) {
   Expectations expect;
   expect.no_fall = map.boolean("no_fall");
   if (const auto steps = map.integer("steps_taken", 0, 100000)) {
@@ -100,11 +100,14 @@ Expectations read_expectations(MapReader map) {
   expect.torque_chatter_max = map.number("torque_chatter_max", {0.0, 10.0, ""});
   expect.contact_lost = map.boolean("contact_lost");
   expect.pelvis_drift_max = read_pelvis_drift(&map);
+  expect.refused_commands =
+      static_cast<int>(map.integer("refused_commands", 0, 100000).value_or(0));
   const std::vector<NodePtr> checks = map.list("checks", 0, 1000);
   for (std::size_t i = 0; i < checks.size(); ++i) {
     const std::string path = map.path_of("checks") + "[" + std::to_string(i) + "]";
     expect.checks.push_back(read_check(MapReader(checks[i], path, map.issues())));
   }
+  check_expectations(expect, steps, duration, &map);
   map.finish();
   return expect;
 }

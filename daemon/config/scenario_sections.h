@@ -16,8 +16,23 @@ nlohmann::json read_actuators(MapReader map);
 nlohmann::json read_model_error(MapReader map);
 
 std::vector<ScenarioCommand> read_scenario_commands(MapReader* root, double duration);
+// How many swings the commands ask for at most.
+struct CommandedSteps {
+  long long advancing = 0;
+  long long closing = 0;
+};
+// Reports the commands that will be refused whatever happens: in mode stand, not armed, on the
+// wrong foot. They must be in the order of time.
+CommandedSteps check_commands(const std::vector<ScenarioCommand>& commands, int mode,
+                              Issues* issues);
+
 std::vector<ScenarioDisturbance> read_disturbances(MapReader* root, double duration,
-                                                   const std::vector<ScenarioCommand>& commands);
-Expectations read_expectations(MapReader map);
+                                                   const CommandedSteps& steps);
+Expectations read_expectations(MapReader map, const CommandedSteps& steps, double duration);
+// Reports what the commanded steps can never fulfil.
+void check_expectations(const Expectations& expect, const CommandedSteps& steps, double duration,
+                        MapReader* map);
+// Reports a start inside a box or the ground.
+void check_start(const Scenario& scenario, const GaitdModel& model, Issues* issues);
 
 }  // namespace gaitd::daemon

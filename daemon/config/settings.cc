@@ -126,7 +126,9 @@ std::vector<double> Settings::resolve(std::string_view scope, std::span<const Ga
     if (found != values_.end()) {
       const Node& node = *found->second.rbegin()->second;
       const std::string problem = read_parameter(parameter, node, &value);
-      if (!problem.empty()) issues->add_text(node.where, key, problem);
+      if (!problem.empty()) {
+        issues->add_text(node.where, key, problem + "; write such a value or remove the key");
+      }
     }
     result.push_back(value);
   }
@@ -188,6 +190,8 @@ std::string Settings::nearest_known(const std::string& key,
          suggestion(key.substr(0, key.find('.')), {scopes.begin(), scopes.end()});
 }
 
+std::vector<std::string> Settings::known_keys() const { return {known_.begin(), known_.end()}; }
+
 std::vector<Settings::Entry> Settings::effective() const {
   std::vector<Entry> result;
   for (const auto& [key, sources] : values_) {
@@ -219,8 +223,7 @@ std::string read_parameter(const GaitdParameter& parameter, const Node& node, do
     *result = *value;
     return "";
   }
-  return "expected " + expected_value(parameter) + ", got " + describe(node) +
-         "; write such a value or remove the key";
+  return "expected " + expected_value(parameter) + ", got " + describe(node);
 }
 
 }  // namespace gaitd::daemon

@@ -58,7 +58,10 @@ class Settings {
   // Reports every key that is set and that nobody knows, with its place and the nearest known key.
   void report_unknown(Issues* issues) const;
 
-  // Keys and values that hold, in the order of the keys: for the log and `param list`.
+  // Every key that was found, resolved or declared.
+  std::vector<std::string> known_keys() const;
+
+  // Keys and values that hold, in the order of the keys: for the log.
   std::vector<Entry> effective() const;
   // Entries of one source whose key starts with the prefix.
   std::vector<Entry> from(SettingSource source, std::string_view prefix = "") const;
@@ -77,7 +80,7 @@ class Settings {
 };
 
 // Reads a value as its declaration wants it (booleans as 0 and 1). Returns "" and sets `result`, or
-// "expected ..., got ...; do ...".
+// "expected ..., got ...".
 std::string read_parameter(const GaitdParameter& parameter, const Node& value, double* result);
 
 }  // namespace gaitd::daemon

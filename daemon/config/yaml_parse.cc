@@ -5,12 +5,15 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
 
 #include "daemon/config/node.h"
+#include "daemon/config/utf8.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -181,6 +184,17 @@ NodePtr parse_yaml(std::string_view text, const std::string& name, Issues* issue
   if (text.size() > kMaxFileSize) {
     issues->add({name, 0}, "", "at most " + std::to_string(kMaxFileSize) + " bytes",
                 std::to_string(text.size()), "split the file");
+    return nullptr;
+  }
+  // The parser would take some of it for the end of the file.
+  if (const std::size_t at = find_no_text(text); at != std::string_view::npos) {
+    const auto line =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    char byte[8];
+    std::snprintf(byte, sizeof byte, "0x%02x", static_cast<unsigned char>(text[at]));
+    issues->add({name, static_cast<int>(line) + 1}, "", "text in UTF-8",
+                std::string("the byte ") + byte,
+                "save the file as UTF-8 text without control characters");
     return nullptr;
   }
   TreeBuilder builder(name, issues);

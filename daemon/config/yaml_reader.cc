@@ -167,8 +167,14 @@ void MapReader::finish() {
   std::vector<std::string> unused(known_.begin(), known_.end());
   std::erase_if(unused, [this](const std::string& key) { return node_->find(key) != nullptr; });
   const std::vector<std::string> known(known_.begin(), known_.end());
+  constexpr int kMaxSuggestions = 20;  // they take time, and nobody reads thousands
+  int unknown = 0;
   for (const Node::Entry& entry : node_->entries) {
     if (known_.contains(entry.key)) continue;
+    if (++unknown > kMaxSuggestions) {
+      issues_->add_text(entry.where, path_of(entry.key), "unknown key");
+      continue;
+    }
     // A key that is missing is meant more likely than one that is there already.
     const bool near = !closest_name(entry.key, unused).empty();
     issues_->add_text(entry.where, path_of(entry.key),
@@ -259,6 +265,17 @@ bool is_convex_counter_clockwise(std::span<const double> points, std::size_t str
   if (turn > 3.0 * M_PI) {
     *why = "an outline that crosses itself; write the points in order around it";
     return false;
+  }
+  return true;
+}
+
+bool is_inside(std::span<const double> points, std::size_t stride, double x, double y) {
+  const double point[2] = {x, y};
+  const std::size_t count = points.size() / stride;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* a = points.data() + i * stride;
+    const double* b = points.data() + ((i + 1) % count) * stride;
+    if (cross(a, b, point) < -1e-9) return false;
   }
   return true;
 }

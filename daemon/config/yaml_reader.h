@@ -87,4 +87,7 @@ std::vector<double> read_points(const std::vector<NodePtr>& nodes, std::string_v
 bool is_convex_counter_clockwise(std::span<const double> points, std::size_t stride,
                                  std::string* why);
 
+// Of such a polygon: is the point in it or on its edge?
+bool is_inside(std::span<const double> points, std::size_t stride, double x, double y);
+
 }  // namespace gaitd::daemon

@@ -67,4 +67,20 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
   return w.text();
 }
 
+std::string_view parameter_text(const char* key, const Command& c, const CommandReply& reply,
+                                char* buffer, std::size_t size) {
+  Writer w(buffer, size);
+  if (reply.accepted) {
+    w.add(R"({"name":"%s","old":%.17g,"new":%.17g,"request":%llu})", key, reply.old_value,
+          reply.new_value, static_cast<unsigned long long>(c.request));
+    return w.text();
+  }
+  w.add(R"({"command":"param.set","request":%llu,"accepted":false,"name":"%s","value":%.17g)",
+        static_cast<unsigned long long>(c.request), key, c.parameter_value);
+  w.add(R"(,"reason":)");
+  w.add_quoted(reply.message.data());
+  w.add("}");
+  return w.text();
+}
+
 }  // namespace gaitd::daemon

@@ -12,4 +12,9 @@ namespace gaitd::daemon {
 std::string_view command_text(const Command& command, const CommandReply& reply, char* buffer,
                               std::size_t size);
 
+// The same of a kSetParameter with the key of its parameter: {"name", "old", "new", "request"}, and
+// as a command with its reason where it was refused. [rt]
+std::string_view parameter_text(const char* key, const Command& command, const CommandReply& reply,
+                                char* buffer, std::size_t size);
+
 }  // namespace gaitd::daemon

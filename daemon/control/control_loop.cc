@@ -10,6 +10,7 @@
 #include "daemon/control/command_text.h"
 #include "daemon/control/signals.h"
 #include "daemon/control/stopwatch.h"
+#include "gaitd/sdk/layer_names.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -107,11 +108,19 @@ void ControlLoop::take_commands() {
 void ControlLoop::execute(const Command& command, bool from_client) {
   const bool simulation =
       command.type == CommandType::kPush || command.type == CommandType::kSimReset;
-  const CommandReply reply = simulation ? simulate(command) : pipeline_->execute(command);
+  CommandReply reply = simulation ? simulate(command) : pipeline_->execute(command);
+  reply.tick = tick_;
   const double time = static_cast<double>(tick_) * options_.period;
   char text[kMaxEventText];
-  telemetry_->push_event(EventKind::kCommand, tick_, time,
-                         command_text(command, reply, text, sizeof(text)));
+  if (command.type == CommandType::kSetParameter) {
+    const std::string& key = pipeline_->parameters().row(command.parameter_index).key;
+    telemetry_->push_event(
+        reply.accepted ? EventKind::kParameter : EventKind::kCommand, tick_, time,
+        parameter_text(key.c_str(), command, reply, text, sizeof(text)));
+  } else {
+    telemetry_->push_event(EventKind::kCommand, tick_, time,
+                           command_text(command, reply, text, sizeof(text)));
+  }
   if (from_client) bridge_->push(reply);
 }
 
@@ -169,7 +178,14 @@ void ControlLoop::report_changes() {
         std::snprintf(text + length, sizeof(text) - length, "%s\"%s\"", comma, kFaultNames[i]);
     comma = ",";
   }
-  length += std::snprintf(text + length, sizeof(text) - length, "]}");
+  length += std::snprintf(text + length, sizeof(text) - length, "]");
+  const LayerChain::Failure& failure = pipeline_->layers().failure();
+  if ((d.faults & (kFaultEstimator | kFaultLayer | kFaultSolver)) != 0 && failure.layer >= 0) {
+    length += std::snprintf(text + length, sizeof(text) - length,
+                            R"(,"layer":"%s","what":"%s")",
+                            sdk::kLayerNames[failure.layer].data(), failure.what);
+  }
+  length += std::snprintf(text + length, sizeof(text) - length, "}");
   telemetry_->push_event(d.safety == SafetyState::kFault ? EventKind::kFault : EventKind::kState,
                          d.time.tick, d.time.time, std::string_view(text, length));
 }

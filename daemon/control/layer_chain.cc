@@ -1,48 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/control/layer_chain.h"
 
-#include <cmath>
-
 #include "daemon/control/stopwatch.h"
+#include "daemon/host/check_output.h"
 
 namespace gaitd::daemon {
 namespace {
 
-template <class T>
-bool finite(const T* values, int count) {
-  // A sum is not finite as soon as one term is not; far cheaper than asking each.
-  double sum = 0.0;
-  for (int i = 0; i < count; ++i) sum += values[i] - values[i];
-  return sum == 0.0;
+template <class Output>
+void take_back(Output& output, const Output& last_good) {
+  output = last_good;
 }
-template <int N>
-bool finite(const double (&values)[N]) {
-  return finite(values, N);
-}
-
-bool sound(const GaitdRobotState& r) {
-  return r.valid != 0 && finite(r.pelvis_position) && finite(r.pelvis_orientation) &&
-         finite(r.pelvis_twist) && finite(r.joint_position, r.joint_count) &&
-         finite(r.joint_velocity, r.joint_count) && finite(r.com) && finite(r.com_velocity) &&
-         finite(r.icp);
-}
-bool sound(const GaitdIcpPlan& p) {
-  return finite(p.icp) && finite(p.icp_velocity) && finite(p.ecmp) && std::isfinite(p.kappa);
-}
-bool sound(const GaitdStepAdjustment& a) {
-  return finite(a.shift) && std::isfinite(a.time_shift) && finite(a.ecmp) && finite(a.cmp) &&
-         finite(a.linear_momentum_rate) && finite(a.angular_momentum_rate);
-}
-bool sound(const GaitdToeOff& t) {
-  return finite(t.toe_point) && (t.active == 0 || t.side == GAITD_LEFT || t.side == GAITD_RIGHT);
-}
-bool sound(const GaitdWholeBodyControllerOutput& w) {
-  if (w.info.status != GAITD_WBC_SOLVED) return false;
-  for (int i = 0; i < w.commands.joint_count; ++i) {
-    const GaitdJointCommand& c = w.commands.joints[i];
-    if (!std::isfinite(c.torque + c.position + c.velocity + c.stiffness + c.damping)) return false;
-  }
-  return true;
+// The log keeps why there is no solution.
+void take_back(GaitdWholeBodyControllerOutput& output,
+               const GaitdWholeBodyControllerOutput& last_good) {
+  const int status = output.info.status;
+  output = last_good;
+  const bool known = status > GAITD_WBC_SOLVED && status <= GAITD_WBC_NON_FINITE;
+  output.info.status = known ? status : int{GAITD_WBC_NON_FINITE};
 }
 
 }  // namespace
@@ -54,20 +29,23 @@ void LayerChain::reset() {
   adjustment_ = {};
   toe_off_ = {};
   wbc_ = {};
+  failure_ = {};
 }
 
-template <class Input, class Output, class Check>
-bool LayerChain::run(int layer, const Input& input, Output& output, Check&& last_good,
+template <class Input, class Output>
+bool LayerChain::run(int layer, const Input& input, Output& output, Output& last_good,
                      TickTimes& times) {
   const Stopwatch watch;
-  const bool ok = layers_[layer]->process(&input, &output) == GAITD_OK && sound(output);
+  const GaitdStatus status = layers_[layer]->process(&input, &output);
+  const char* error = status == GAITD_OK ? output_error(output, joint_count_) : status_name(status);
   times.layer_us[layer] = watch.microseconds();
-  if (ok) {
+  if (error == nullptr) {
     last_good = output;
-  } else {
-    output = last_good;
+    return true;
   }
-  return ok;
+  failure_ = {layer, error};
+  take_back(output, last_good);
+  return false;
 }
 
 bool LayerChain::estimate(const GaitdStart& start, TickData& d) {
@@ -100,10 +78,7 @@ bool LayerChain::toe_off(TickData& d) {
 bool LayerChain::control(TickData& d) {
   const GaitdWholeBodyControllerInput in{sizeof(in), 0,          d.time,       &d.robot,
                                          &d.gait,    &d.toe_off, &d.objectives};
-  GaitdWbcInfo& info = d.wbc.info;
-  const bool ok = run(GAITD_LAYER_WHOLE_BODY_CONTROLLER, in, d.wbc, wbc_, d.times);
-  if (!ok && info.status == GAITD_WBC_SOLVED) info.status = GAITD_WBC_NON_FINITE;
-  return ok;
+  return run(GAITD_LAYER_WHOLE_BODY_CONTROLLER, in, d.wbc, wbc_, d.times);
 }
 
 }  // namespace gaitd::daemon

@@ -15,9 +15,17 @@ class LayerChain {
  public:
   using Layers = std::array<std::unique_ptr<LoadedLayer>, GAITD_LAYER_COUNT>;
 
-  explicit LayerChain(Layers layers) : layers_(std::move(layers)) {}
+  // What a layer did wrong last; layer -1 if none ever did.
+  struct Failure {
+    int layer = -1;
+    const char* what = "";  // the field and its rule, or the status that process() returned
+  };
+
+  LayerChain(Layers layers, int joint_count)
+      : layers_(std::move(layers)), joint_count_(joint_count) {}
 
   LoadedLayer& layer(int index) { return *layers_[index]; }
+  const Failure& failure() const { return failure_; }
   void reset();
 
   // Each runs one layer on `data`. False: failed, the output is the last good one.
@@ -28,10 +36,12 @@ class LayerChain {
   bool control(TickData& data);
 
  private:
-  template <class Input, class Output, class Check>
-  bool run(int layer, const Input& input, Output& output, Check&& sound, TickTimes& times);
+  template <class Input, class Output>
+  bool run(int layer, const Input& input, Output& output, Output& last_good, TickTimes& times);
 
   Layers layers_;
+  const int joint_count_;
+  Failure failure_;
   // Last good outputs, taken back when a layer fails.
   GaitdRobotState robot_{};
   GaitdIcpPlan plan_{};

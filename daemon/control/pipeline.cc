@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "daemon/control/command_note.h"
 #include "daemon/control/stopwatch.h"
 
 namespace gaitd::daemon {
@@ -21,15 +22,83 @@ CommandReply refused(const Command& command, std::int64_t tick, const char* why)
 }  // namespace
 
 Pipeline::Pipeline(const GaitdModel& model, LayerChain::Layers layers, const GaitdStart& start,
-                   const LimitsConfig& limits, double period)
+                   LiveParameters* parameters, double period)
     : model_(model),
       start_(start),
       period_(period),
-      layers_(std::move(layers)),
+      parameters_(parameters),
+      layers_(std::move(layers), model.joint_count),
       gait_(model),
       objectives_(model),
-      safety_(model, limits) {
+      safety_(model) {
+  for (int i = 0; i < parameters_->size(); ++i) {
+    const LiveParameters::Row& row = parameters_->row(i);
+    if (row.owner >= GAITD_LAYER_COUNT) apply(row.owner, row.index, parameters_->value(i));
+  }
   data_.gait = gait_.state();
+}
+
+// False: the layer refuses.
+bool Pipeline::apply(int owner, int index, double value) {
+  switch (owner) {
+    case kGaitParameterOwner:
+      gait_.set_parameter(index, value);
+      return true;
+    case kSwingParameterOwner:
+      objectives_.set_swing_parameter(index, value);
+      return true;
+    case kLegParameterOwner:
+      objectives_.set_leg_parameter(index, value);
+      return true;
+    case kObjectiveParameterOwner:
+      objectives_.set_objective_parameter(index, value);
+      return true;
+    case kSafetyParameterOwner:
+      safety_.set_parameter(index, value);
+      return true;
+    case kLimitParameterOwner:
+      safety_.set_limit(index, value);
+      return true;
+    default:
+      if (layers_.layer(owner).set_parameter(index, value) != GAITD_OK) return false;
+      // The plan moves: its reference goes on from where it is.
+      if (owner == GAITD_LAYER_ICP_PLANNER) gait_.plan_anew();
+      return true;
+  }
+}
+
+CommandReply Pipeline::set_parameter(const Command& command) {
+  CommandReply reply;
+  reply.request = command.request;
+  reply.tick = data_.time.tick;
+  const LiveParameters::Row& row = parameters_->row(command.parameter_index);
+  const char* key = row.key.c_str();
+  const SafetyState state = safety_.state();
+  const bool at_rest = state == SafetyState::kDisarmed || state == SafetyState::kFault ||
+                       (state == SafetyState::kStanding && !gait_.walking());
+  char* text = reply.message.data();
+  const std::size_t size = reply.message.size();
+  if (row.effect.kind == ParameterEffect::kAtRest && !at_rest) {
+    std::snprintf(text, size, "%s can only be changed while the robot stands: %s; %s", key,
+                  row.effect.text,
+                  state == SafetyState::kReadying ? "wait until it stands"
+                                                  : "`gaitctl stop`, then set it again");
+    return reply;
+  }
+  if (!apply(row.owner, row.index, command.parameter_value)) {
+    std::snprintf(text, size, "%s: the plugin %s refuses to change it while it runs", key,
+                  row.variant.c_str());
+    return reply;
+  }
+  reply.accepted = true;
+  reply.changed_value = true;
+  reply.old_value = parameters_->value(command.parameter_index);
+  reply.new_value = command.parameter_value;
+  parameters_->store(command.parameter_index, command.parameter_value);
+  if (row.effect.kind == ParameterEffect::kLater) {
+    std::snprintf(text, size, "holds for %s", row.effect.text);
+  }
+  return reply;
 }
 
 void Pipeline::reset() {
@@ -93,6 +162,7 @@ CommandReply Pipeline::execute(const Command& command) {
                        : "the robot is not standing yet; arm it (`gaitctl arm`) and wait "
                          "until `gaitctl status` says standing");
   }
+  const char* note = command_note(command, safety_.state(), gait_.state());
   const char* why = nullptr;
   switch (command.type) {
     case CommandType::kArm:
@@ -133,12 +203,18 @@ CommandReply Pipeline::execute(const Command& command) {
       refusal = gait_.abort();
       safety_.stopping();
       break;
+    case CommandType::kSetParameter:
+      return set_parameter(command);
     default:
       return refused(command, data_.time.tick, "this command is not for the control pipeline");
   }
   if (why != nullptr) return refused(command, data_.time.tick, why);
   if (refusal.refused()) return refused(command, data_.time.tick, refusal.message);
+  if (command.type == CommandType::kWalk || command.type == CommandType::kFootsteps) {
+    safety_.going_on();
+  }
   reply.accepted = true;
+  if (note != nullptr) std::snprintf(reply.message.data(), reply.message.size(), "%s", note);
   return reply;
 }
 

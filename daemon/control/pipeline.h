@@ -5,6 +5,7 @@
 #include "daemon/control/layer_chain.h"
 #include "daemon/control/safety.h"
 #include "daemon/control/tick_data.h"
+#include "daemon/parameters/live_parameters.h"
 #include "gaitd/walking/gait_machine.h"
 #include "gaitd/walking/objectives.h"
 
@@ -14,9 +15,10 @@ namespace gaitd::daemon {
 // real-time thread: nothing here allocates, locks, blocks or reads a clock (but for the report).
 class Pipeline {
  public:
-  // `start`: where the middle of the feet stands at the beginning (W).
+  // `start`: where the middle of the feet stands at the beginning (W). Takes the values of the
+  // daemon's own parameters; the layers have got theirs when they were loaded.
   Pipeline(const GaitdModel& model, LayerChain::Layers layers, const GaitdStart& start,
-           const LimitsConfig& limits, double period);
+           LiveParameters* parameters, double period);
 
   // Between ticks.
   CommandReply execute(const Command& command);
@@ -32,14 +34,18 @@ class Pipeline {
   walking::GaitMachine& gait() { return gait_; }
   walking::ObjectiveBuilder& objectives() { return objectives_; }
   LayerChain& layers() { return layers_; }
+  const LiveParameters& parameters() const { return *parameters_; }
 
  private:
+  CommandReply set_parameter(const Command& command);
+  bool apply(int owner, int index, double value);
   void begin_control();
   bool control(double dt);
 
   const GaitdModel model_;
   const GaitdStart start_;
   const double period_;
+  LiveParameters* const parameters_;
   LayerChain layers_;
   walking::GaitMachine gait_;
   walking::ObjectiveBuilder objectives_;

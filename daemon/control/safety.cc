@@ -10,9 +10,6 @@ namespace gaitd::daemon {
 
 using P = SafetyParameter;
 
-Safety::Safety(const GaitdModel& model, const LimitsConfig& limits)
-    : model_(model), limits_(limits) {}
-
 const char* Safety::arm() {
   if (state_ == SafetyState::kFault) {
     return "arm: a fault is latched; look at `gaitctl status`, mend it, then `gaitctl reset`";
@@ -30,7 +27,11 @@ const char* Safety::disarm() {
   if (state_ == SafetyState::kWalking || state_ == SafetyState::kStopping) {
     return "disarm: the robot is walking; stop it first: `gaitctl stop`, or `gaitctl estop`";
   }
-  if (state_ != SafetyState::kFault) state_ = SafetyState::kDisarmed;
+  if (state_ == SafetyState::kFault) {
+    return "disarm: a fault is latched and the joints are damped already; `gaitctl reset` clears it "
+           "and leaves the robot disarmed";
+  }
+  state_ = SafetyState::kDisarmed;
   return nullptr;
 }
 
@@ -56,6 +57,10 @@ void Safety::raise(std::uint32_t fault) {
 
 void Safety::stopping() {
   if (state_ == SafetyState::kWalking) state_ = SafetyState::kStopping;
+}
+
+void Safety::going_on() {
+  if (state_ == SafetyState::kStopping) state_ = SafetyState::kWalking;
 }
 
 bool Safety::stale(const GaitdSignalInfo& info) const {
@@ -199,19 +204,20 @@ void Safety::clamp(double dt, const TickData& d, GaitdJointCommands& commands) {
   for (int i = 0; i < model_.joint_count; ++i) {
     GaitdJointCommand& c = commands.joints[i];
     const GaitdJoint& joint = model_.joints[i];
-    const double limit = limits_.torque_ratio * joint.effort_limit;
+    const double limit = limits_[Limit::kTorqueRatio] * joint.effort_limit;
     double torque = std::clamp(c.torque, -limit, limit);
     if (controlled()) {
       const double step = p_[P::kTorqueRate] * joint.effort_limit * dt;
       torque = std::clamp(torque, last_torque_[i] - step, last_torque_[i] + step);
     }
     const double rate = d.robot.joint_velocity[i];
-    const double fastest = limits_.velocity_ratio * joint.velocity_limit;
+    const double fastest = limits_[Limit::kVelocityRatio] * joint.velocity_limit;
     if (rate > fastest) torque = std::min(torque, 0.0);
     if (rate < -fastest) torque = std::max(torque, 0.0);
     c.torque = torque;
-    c.position = std::clamp(c.position, joint.position_min + limits_.position_margin,
-                            joint.position_max - limits_.position_margin);
+    const double margin = limits_[Limit::kPositionMargin];
+    c.position =
+        std::clamp(c.position, joint.position_min + margin, joint.position_max - margin);
     c.velocity = std::clamp(c.velocity, -fastest, fastest);
     // While readying the drives make the torque: what they make now is where control takes over.
     last_torque_[i] = state_ == SafetyState::kReadying ? d.sensors.joints[i].torque : torque;

@@ -1,55 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "daemon/config/daemon_config.h"
 #include "daemon/control/tick_data.h"
-#include "gaitd/sdk/parameter.h"
+#include "daemon/parameters/safety_parameters.h"
 
 namespace gaitd::daemon {
-
-enum class SafetyParameter {
-  kTiltLimit,
-  kFallHeight,
-  kSensorTimeout,
-  kSolverPatience,
-  kReadyDuration,
-  kReadyTolerance,
-  kReadySettle,
-  kReadyStiffness,
-  kReadyDamping,
-  kReadyLoad,
-  kFaultDamping,
-  kTorqueRate,
-  kCount
-};
-inline constexpr std::array<GaitdParameter, 12> kSafetyParameters = {
-    sdk::real_parameter("tilt_limit", "rad", 0.1, 3, 0.8, "of the pelvis, beyond is a fall"),
-    sdk::real_parameter("fall_height", "", 0.1, 1, 0.6,
-                        "pelvis above the lower foot, over the nominal height; below is a fall"),
-    sdk::real_parameter("sensor_timeout", "s", 0.001, 1, 0.02, "age of a signal that is stale"),
-    sdk::real_parameter("solver_patience", "s", 0, 1, 0.05,
-                        "without a solution before the safe stop"),
-    sdk::real_parameter("ready_duration", "s", 0.1, 60, 3, "of the ramp to the standing posture"),
-    sdk::real_parameter("ready_tolerance", "rad", 0.001, 1, 0.05,
-                        "joint errors that count as in the standing posture"),
-    sdk::real_parameter("ready_settle", "s", 0.01, 10, 0.2,
-                        "in posture and with loaded feet before standing"),
-    sdk::real_parameter("ready_stiffness", "limits/rad", 0, 100, 8,
-                        "joint stiffness while readying, in effort limits"),
-    sdk::real_parameter("ready_damping", "limits s/rad", 0, 10, 0.25,
-                        "joint damping while readying, in effort limits"),
-    sdk::real_parameter("ready_load", "weight", 0, 1, 0.6, "on both feet together before standing"),
-    sdk::real_parameter("fault_damping", "limits s/rad", 0, 1, 0.03,
-                        "joint damping after a fault, in effort limits"),
-    sdk::real_parameter("torque_rate", "limits/s", 1, 1e5, 1000, "clamp of the change of torque"),
-};
 
 // Stands between the layers and the backend: the arming states, the faults that it recognises, what
 // the joints do in each state, and the clamps on everything that is sent.
 class Safety {
  public:
-  Safety(const GaitdModel& model, const LimitsConfig& limits);
+  explicit Safety(const GaitdModel& model) : model_(model) {}
   void set_parameter(int index, double value) { p_.set(index, value); }
+  void set_limit(int index, double value) { limits_.set(index, value); }
 
   SafetyState state() const { return state_; }
   std::uint32_t faults() const { return faults_; }
@@ -66,6 +29,7 @@ class Safety {
   void reset();         // whatever the state: disarmed, no faults (a simulation starts over)
   void raise(std::uint32_t fault);
   void stopping();
+  void going_on();  // new footsteps while stopping: it walks again
 
   // Whether the pelvis is up and level enough not to count as fallen.
   bool upright(const GaitdRobotState& robot) const;
@@ -86,8 +50,8 @@ class Safety {
   bool stale(const GaitdSignalInfo& info) const;
 
   const GaitdModel model_;
-  const LimitsConfig limits_;
   sdk::Parameters<SafetyParameter> p_{kSafetyParameters};
+  sdk::Parameters<Limit> limits_{kLimitParameters};
   SafetyState state_ = SafetyState::kDisarmed;
   std::uint32_t faults_ = 0;
   double time_in_state_ = 0.0;

@@ -13,11 +13,13 @@ constexpr double kFaultTime = 1.0;   // s that a fallen robot is still watched
 
 }  // namespace
 
-ScenarioPlayer::ScenarioPlayer(const Scenario& scenario, const GaitdModel& model, Issues* issues)
+ScenarioPlayer::ScenarioPlayer(const Scenario& scenario, const GaitdModel& model,
+                               const LiveParameters& parameters, Issues* issues)
     : duration_(scenario.duration) {
   for (const ScenarioCommand& c : scenario.commands) {
     std::string error;
-    if (auto command = parse_command(c.method, c.params, model, &error)) {
+    if (auto command = c.method == "param.set" ? parameters.parse_set(c.params, &error)
+                                               : parse_command(c.method, c.params, model, &error)) {
       commands_.push_back({c.at, *command});
     } else {
       issues->add_text(c.where, "commands", error);

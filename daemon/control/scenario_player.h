@@ -7,6 +7,7 @@
 #include "daemon/command/command.h"
 #include "daemon/config/scenario.h"
 #include "daemon/control/tick_data.h"
+#include "daemon/parameters/live_parameters.h"
 
 namespace gaitd::daemon {
 
@@ -15,7 +16,8 @@ namespace gaitd::daemon {
 class ScenarioPlayer {
  public:
   // Parses every command before the first tick. Issues say what is wrong with them.
-  ScenarioPlayer(const Scenario& scenario, const GaitdModel& model, Issues* issues);
+  ScenarioPlayer(const Scenario& scenario, const GaitdModel& model,
+                 const LiveParameters& parameters, Issues* issues);
 
   // Commands due at `time` (s), in order; null when there is none (left). Until the robot has the
   // joints in control, commands that need it wait.

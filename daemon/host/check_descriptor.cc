@@ -51,6 +51,19 @@ std::string shown(const char (&array)[N]) {
   return "\"" + out + "\"";
 }
 
+// MAJOR.MINOR.PATCH, with anything after - or +.
+bool is_semantic(std::string_view version) {
+  for (int part = 0; part < 3; ++part) {
+    const std::size_t digits = std::min(version.find_first_not_of("0123456789"), version.size());
+    if (digits == 0) return false;
+    version.remove_prefix(digits);
+    if (part == 2) break;
+    if (!version.starts_with('.')) return false;
+    version.remove_prefix(1);
+  }
+  return version.empty() || version[0] == '-' || version[0] == '+';
+}
+
 std::string version_text(std::uint32_t major, std::uint32_t minor) {
   return std::to_string(major) + "." + std::to_string(minor);
 }
@@ -72,7 +85,7 @@ void check_names(const GaitdPluginDescriptor& d, Refusal* refusal) {
     refusal->add("id", shown(d.id), "1 to 47 of a-z, 0-9, _", "rename the variant");
   }
   const auto version = text(d.version);
-  if (!version || version->empty() || !is_printable(*version)) {
+  if (!version || !is_semantic(*version) || !is_printable(*version)) {
     refusal->add("version", shown(d.version), "a semantic version, e.g. 1.2.0",
                  "set the version of the descriptor");
   }

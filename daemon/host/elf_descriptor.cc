@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace gaitd::daemon {
@@ -72,7 +73,19 @@ struct DynamicSymbols {
   std::optional<Elf64_Sym> plugin;
   bool create = false;
   bool create_backend = false;
+  std::vector<std::string> unique;
 };
+
+bool binds_now(Bytes dynamic) {
+  for (std::uint64_t i = 0; i < dynamic.size() / sizeof(Elf64_Dyn); ++i) {
+    const Elf64_Dyn entry = *read<Elf64_Dyn>(dynamic, i * sizeof(Elf64_Dyn));
+    if (entry.d_tag == DT_BIND_NOW || (entry.d_tag == DT_FLAGS && entry.d_un.d_val & DF_BIND_NOW) ||
+        (entry.d_tag == DT_FLAGS_1 && entry.d_un.d_val & DF_1_NOW)) {
+      return true;
+    }
+  }
+  return false;
+}
 
 // Defined, global symbols among those that dlsym would find.
 DynamicSymbols read_symbols(Bytes table, Bytes strings) {
@@ -80,8 +93,10 @@ DynamicSymbols read_symbols(Bytes table, Bytes strings) {
   for (std::uint64_t i = 0; i < table.size() / sizeof(Elf64_Sym); ++i) {
     const Elf64_Sym symbol = *read<Elf64_Sym>(table, i * sizeof(Elf64_Sym));
     const int binding = ELF64_ST_BIND(symbol.st_info);
-    if (symbol.st_shndx == SHN_UNDEF || (binding != STB_GLOBAL && binding != STB_WEAK)) continue;
+    if (symbol.st_shndx == SHN_UNDEF) continue;
     const std::string_view name = string_at(strings, symbol.st_name);
+    if (binding == STB_GNU_UNIQUE) found.unique.emplace_back(name);
+    if (binding != STB_GLOBAL && binding != STB_WEAK) continue;
     if (name == GAITD_PLUGIN_SYMBOL) found.plugin = symbol;
     found.create |= name == GAITD_CREATE_SYMBOL;
     found.create_backend |= name == GAITD_CREATE_BACKEND_SYMBOL;
@@ -118,6 +133,11 @@ std::optional<ElfFacts> read_elf(Bytes file, Refusal* refusal) {
       refuse_truncated(file, "a loaded segment", refusal);
       return std::nullopt;
     }
+    if (segment.p_type == PT_DYNAMIC) {
+      if (const auto dynamic = part(file, segment.p_offset, segment.p_filesz)) {
+        facts.binds_now = binds_now(*dynamic);
+      }
+    }
   }
 
   const auto sections = read_table<Elf64_Shdr>(file, header->e_shoff, header->e_shnum);
@@ -149,6 +169,7 @@ std::optional<ElfFacts> read_elf(Bytes file, Refusal* refusal) {
   }
   facts.exports_create = symbols.create;
   facts.exports_create_backend = symbols.create_backend;
+  facts.unique = std::move(symbols.unique);
 
   const char* remedy = "export the plugin with the macro of the SDK";
   if (descriptor == nullptr || !symbols.plugin) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "daemon/host/refusal.h"
 #include "gaitd/abi/backend.h"
@@ -18,6 +19,8 @@ struct ElfFacts {
   bool has_thread_local = false;          ///< a PT_TLS segment with something in it
   bool exports_create = false;            ///< gaitd_create
   bool exports_create_backend = false;    ///< gaitd_create_backend
+  bool binds_now = false;                 ///< linked with -z now
+  std::vector<std::string> unique;        ///< symbols that all copies of the library share
   std::span<const std::byte> descriptor;  ///< from gaitd_plugin to the end of its section
 };
 

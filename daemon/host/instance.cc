@@ -48,31 +48,27 @@ bool check_size(const Vtable* vtable, std::string* error) {
 
 }  // namespace
 
-std::string status_text(GaitdStatus status) {
-  const char* name = "unknown status";
+const char* status_name(GaitdStatus status) {
   switch (status) {
     case GAITD_OK:
-      name = "GAITD_OK";
-      break;
+      return "GAITD_OK";
     case GAITD_ERROR:
-      name = "GAITD_ERROR";
-      break;
+      return "GAITD_ERROR";
     case GAITD_INVALID_ARGUMENT:
-      name = "GAITD_INVALID_ARGUMENT";
-      break;
+      return "GAITD_INVALID_ARGUMENT";
     case GAITD_NOT_SUPPORTED:
-      name = "GAITD_NOT_SUPPORTED";
-      break;
+      return "GAITD_NOT_SUPPORTED";
     case GAITD_NOT_READY:
-      name = "GAITD_NOT_READY";
-      break;
+      return "GAITD_NOT_READY";
     case GAITD_EXCEPTION:
-      name = "GAITD_EXCEPTION";
-      break;
+      return "GAITD_EXCEPTION";
     default:
-      break;
+      return "unknown status";
   }
-  return std::string(name) + " (" + std::to_string(status) + ")";
+}
+
+std::string status_text(GaitdStatus status) {
+  return std::string(status_name(status)) + " (" + std::to_string(status) + ")";
 }
 
 void* open_library(const char* path, std::string* error) {

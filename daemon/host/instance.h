@@ -9,8 +9,20 @@
 
 namespace gaitd::daemon {
 
+/// "GAITD_NOT_READY"; "unknown status" for a number that is none.
+const char* status_name(GaitdStatus status);
 /// "GAITD_NOT_READY (-4)".
 std::string status_text(GaitdStatus status);
+
+/// Calls a plugin function; what it throws becomes GAITD_EXCEPTION. Costs nothing if it does not.
+template <typename Function>
+GaitdStatus contained(Function&& function) {
+  try {
+    return function();
+  } catch (...) {
+    return GAITD_EXCEPTION;
+  }
+}
 
 /// dlopen with every symbol bound now and none given to others. Null with the reason in `error`.
 void* open_library(const char* path, std::string* error);

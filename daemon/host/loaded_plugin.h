@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/host/instance.h"
 #include "daemon/host/plugin_file.h"
 #include "daemon/host/probe.h"
 #include "daemon/host/refusal.h"
@@ -75,15 +76,22 @@ class LoadedLayer {
   const PluginLibrary& library() const { return *library_; }
   const GaitdPluginDescriptor& descriptor() const { return library_->descriptor(); }
 
-  // The functions of the instance; the structs are those of the layer. [rt]
+  // The functions of the instance; the structs are those of the layer. An exception that a plugin
+  // lets out ends here as GAITD_EXCEPTION. [rt]
   GaitdStatus process(const void* input, void* output) {
-    return vtable_->process(self_, input, output);
+    return contained([&] { return vtable_->process(self_, input, output); });
   }
-  GaitdStatus reset() { return vtable_->reset(self_); }
-  GaitdStatus get_state(void* state) { return vtable_->get_state(self_, state); }
-  GaitdStatus set_state(const void* state) { return vtable_->set_state(self_, state); }
+  GaitdStatus reset() {
+    return contained([&] { return vtable_->reset(self_); });
+  }
+  GaitdStatus get_state(void* state) {
+    return contained([&] { return vtable_->get_state(self_, state); });
+  }
+  GaitdStatus set_state(const void* state) {
+    return contained([&] { return vtable_->set_state(self_, state); });
+  }
   GaitdStatus set_parameter(uint32_t index, double value) {
-    return vtable_->set_parameter(self_, index, value);
+    return contained([&] { return vtable_->set_parameter(self_, index, value); });
   }
   /// Null if the plugin has no such extension. [main]
   const void* get_extension(const char* id) {

@@ -93,6 +93,8 @@ std::optional<PluginFile> read_plugin_file(const std::filesystem::path& path,
   const auto descriptor = check_descriptor(*facts, layer, refusal);
   if (!descriptor) return std::nullopt;
   file.descriptor = *descriptor;
+  file.binds_now = facts->binds_now;
+  file.unique = facts->unique;
   return file;
 }
 

@@ -19,6 +19,8 @@ struct PluginFile {
   std::filesystem::path path;
   std::vector<std::byte> bytes;
   GaitdPluginDescriptor descriptor{};
+  bool binds_now = false;           ///< see ElfFacts
+  std::vector<std::string> unique;  ///< see ElfFacts
 
   /// FNV-1a, 64 bit, over the bytes, in 16 hexadecimal digits: tells builds apart in the log. It is
   /// no protection against somebody who wants two files to have the same.

@@ -8,19 +8,6 @@ namespace {
 
 using nlohmann::json;
 
-json parameter_json(const GaitdParameter& p) {
-  const char* type = p.type == GAITD_PARAMETER_REAL      ? "real"
-                     : p.type == GAITD_PARAMETER_INTEGER ? "integer"
-                                                         : "boolean";
-  return {{"name", p.name},
-          {"type", type},
-          {"unit", p.unit},
-          {"min", p.minimum},
-          {"max", p.maximum},
-          {"default", p.default_value},
-          {"description", p.description}};
-}
-
 json entry_json(const PluginEntry& entry, const std::map<std::string, std::string>& active) {
   const std::string layer(layer_name(entry.layer));
   json out = {{"layer", layer}, {"variant", entry.variant}, {"path", entry.path.string()}};
@@ -42,6 +29,19 @@ json entry_json(const PluginEntry& entry, const std::map<std::string, std::strin
 }
 
 }  // namespace
+
+json parameter_json(const GaitdParameter& p) {
+  const char* type = p.type == GAITD_PARAMETER_REAL      ? "real"
+                     : p.type == GAITD_PARAMETER_INTEGER ? "integer"
+                                                         : "boolean";
+  return {{"name", p.name},
+          {"type", type},
+          {"unit", p.unit},
+          {"min", p.minimum},
+          {"max", p.maximum},
+          {"default", p.default_value},
+          {"description", p.description}};
+}
 
 json plugin_list_json(const std::vector<PluginEntry>& entries,
                       const std::map<std::string, std::string>& active) {

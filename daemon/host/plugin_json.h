@@ -10,6 +10,9 @@
 
 namespace gaitd::daemon {
 
+/// {name, type: real|integer|boolean, unit, min, max, default, description}.
+nlohmann::json parameter_json(const GaitdParameter& parameter);
+
 /// The answer to plugin.list: {"plugins": [{layer, variant, path, active, version, build,
 /// worst_case_us, parameters: [{name, type, unit, min, max, default, description}]} or {layer,
 /// variant, path, refused: text}]}. `active` maps a layer's name to the variant in use.

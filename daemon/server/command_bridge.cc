@@ -6,6 +6,14 @@
 #include <vector>
 
 namespace gaitd::daemon {
+namespace {
+
+std::string text_of(const CommandReply& reply) {
+  const char* text = reply.message.data();
+  return {text, strnlen(text, reply.message.size())};
+}
+
+}  // namespace
 
 CommandBridge::CommandBridge(Clock::duration timeout) : timeout_(timeout) {
   // Through every slot once, so that the control thread never meets a page for the first time.
@@ -37,14 +45,14 @@ void CommandBridge::poll(Clock::time_point now) {
     auto entry = pending_.extract(reply.request);
     if (entry.empty()) continue;  // timed out before
     if (reply.accepted) {
-      entry.mapped().respond(nlohmann::json{{"accepted", true}, {"tick", reply.tick}});
+      held_.push_back({std::move(entry.mapped().respond), reply, now + kShowTime});
       continue;
     }
-    const char* text = reply.message.data();
-    std::string message(text, strnlen(text, reply.message.size()));
+    std::string message = text_of(reply);
     if (message.empty()) message = "refused without a reason";
     entry.mapped().respond(RpcError{rpc_code::kRefused, message, {{"tick", reply.tick}}});
   }
+  release_held(now);
   std::vector<Respond> late;
   while (!pending_.empty() && pending_.begin()->second.deadline <= now) {
     late.push_back(std::move(pending_.begin()->second.respond));
@@ -58,7 +66,27 @@ void CommandBridge::poll(Clock::time_point now) {
   }
 }
 
+void CommandBridge::release_held(Clock::time_point now) {
+  while (!held_.empty()) {
+    const Held& first = held_.front();
+    if (newest_tick_ && newest_tick_() < first.reply.tick && now < first.deadline) return;
+    const Held held = std::move(held_.front());
+    held_.pop_front();
+    const std::string note = text_of(held.reply);
+    nlohmann::json result = {{"accepted", true},
+                             {"tick", held.reply.tick},
+                             {"note", note.empty() ? nlohmann::json() : nlohmann::json(note)}};
+    if (held.reply.changed_value) {
+      result["old"] = held.reply.old_value;
+      result["value"] = held.reply.new_value;
+    }
+    held.respond(std::move(result));
+  }
+}
+
 void CommandBridge::abandon() {
+  newest_tick_ = nullptr;
+  release_held(Clock::now());
   auto pending = std::exchange(pending_, {});
   for (auto& [request, entry] : pending) {
     entry.respond(RpcError{rpc_code::kStopping,

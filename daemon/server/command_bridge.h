@@ -4,6 +4,7 @@
 #include <boost/lockfree/spsc_queue.hpp>
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <string>
@@ -20,6 +21,7 @@ class CommandBridge {
  public:
   static constexpr std::size_t kCapacity = 64;
   using Clock = std::chrono::steady_clock;
+  static constexpr Clock::duration kShowTime = std::chrono::milliseconds(200);
 
   explicit CommandBridge(Clock::duration timeout = std::chrono::seconds(5));
 
@@ -33,12 +35,19 @@ class CommandBridge {
 
   // ---- Server thread.
 
+  /// Holds each acceptance back until `newest_tick` has reached the tick that took the command, so
+  /// that a status asked for after the answer shows the effect; at most kShowTime, for when no
+  /// ticks come.
+  void show_effect_first(std::function<std::int64_t()> newest_tick) {
+    newest_tick_ = std::move(newest_tick);
+  }
   /// Sends `command` under a request number of the bridge. `respond` gets {"accepted": true,
-  /// "tick": n}, or an error: refused with the control thread's reason, busy, no answer in time.
+  /// "tick": n, "note": text or null}, for a parameter "old" and "value" too, or an error: refused
+  /// with the control thread's reason, busy, no answer in time.
   void submit(Command command, Respond respond);
   /// Hands over the answers that have come and times out those that have not.
   void poll(Clock::time_point now);
-  bool waiting() const { return !pending_.empty(); }
+  bool waiting() const { return !pending_.empty() || !held_.empty(); }
   /// Answers everything that waits with the stopping error.
   void abandon();
 
@@ -48,9 +57,20 @@ class CommandBridge {
     Clock::time_point deadline;
   };
 
+  // An acceptance whose effect does not show yet.
+  struct Held {
+    Respond respond;
+    CommandReply reply;
+    Clock::time_point deadline;
+  };
+
+  void release_held(Clock::time_point now);
+
   boost::lockfree::spsc_queue<Command, boost::lockfree::capacity<kCapacity>> commands_;
   boost::lockfree::spsc_queue<CommandReply, boost::lockfree::capacity<4 * kCapacity>> replies_;
   std::map<std::uint64_t, Pending> pending_;
+  std::deque<Held> held_;
+  std::function<std::int64_t()> newest_tick_;
   std::uint64_t next_request_ = 1;
   Clock::duration timeout_;
 };

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/server/command_server.h"
 
+#include <fcntl.h>
 #include <pthread.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
@@ -37,7 +40,10 @@ class CommandServer::Impl {
         poll_timer_(io_),
         accept_timer_(io_) {}
 
-  ~Impl() { stop(); }
+  ~Impl() {
+    stop();
+    if (spare_fd_ >= 0) close(spare_fd_);
+  }
 
   void start();
   const std::string& path() const { return socket_->path(); }
@@ -47,6 +53,7 @@ class CommandServer::Impl {
   void stop();
   void accept();
   void welcome(Session::Socket socket);
+  void turn_away();
   void handle(const std::shared_ptr<Session>& session, std::string_view line);
   void poll_while_waiting();
   void close_everything();
@@ -59,6 +66,7 @@ class CommandServer::Impl {
   asio::local::stream_protocol::acceptor acceptor_;
   asio::steady_timer poll_timer_;
   asio::steady_timer accept_timer_;
+  int spare_fd_ = open("/dev/null", O_RDONLY | O_CLOEXEC);
   std::set<std::shared_ptr<Session>> sessions_;
   bool polling_ = false;
   bool stopping_ = false;
@@ -122,7 +130,11 @@ void CommandServer::Impl::accept() {
       welcome(std::move(socket));
       return accept();
     }
-    // Out of descriptors, say: try again when some may be free.
+    if (error == boost::system::errc::too_many_files_open ||
+        error == boost::system::errc::too_many_files_open_in_system) {
+      turn_away();
+    }
+    // Try again when some descriptors may be free.
     accept_timer_.expires_after(milliseconds(100));
     accept_timer_.async_wait([this](error_code) {
       if (!stopping_) accept();
@@ -132,16 +144,37 @@ void CommandServer::Impl::accept() {
 
 void CommandServer::Impl::welcome(Session::Socket socket) {
   const auto session = std::make_shared<Session>(
-      std::move(socket), Session::Limits{options_.max_request, options_.max_unread_output},
+      std::move(socket),
+      Session::Limits{options_.max_request, options_.max_unread_output, options_.max_line_time},
       [this](const std::shared_ptr<Session>& s, std::string_view line) { handle(s, line); },
       [this](const std::shared_ptr<Session>& s) { sessions_.erase(s); });
   if (sessions_.size() >= static_cast<std::size_t>(options_.max_clients)) {
-    session->send(error_line({rpc_code::kBusy, "busy: " + std::to_string(options_.max_clients) +
-                                                   " clients are connected already"}));
+    session->send(
+        error_line({rpc_code::kBusy, "busy: " + std::to_string(options_.max_clients) +
+                                         " clients are connected already; end one of them, or try "
+                                         "again when one has gone"}));
     return session->close();
   }
   sessions_.insert(session);
   session->start();
+}
+
+// No descriptor is free: tells one client that waits so, with the one kept for this.
+void CommandServer::Impl::turn_away() {
+  if (spare_fd_ < 0) return;
+  close(spare_fd_);
+  const int fd = accept4(acceptor_.native_handle(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+  if (fd >= 0) {
+    const std::string line =
+        error_line({rpc_code::kBusy,
+                    "busy: gaitd has no file descriptor left; end other clients, or raise its "
+                    "limit (ulimit -n, LimitNOFILE=)"}) +
+        "\n";
+    [[maybe_unused]] const ssize_t sent =
+        send(fd, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    close(fd);
+  }
+  spare_fd_ = open("/dev/null", O_RDONLY | O_CLOEXEC);
 }
 
 void CommandServer::Impl::handle(const std::shared_ptr<Session>& session, std::string_view line) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -11,9 +12,10 @@
 namespace gaitd::daemon {
 
 struct ServerOptions {
-  std::string socket_path;                  ///< empty: see listen_path
-  std::size_t max_request = 1 << 20;        ///< bytes of one line
-  std::size_t max_unread_output = 4 << 20;  ///< bytes; a client that reads slower is dropped
+  std::string socket_path;                         ///< empty: see listen_path
+  std::size_t max_request = 1 << 20;               ///< bytes of one line
+  std::size_t max_unread_output = 4 << 20;         ///< bytes; a client that reads slower is dropped
+  std::chrono::milliseconds max_line_time{30000};  ///< first byte of a line to its newline
   int max_clients = 64;
   RpcLimits limits;
 };

@@ -2,6 +2,7 @@
 #include "daemon/server/listening_socket.h"
 
 #include <fcntl.h>
+#include <grp.h>
 #include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -11,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 namespace gaitd::daemon {
 namespace {
@@ -41,6 +43,15 @@ bool is_listening(const std::string& path) {
   return result == 0 || (error != ECONNREFUSED && error != ENOENT);
 }
 
+// As far as it may: a user who is not in the group keeps the socket to himself and his own group.
+void give_to_group(const std::string& path, const std::string& name) {
+  std::vector<char> buffer(16384);
+  group entry{};
+  group* found = nullptr;
+  if (getgrnam_r(name.c_str(), &entry, buffer.data(), buffer.size(), &found) != 0 || !found) return;
+  [[maybe_unused]] const int result = lchown(path.c_str(), static_cast<uid_t>(-1), found->gr_gid);
+}
+
 std::string second_daemon(const std::string& path) {
   return "socket " + path +
          ": another gaitd listens there already; stop that one, or give this one its own with "
@@ -49,14 +60,16 @@ std::string second_daemon(const std::string& path) {
 
 }  // namespace
 
-std::unique_ptr<ListeningSocket> ListeningSocket::open(const std::string& path,
-                                                       std::string* error) {
+std::unique_ptr<ListeningSocket> ListeningSocket::open(const std::string& path, std::string* error,
+                                                       const std::string& group) {
   std::unique_ptr<ListeningSocket> socket(new ListeningSocket(path));
   if (path.size() >= sizeof(sockaddr_un::sun_path)) {
     *error = "socket " + path + ": the path is too long for a socket address";
     return nullptr;
   }
-  if (!socket->lock(error) || !socket->clear_path(error) || !socket->listen(error)) return nullptr;
+  if (!socket->lock(error) || !socket->clear_path(error) || !socket->listen(group, error)) {
+    return nullptr;
+  }
   return socket;
 }
 
@@ -93,7 +106,7 @@ bool ListeningSocket::clear_path(std::string* error) const {
   return true;
 }
 
-bool ListeningSocket::listen(std::string* error) {
+bool ListeningSocket::listen(const std::string& group, std::string* error) {
   fd_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const sockaddr_un address = address_of(path_);
   struct stat info {};
@@ -104,6 +117,7 @@ bool ListeningSocket::listen(std::string* error) {
   }
   device_ = info.st_dev;
   inode_ = info.st_ino;
+  give_to_group(path_, group);
   // Nobody can connect before listen, so nobody gets in under the mode of the umask.
   if (chmod(path_.c_str(), kMode) != 0 || ::listen(fd_, kBacklog) != 0) {
     *error = failed(path_, "cannot listen");

@@ -12,8 +12,11 @@ namespace gaitd::daemon {
 /// a second daemon out even while the first is starting.
 class ListeningSocket {
  public:
-  /// Replaces a socket that nobody listens on. Null with the reason in `error`.
-  static std::unique_ptr<ListeningSocket> open(const std::string& path, std::string* error);
+  /// Replaces a socket that nobody listens on. It belongs to `group` where there is one of that
+  /// name and this process may give it away, else to the group of the process. Null with the reason
+  /// in `error`.
+  static std::unique_ptr<ListeningSocket> open(const std::string& path, std::string* error,
+                                               const std::string& group = "gaitd");
   /// Removes the socket if it is still the one that was made here.
   ~ListeningSocket();
   ListeningSocket(const ListeningSocket&) = delete;
@@ -27,7 +30,7 @@ class ListeningSocket {
   explicit ListeningSocket(std::string path) : path_(std::move(path)) {}
   bool lock(std::string* error);
   bool clear_path(std::string* error) const;
-  bool listen(std::string* error);
+  bool listen(const std::string& group, std::string* error);
 
   std::string path_;
   int lock_fd_ = -1;

@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -19,10 +20,20 @@ std::string dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+// Texts of a client that come back to it within a message.
+constexpr std::size_t kMaxQuoted = 200;     // bytes of one
+constexpr std::size_t kMaxMessage = 32768;  // bytes altogether
+
+std::string shortened(std::string text, std::size_t size) {
+  if (text.size() > size) text.replace(size, std::string::npos, "...");
+  return text;
+}
+
 json answer(const json& id, RpcResult result) {
   json out = {{"jsonrpc", "2.0"}, {"id", id}};
   if (auto* error = std::get_if<RpcError>(&result)) {
-    out["error"] = {{"code", error->code}, {"message", std::move(error->message)}};
+    out["error"] = {{"code", error->code},
+                    {"message", shortened(std::move(error->message), kMaxMessage)}};
     if (!error->data.is_null()) out["error"]["data"] = std::move(error->data);
   } else {
     out["result"] = std::move(std::get<json>(result));
@@ -51,6 +62,46 @@ int nesting(std::string_view text) {
   }
   return deepest;
 }
+
+// Finds a key that an object has twice: which of them is meant nobody can know. A pass of its own,
+// for the parser's callback takes a time that grows with the square of an array.
+class DuplicateKey : public nlohmann::json_sax<json> {
+ public:
+  static std::optional<std::string> in(std::string_view text) {
+    DuplicateKey search;
+    json::sax_parse(text, &search);
+    return search.found_;
+  }
+
+  bool start_object(std::size_t) override {
+    keys_.emplace_back();
+    return true;
+  }
+  bool key(string_t& name) override {
+    if (!keys_.back().insert(name).second) found_ = name;
+    return !found_;
+  }
+  bool end_object() override {
+    keys_.pop_back();
+    return true;
+  }
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t, const std::string&, const json::exception&) override {
+    return false;
+  }
+
+ private:
+  std::vector<std::set<std::string>> keys_;  // of the objects that are open
+  std::optional<std::string> found_;
+};
 
 // One request, taken apart. The error is set if it is none.
 struct Request {
@@ -82,7 +133,7 @@ Request read_request(json value) {
   if (method == value.end() || !method->is_string()) return invalid(id, "method is no string");
   for (const auto& [key, unused] : value.items()) {
     if (key != "jsonrpc" && key != "id" && key != "method" && key != "params") {
-      return invalid(id, "unknown member \"" + key + "\"");
+      return invalid(id, "unknown member \"" + shortened(key, kMaxQuoted) + "\"");
     }
   }
   Request request;
@@ -101,8 +152,9 @@ void run(const Methods& methods, const Request& request, Respond respond) {
   if (request.error) return respond(*request.error);
   const Methods::AsyncHandler* handler = methods.find(request.method);
   if (handler == nullptr) {
-    return respond(RpcError{rpc_code::kMethodNotFound,
-                            "no method \"" + request.method + "\"; there is: " + methods.names()});
+    return respond(RpcError{rpc_code::kMethodNotFound, "no method \"" +
+                                                           shortened(request.method, kMaxQuoted) +
+                                                           "\"; there is: " + methods.names()});
   }
   std::string failure = "unknown exception";
   try {
@@ -168,7 +220,8 @@ void Methods::add(const std::string& name, Handler handler) {
 void Methods::add_snapshot(const std::string& name, std::function<json()> snapshot) {
   add(name, [name, snapshot = std::move(snapshot)](const json& params) -> RpcResult {
     if (!params.empty()) {
-      return RpcError{rpc_code::kInvalidParams, name + ": takes no params, got " + dump(params)};
+      return RpcError{rpc_code::kInvalidParams,
+                      name + ": takes no params, got " + shortened(dump(params), kMaxQuoted)};
     }
     return snapshot();
   });
@@ -197,8 +250,13 @@ void handle_line(const Methods& methods, const RpcLimits& limits, std::string_vi
     value = json::parse(line);
   } catch (const json::exception& e) {
     return send(
-        error_line({rpc_code::kParseError, std::string("not JSON: ") + e.what() +
+        error_line({rpc_code::kParseError, "not JSON: " + shortened(e.what(), kMaxQuoted) +
                                                "; expected one JSON object or array per line"}));
+  }
+  if (const auto twice = DuplicateKey::in(line)) {
+    return send(error_line(
+        {rpc_code::kInvalidRequest, "invalid request: \"" + shortened(*twice, kMaxQuoted) +
+                                        "\" stands twice in one object; leave one of them out"}));
   }
   std::vector<Request> requests;
   const bool batch = value.is_array();

@@ -15,7 +15,8 @@ Session::Session(Socket socket, Limits limits, OnLine on_line, OnEnd on_end)
     : socket_(std::move(socket)),
       limits_(limits),
       on_line_(std::move(on_line)),
-      on_end_(std::move(on_end)) {}
+      on_end_(std::move(on_end)),
+      line_timer_(socket_.get_executor()) {}
 
 void Session::read() {
   socket_.async_read_some(boost::asio::buffer(chunk_), [self = shared_from_this()](
@@ -56,11 +57,36 @@ void Session::take_lines(std::size_t searched) {
                                                     " bytes; the connection is closed"}));
     return close();
   }
+  const bool another = begin > 0 || searched == 0;  // than the one that the timer runs for
   input_.erase(0, begin);
+  if (another) watch_unfinished_line();
+}
+
+// Silence between lines is welcome for ever; half a line is not, for it holds one of few places.
+void Session::watch_unfinished_line() {
+  line_timer_.cancel();
+  if (input_.empty()) return;
+  line_timer_.expires_after(limits_.max_line_time);
+  line_timer_.async_wait([weak = weak_from_this()](error_code error) {
+    const auto self = weak.lock();
+    // A timer that expired just before it was set anew comes here too.
+    if (error || !self || !self->reading_ || self->input_.empty() ||
+        self->line_timer_.expiry() > std::chrono::steady_clock::now()) {
+      return;
+    }
+    self->send(error_line(
+        {rpc_code::kInvalidRequest,
+         "invalid request: no newline within " +
+             std::to_string(self->limits_.max_line_time.count()) +
+             " ms of the first byte of a line; end each request with a newline; the connection is "
+             "closed"}));
+    self->close();
+  });
 }
 
 void Session::end_reading() {
   if (!std::exchange(reading_, false)) return;
+  line_timer_.cancel();
   input_.clear();
   on_end_(shared_from_this());
 }

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <boost/asio/local/stream_protocol.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <cstddef>
 #include <deque>
 #include <functional>
@@ -19,8 +21,9 @@ class Session : public std::enable_shared_from_this<Session> {
  public:
   using Socket = boost::asio::local::stream_protocol::socket;
   struct Limits {
-    std::size_t max_line = 0;    // bytes without the newline
-    std::size_t max_output = 0;  // bytes that the client has not read yet
+    std::size_t max_line = 0;                    // bytes without the newline
+    std::size_t max_output = 0;                  // bytes that the client has not read yet
+    std::chrono::milliseconds max_line_time{0};  // from the first byte of a line to its newline
   };
   using OnLine = std::function<void(const std::shared_ptr<Session>&, std::string_view line)>;
   /// Nothing more will be read.
@@ -37,6 +40,7 @@ class Session : public std::enable_shared_from_this<Session> {
  private:
   void read();
   void take_lines(std::size_t searched);
+  void watch_unfinished_line();
   void end_reading();
   void write();
   void drop();
@@ -46,7 +50,8 @@ class Session : public std::enable_shared_from_this<Session> {
   OnLine on_line_;
   OnEnd on_end_;
   std::array<char, 16384> chunk_;
-  std::string input_;
+  std::string input_;  // the line that is not finished yet
+  boost::asio::steady_timer line_timer_;
   std::deque<std::string> output_;
   std::size_t output_bytes_ = 0;
   bool reading_ = true;

@@ -54,7 +54,7 @@ bool export_csv(const LogReader& log, const CsvOptions& options, std::ostream& o
   }
   if (chosen.empty()) {
     *error = log.path() + ": no signal matches '" + options.signals +
-             "'; `log info` lists what there is";
+             "'; `gaitctl log info --signals` lists what there is";
     return false;
   }
   const CsvOptions all;

@@ -67,6 +67,23 @@ std::string format(const char* pattern, Arguments... arguments) {
   return text;
 }
 
+// Every change of a parameter, however many events there are.
+void append_parameters(const LogReader& log, std::string* text) {
+  std::string lines;
+  for (const Event& event : log.events()) {
+    if (event.kind != event_kind_name(EventKind::kParameter)) continue;
+    const Json change = Json::parse(event.text, nullptr, false);
+    if (!change.is_object()) continue;
+    const auto member = [&](const char* key) {
+      const Json value = change.value(key, Json());
+      return value.is_string() ? value.get<std::string>() : value.dump();
+    };
+    lines += format("  %10.3f s  tick %-8lld ", event.time, static_cast<long long>(event.tick)) +
+             shorten(member("name")) + "  " + member("old") + " -> " + member("new") + "\n";
+  }
+  if (!lines.empty()) *text += "parameters changed\n" + lines;
+}
+
 void append_metadata(const char* title, const LogMetadata& metadata, std::string* text) {
   if (metadata.empty()) return;
   *text += title;
@@ -133,6 +150,7 @@ std::string log_info_text(const LogReader& log) {
                  static_cast<unsigned long long>(log.event_dropouts()));
   append_metadata("metadata", log.metadata(), &text);
   append_metadata("metadata of the end", log.end_metadata(), &text);
+  append_parameters(log, &text);
   text += "events\n";
   for (const auto& [kind, count] : count_by_kind(log)) {
     text += format("  %-10s %zu\n", kind.c_str(), count);

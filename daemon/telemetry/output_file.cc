@@ -22,6 +22,8 @@ const char* advice(int code) {
     case ENOSPC:
     case EDQUOT:
       return "; free some space";
+    case EFBIG:
+      return "; raise the limit on the size of files (ulimit -f)";
     case EISDIR:
       return "; name a file, not a directory";
     default:

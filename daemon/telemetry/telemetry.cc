@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "daemon/telemetry/recent_maximum.h"
 #include "daemon/telemetry/ring.h"
 
 namespace gaitd::daemon {
@@ -50,6 +51,9 @@ struct Telemetry::Impl {
         event_slots(event_ring.capacity()),
         newest(table.size()),
         log(table) {
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      if (table[i].name.starts_with("tick/")) recent.push_back({i, {}});
+    }
     for (std::size_t i = 0; i < slots.size(); ++i) {
       slots[i].values = std::span(values).subspan(i * table.size(), table.size());
       slots[i].sensors = &sensors[i];
@@ -81,8 +85,14 @@ struct Telemetry::Impl {
   mutable std::mutex newest_mutex;
   std::vector<double> newest;
   bool has_newest = false;
+  struct Recent {
+    std::size_t signal;
+    RecentMaximum maximum;
+  };
+  std::vector<Recent> recent;
+  std::atomic<std::int64_t> newest_tick{-1};
   mutable std::mutex log_mutex;
-  LogWriter log;
+  RotatingLog log;
   std::mutex pending_mutex;
   std::vector<Event> pending;
 
@@ -97,7 +107,8 @@ void Telemetry::Impl::run() {
     if (Clock::now() - last_flush >= kFlushPeriod) {
       report_dropouts();
       const std::scoped_lock lock(log_mutex);
-      log.flush();
+      log.writer().flush();
+      log.rotate_if_full();
       last_flush = Clock::now();
     }
     if (!busy) std::this_thread::sleep_for(std::chrono::duration<double>(options.poll_period));
@@ -126,7 +137,7 @@ void Telemetry::Impl::drain_events() {
                      .truncated = slot.truncated});
   }
   const std::scoped_lock lock(log_mutex);
-  for (const Event& event : batch) log.write_event(event);
+  for (const Event& event : batch) log.writer().write_event(event);
 }
 
 bool Telemetry::Impl::drain_ticks() {
@@ -135,12 +146,14 @@ bool Telemetry::Impl::drain_ticks() {
   // One round of the ring at most, so that events and status queries get their turn.
   for (std::size_t i = 0; i < tick_ring.capacity() && !tick_ring.empty(); ++i) {
     const TickSlot& slot = slots[tick_ring.read_slot()];
-    log.write_tick(slot.tick, slot.time, slot.values, slot.sensors);
     {
       const std::scoped_lock newest_lock(newest_mutex);
       std::copy(slot.values.begin(), slot.values.end(), newest.begin());
+      for (Recent& one : recent) one.maximum.add(slot.time, slot.values[one.signal]);
       has_newest = true;
     }
+    newest_tick.store(slot.tick, std::memory_order_release);
+    log.writer().write_tick(slot.tick, slot.time, slot.values, slot.sensors);
     tick_ring.release();
   }
   return true;
@@ -158,9 +171,9 @@ Telemetry::Telemetry(SignalTable table, const TelemetryOptions& options)
 Telemetry::~Telemetry() { close(); }
 
 bool Telemetry::open_log(const std::string& path, const LogMetadata& metadata,
-                         const McapOptions& options, std::string* error) {
+                         const McapOptions& options, std::string* error, const LogLimits& limits) {
   const std::scoped_lock lock(impl_->log_mutex);
-  return impl_->log.open(path, metadata, options, error);
+  return impl_->log.open(path, metadata, options, limits, error);
 }
 
 void Telemetry::start() {
@@ -221,6 +234,18 @@ bool Telemetry::latest(std::vector<double>& values) const {
   return impl_->has_newest;
 }
 
+std::int64_t Telemetry::newest_tick() const noexcept {
+  return impl_->newest_tick.load(std::memory_order_acquire);
+}
+
+std::vector<double> Telemetry::recent_maxima() const {
+  std::vector<double> maxima(impl_->table.size(), std::nan(""));
+  const std::scoped_lock lock(impl_->newest_mutex);
+  if (!impl_->has_newest) return maxima;
+  for (const Impl::Recent& one : impl_->recent) maxima[one.signal] = one.maximum.value();
+  return maxima;
+}
+
 const SignalTable& Telemetry::table() const { return impl_->table; }
 
 std::uint64_t Telemetry::dropouts() const noexcept {
@@ -233,8 +258,9 @@ std::uint64_t Telemetry::event_dropouts() const noexcept {
 
 Telemetry::LogStatus Telemetry::log_status() const {
   const std::scoped_lock lock(impl_->log_mutex);
-  const LogWriter& log = impl_->log;
-  return {log.is_open(), log.error(), log.ticks_written(), log.bytes_written()};
+  const RotatingLog& log = impl_->log;
+  return {log.file(),  log.part(),          log.writer().is_open(),
+          log.error(), log.ticks_written(), log.bytes_written()};
 }
 
 bool Telemetry::close(const LogMetadata& metadata, std::string* error) {

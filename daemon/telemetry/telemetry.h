@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "daemon/telemetry/event.h"
-#include "daemon/telemetry/log_writer.h"
+#include "daemon/telemetry/log_rotation.h"
 #include "daemon/telemetry/signal.h"
 #include "gaitd/abi/types.h"
 
@@ -45,7 +45,7 @@ class Telemetry {
 
   // [main] Opens the log, before start(). False with `error`: what, where and what to do.
   bool open_log(const std::string& path, const LogMetadata& metadata, const McapOptions& options,
-                std::string* error);
+                std::string* error, const LogLimits& limits = {});
 
   // [main] Starts the thread, of ordinary priority.
   void start();
@@ -69,15 +69,25 @@ class Telemetry {
   // [any thread but rt] The newest tick that the thread has seen. False before the first one.
   bool latest(std::vector<double>& values) const;
 
+  // [any thread but rt] Number of the newest tick that latest() gives, or a later one; -1 before
+  // the first. Ticks count on when a simulation is reset.
+  std::int64_t newest_tick() const noexcept;
+
+  // [any thread but rt] In table order the largest values within the last one to two seconds of
+  // the signals below "tick/"; NaN for the others and before the first tick.
+  std::vector<double> recent_maxima() const;
+
   const SignalTable& table() const;
   std::uint64_t dropouts() const noexcept;  // ticks
   std::uint64_t event_dropouts() const noexcept;
 
   // [any thread but rt] Of the log; `error` is empty while it is being written.
   struct LogStatus {
+    std::string file;  // that is being written; the last one
+    int part = 0;      // its number, from 1; 0: there is no log
     bool open = false;
-    std::string error;  // first one; the log is not written any more, the robot walks on
-    std::uint64_t ticks = 0;
+    std::string error;        // first one; the log is not written any more, the robot walks on
+    std::uint64_t ticks = 0;  // over all files
     std::uint64_t bytes = 0;
   };
   LogStatus log_status() const;

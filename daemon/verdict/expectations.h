@@ -58,6 +58,7 @@ struct Expectations {
   std::optional<double> torque_chatter_max;     // RMS change of torque per tick / effort limit
   std::optional<bool> contact_lost;             // false: no foot may lose contact while standing
   std::optional<PelvisDrift> pelvis_drift_max;
+  int refused_commands = 0;  // exactly; always checked
   std::vector<SignalCheck> checks;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "daemon/telemetry/glob.h"
@@ -176,6 +177,23 @@ void Judge::judge_check(const SignalCheck& check) {
   add(name, worst, unit, bound, worst_excess <= 0.0, note);
 }
 
+// Of the events of the log.
+std::vector<std::string> read_refusals(const LogReader& log) {
+  std::vector<std::string> refusals;
+  for (const Event& event : log.events()) {
+    if (event.kind != event_kind_name(EventKind::kCommand)) continue;
+    const nlohmann::json command = nlohmann::json::parse(event.text, nullptr, false);
+    if (!command.is_object() || command.value("accepted", nlohmann::json()) != false) continue;
+    const auto text = [&](const char* key) {
+      const nlohmann::json value = command.value(key, nlohmann::json());
+      return value.is_string() ? value.get<std::string>() : std::string("?");
+    };
+    refusals.push_back(number_text(event.time, "s") + ": " + text("command") + ": " +
+                       text("reason"));
+  }
+  return refusals;
+}
+
 }  // namespace
 
 double Verdict::figure(const std::string& name) const {
@@ -191,6 +209,16 @@ Verdict compute_verdict(const LogReader& log, const Expectations& expectations) 
   judge.judge(expectations);
   Verdict verdict;
   verdict.judgements = judge.take();
+  verdict.refusals = read_refusals(log);
+  const auto refused = static_cast<int>(verdict.refusals.size());
+  if (refused != 0 || expectations.refused_commands != 0) {
+    verdict.judgements.push_back({.name = "refused_commands",
+                                  .figure = std::to_string(refused),
+                                  .value = static_cast<double>(refused),
+                                  .bound = std::to_string(expectations.refused_commands),
+                                  .pass = refused == expectations.refused_commands,
+                                  .note = ""});
+  }
   verdict.figures = summarise(log, run, figures);
   verdict.pass = std::all_of(verdict.judgements.begin(), verdict.judgements.end(),
                              [](const Judgement& judgement) { return judgement.pass; });

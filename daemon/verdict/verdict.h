@@ -35,7 +35,8 @@ struct Figure {
 };
 
 struct Verdict {
-  bool pass = false;  // every expectation holds
+  bool pass = false;                  // every expectation holds
+  std::vector<std::string> refusals;  // commands that gaitd refused: when, which and why
   std::vector<Judgement> judgements;
   std::vector<Figure> figures;
 

@@ -3,12 +3,9 @@
 #include "gaitd/dynamics/urdf.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "gaitd/dynamics/model_check.h"
 #include "urdf_elements.h"
@@ -131,9 +128,13 @@ class TreeBuilder {
     if (roots.empty() && !links_.empty()) report_loops("");
     if (roots.size() > 1 && !unresolved_) {
       std::string names;
-      for (const std::string& root : roots) names += (names.empty() ? "" : ", ") + quoted(root);
-      xml_.add_error(0, "has " + std::to_string(roots.size()) + " roots (" + names +
-                            "), expected one; connect them with joints or remove the rest");
+      int line = 0;  // of the last one in the file: the first is the robot most of the time
+      for (const std::string& root : roots) {
+        names += (names.empty() ? "" : ", ") + quoted(root);
+        line = std::max(line, links_[root]->line);
+      }
+      xml_.add_error(line, "has " + std::to_string(roots.size()) + " roots (" + names +
+                               "), expected one; connect them with joints or remove the rest");
     }
     return {};
   }
@@ -249,9 +250,10 @@ class TreeBuilder {
     GaitdModel& model = result_.model;
     const int joints = static_cast<int>(merged_.size()) - 1;
     if (joints > GAITD_MAX_JOINTS) {
-      xml_.add_error(0, "has " + std::to_string(joints) + " moving joints, expected " +
-                            std::to_string(GAITD_MAX_JOINTS) +
-                            " at most; make some of them fixed (fingers, for example)");
+      xml_.add_error(body_lines_[GAITD_MAX_BODIES],
+                     "has " + std::to_string(joints) + " moving joints, expected " +
+                         std::to_string(GAITD_MAX_JOINTS) +
+                         " at most; make some of them fixed (fingers, for example)");
       return;
     }
     model.joint_count = joints;
@@ -316,21 +318,6 @@ UrdfResult load_urdf_text(const std::string& text, const std::string& source,
     for (const std::string& error : check_model(result.model)) xml.add_error(0, error);
   }
   return result;
-}
-
-UrdfResult load_urdf(const std::string& path, const UrdfOptions& options) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  if (file) text << file.rdbuf();
-  if (!file || !text) {
-    UrdfResult result;
-    const int code = errno;
-    result.errors.push_back(path + ": cannot be read (" +
-                            (code == 0 ? "not a file" : std::strerror(code)) +
-                            "), expected a URDF file; give its path");
-    return result;
-  }
-  return load_urdf_text(text.str(), path, options);
 }
 
 }  // namespace gaitd::dynamics

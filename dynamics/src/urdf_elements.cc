@@ -24,6 +24,11 @@ class ElementReader {
   explicit ElementReader(XmlReader* xml) : xml_(*xml) {}
 
   UrdfElements read(const std::string& text) {
+    if (const int line = line_nested_too_deep(text); line > 0) {
+      xml_.add_error(line, "elements nested more than " + std::to_string(kMaxXmlNesting) +
+                               " deep; is this a URDF file?");
+      return {};
+    }
     TiXmlDocument document;
     document.Parse(text.c_str());
     const TiXmlElement* robot = document.RootElement();

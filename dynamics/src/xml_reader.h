@@ -13,6 +13,13 @@ namespace gaitd::dynamics {
 std::string quoted(const std::string& name);  // 'name'
 std::string to_text(double value);            // short
 
+// TinyXML calls itself for each level, so that a deep file would end the process.
+inline constexpr int kMaxXmlNesting = 100;
+
+// The line where elements are nested deeper than that, 0 if they nowhere are. To be asked before
+// TinyXML parses the text; where it reads on, it takes the text apart in the same way.
+int line_nested_too_deep(const std::string& text);
+
 // Collects errors.
 class XmlReader {
  public:

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -52,7 +54,56 @@ void expect_link_error(const std::string& inside, const std::vector<std::string>
 TEST(UrdfErrors, NoFile) {
   expect_one(load_urdf("/no/such/robot.urdf").errors,
              "/no/such/robot.urdf: ", {"cannot be read", "No such file", "give its path"});
-  expect_one(load_urdf("/").errors, "/: ", {"cannot be read"});
+  expect_one(load_urdf("/").errors, "/: ", {"cannot be read", "not a file"});
+  expect_one(load_urdf("/dev/zero").errors, "/dev/zero: ", {"cannot be read", "not a file"});
+}
+
+TEST(UrdfErrors, FileTooLarge) {
+  const std::string file = testing::TempDir() + "gaitd_large.urdf";
+  std::ofstream(file) << "<robot name='r'>";
+  std::filesystem::resize_file(file, (16u << 20) + 1);  // a hole: nothing is written
+  expect_one(load_urdf(file).errors, file + ": ", {"has 16777217 bytes, 16777216 at most"});
+  std::filesystem::remove(file);
+}
+
+// TinyXML calls itself for each level and overflows its stack at some 40,000.
+TEST(UrdfErrors, NestedTooDeep) {
+  const auto nested = [](int depth, const std::string& open, const std::string& close) {
+    std::string inside = link("a");
+    for (int i = 0; i < depth; ++i) inside += open;
+    for (int i = 0; i < depth; ++i) inside += close;
+    return inside;
+  };
+  EXPECT_TRUE(errors_of(nested(99, "<x>", "</x>")).empty());
+  EXPECT_TRUE(errors_of(nested(1000, "<x y='>'/>", "")).empty());
+  EXPECT_TRUE(errors_of(nested(1000, "<!-- <x> -->", "")).empty());
+  EXPECT_TRUE(errors_of(nested(1000, "<gazebo><![CDATA[<x>]]></gazebo>", "")).empty());
+  expect_one(errors_of(nested(200000, "<x>", "")), "bad.urdf:3: ", {"more than 100 deep"});
+  expect_one(errors_of(nested(1000, "<x y='/>'>\n", "")), "bad.urdf:102: ", {"more than 100 deep"});
+  expect_one(errors_of(nested(1000, "<x y=\"</x>\">", "")), "bad.urdf:3: ", {"100 deep"});
+  expect_one(errors_of(nested(1000, "<!x><x>", "")), "bad.urdf:3: ", {"100 deep"});
+}
+
+TEST(UrdfErrors, EntitiesAreNotExpanded) {
+  std::string head = "<?xml version='1.0'?>\n<!DOCTYPE robot [\n<!ENTITY a 'aaaaaaaaaa'>\n";
+  for (char c = 'b'; c <= 'z'; ++c) {
+    const std::string before = std::string("&") + static_cast<char>(c - 1) + ";";
+    head += std::string("<!ENTITY ") + c + " '";
+    for (int i = 0; i < 10; ++i) head += before;
+    head += "'>\n";
+  }
+  const UrdfResult bomb =
+      load_urdf_text(head + "]>\n<robot name='r'>" + link("&z;") + "</robot>", "bad.urdf");
+  ASSERT_FALSE(bomb.links.empty() && bomb.errors.empty());
+  for (const UrdfLink& link : bomb.links) EXPECT_LT(link.name.size(), 10u);
+}
+
+// Visuals are nothing that the dynamics need.
+TEST(UrdfErrors, MissingMeshesAreNoError) {
+  const std::string mesh =
+      "<visual><geometry><mesh filename='package://no/such.dae'/></geometry></visual>"
+      "<collision><geometry><mesh filename='/no/such.stl' scale='x'/></geometry></collision>";
+  EXPECT_TRUE(errors_of(link("a", std::string(kInertial) + mesh)).empty());
 }
 
 TEST(UrdfErrors, NotAUrdf) {
@@ -112,7 +163,7 @@ TEST(UrdfErrors, Loops) {
 
 TEST(UrdfErrors, SeveralRoots) {
   expect_one(errors_of(link("a") + link("b") + link("c") + joint("j", "a", "b")),
-             "bad.urdf: ", {"2 roots ('a', 'c')", "expected one"});
+             "bad.urdf:4: ", {"2 roots ('a', 'c')", "expected one"});
 }
 
 TEST(UrdfErrors, TooManyJoints) {
@@ -124,7 +175,7 @@ TEST(UrdfErrors, TooManyJoints) {
   }
   EXPECT_TRUE(errors_of(inside).empty());
   expect_one(errors_of(inside + link("more") + joint("j", "l0", "more")),
-             "bad.urdf: ", {"65 moving joints", "64 at most", "fixed"});
+             "bad.urdf:129: ", {"65 moving joints", "64 at most", "fixed"});
 }
 
 TEST(UrdfErrors, Names) {
@@ -159,6 +210,12 @@ TEST(UrdfErrors, Limits) {
   expect_joint_error("<limit lower='-1' upper='1' effort='0' velocity='1'/>", "prismatic",
                      {"effort limit is 0", "above 0"});
   expect_joint_error("<limit effort='1' velocity='1'/>", "revolute", {"lower < upper"});
+  expect_joint_error("<limit lower='1' upper='-1' effort='1' velocity='1'/>", "revolute",
+                     {"lower 1, upper -1", "lower < upper"});
+  expect_joint_error("<limit lower='-inf' upper='1' effort='1' velocity='1'/>", "revolute",
+                     {"'j'", "<limit>", "-inf"});
+  expect_joint_error("<limit lower='-1' upper='1' effort='nan' velocity='1'/>", "revolute",
+                     {"'j'", "<limit>", "nan"});
   expect_joint_error("<limit lower='x' upper='1' effort='1' velocity='1'/>", "revolute",
                      {"'j'", "<limit>", "lower value (x)"});
 }

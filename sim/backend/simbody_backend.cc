@@ -164,7 +164,9 @@ __attribute__((used)) const GaitdPluginDescriptor gaitd_plugin = {
 
 __attribute__((visibility("default"))) GaitdStatus gaitd_create_backend(
     const GaitdHost* host, GaitdBackendInstance* instance) {
-  if (instance == nullptr) return GAITD_INVALID_ARGUMENT;
+  if (host == nullptr || instance == nullptr || host->abi_major != GAITD_ABI_MAJOR) {
+    return GAITD_INVALID_ARGUMENT;
+  }
   try {
     auto backend = std::make_unique<Backend>();
     backend->host = host;

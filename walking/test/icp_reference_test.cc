@@ -68,6 +68,19 @@ TEST(IcpReference, IsSmoothWhileNothingHappens) {
   EXPECT_LT(w.worst, 1e-5);
 }
 
+TEST(IcpReference, StaysWhereItIsWhenParametersMoveThePlan) {
+  for (const double fraction : {0.1, 0.5, 0.9}) {
+    WatchedWalk w;
+    walk_on(w);
+    ASSERT_TRUE(w.run_until_fraction(3, fraction));
+    w.offsets.exit_x = 0.1;
+    w.offsets.entry_y = 0.3;
+    w.machine.plan_anew();
+    finish(w);
+    EXPECT_GT(w.largest_offset, 5e-3);
+  }
+}
+
 TEST(IcpReference, StartsWhereTheRobotRestsAndReachesTheMiddleOfTheFeetByWalking) {
   SyntheticWalk w;
   w.robot.com[0] += 0.03;

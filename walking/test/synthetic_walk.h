@@ -21,7 +21,7 @@ class SyntheticWalk {
       : dt(period), machine(atlas()), robot(standing_state(atlas())), reference_(atlas()) {
     machine.reset(robot);
     planner = [this](const GaitdRobotState& r, const GaitdGaitState& g, GaitdIcpPlan& p) {
-      reference_.update(dt, r, g, {}, 4.0, 0.08, p);
+      reference_.update(dt, r, g, offsets, 4.0, 0.08, p);
     };
   }
 
@@ -73,6 +73,7 @@ class SyntheticWalk {
   GaitdToeOff toe_off{};
   GaitdStepAdjustment adjustment{};
   Planner planner;
+  walking::CmpOffsets offsets;  // of the planner
   std::function<void()> on_update;  // after the machine, before the planner
   double landing_delay = 0.0;       // s after the planned end of the swing; negative: early
   double ground_error = 0.0;        // m, of the ground under the swing foot

@@ -4,6 +4,7 @@
 #include "daemon/config/daemon_config.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/test/temporary_folder.h"
+#include "daemon/parameters/safety_parameters.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -15,8 +16,12 @@ TEST(DaemonConfig, TheShippedFileSaysWhatTheDefaultsAre) {
   ASSERT_TRUE(file);
   ASSERT_TRUE(load_config_file(file->string(), &settings, &issues)) << issues.error_text();
   const DaemonConfig config = read_daemon_config(&settings, &issues);
+  const std::vector<double> limits = settings.resolve("limits", kLimitParameters, &issues);
   settings.report_unknown(&issues);
   EXPECT_TRUE(issues.ok()) << issues.error_text();
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    EXPECT_EQ(limits[i], kLimitParameters[i].default_value) << kLimitParameters[i].name;
+  }
 
   const DaemonConfig defaults;
   EXPECT_EQ(config.backend, defaults.backend);
@@ -31,9 +36,6 @@ TEST(DaemonConfig, TheShippedFileSaysWhatTheDefaultsAre) {
   EXPECT_EQ(config.realtime.require, defaults.realtime.require);
   EXPECT_EQ(config.realtime.overrun, defaults.realtime.overrun);
   EXPECT_EQ(config.realtime.overrun_run, defaults.realtime.overrun_run);
-  EXPECT_EQ(config.limits.torque_ratio, defaults.limits.torque_ratio);
-  EXPECT_EQ(config.limits.velocity_ratio, defaults.limits.velocity_ratio);
-  EXPECT_EQ(config.limits.position_margin, defaults.limits.position_margin);
   EXPECT_EQ(config.log.enabled, defaults.log.enabled);
   EXPECT_EQ(config.log.compression, defaults.log.compression);
   EXPECT_EQ(config.socket, defaults.socket);

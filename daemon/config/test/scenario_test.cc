@@ -196,15 +196,97 @@ TEST(Scenario, RefusesContradictions) {
               "commands[0].wlak: unknown key; did you mean 'walk'?");
 }
 
-TEST(Scenario, WarnsOfADisturbanceInAStepThatIsNeverCommanded) {
-  Issues issues;
-  Settings settings;
-  EXPECT_TRUE(
-      read(kHead + "commands: [{at: 1, walk: {steps: 2}}]\n"
-                   "disturbances: [{link: a, force: [1, 0, 0], duration: 1, when: {step: 4}}]\n",
-           &issues, &settings));
-  EXPECT_TRUE(issues.ok());
-  EXPECT_PART(issues.warning_text(), "step 4 of 3 that are commanded");
+const std::string kWalking = kHead + "mode: walk-bent\n";
+
+TEST(Scenario, RefusesADisturbanceInAStepThatIsNeverCommanded) {
+  const std::string walk = kWalking + "commands: [{at: 1, walk: {steps: 2}}]\n";
+  const std::string push = "disturbances: [{link: a, force: [1, 0, 0], duration: 1, when: {step: ";
+  EXPECT_EQ(errors_of(walk + push + "3}}]\n"), "");
+  EXPECT_PART(errors_of(walk + push + "4}}]\n"),
+              "test.yaml:7: disturbances[0].when.step: expected at most the last step that is "
+              "commanded, 3, got 4");
+}
+
+TEST(Scenario, RefusesExpectationsThatNothingCanFulfil) {
+  EXPECT_PART(
+      errors_of(kHead + "expect: {steps_taken: 2}\n"),
+      "test.yaml:5: expect.steps_taken: expected at most the steps that are commanded, 0 by "
+      "the commands, got 2; add a walk to 'commands'");
+  EXPECT_EQ(errors_of(kHead + "expect: {steps_taken: 0}\n"), "");
+  const std::string walk = kWalking + "commands: [{at: 1, walk: {steps: 2}}]\n";
+  EXPECT_EQ(errors_of(walk + "expect: {steps_taken: 2, toe_off_steps_min: 2}\n"), "");
+  EXPECT_PART(errors_of(walk + "expect: {steps_taken: 3, toe_off_steps_min: 4}\n"),
+              "expect.toe_off_steps_min: expected at most the steps that are commanded, 2");
+  EXPECT_PART(errors_of(kHead + "expect: {stance_knee_mean_max: 0.3}\n"),
+              "expected a walk, as it is taken over single support");
+  EXPECT_PART(
+      errors_of(kHead + "expect: {checks: [{signal: a, stat: max, during: swing, max: 1}]}\n"),
+      "expect.checks: expected a walk, as 'a' is checked while walking, got none");
+  EXPECT_PART(errors_of(kHead + "expect: {pelvis_drift_max: {start: 10, max: 1}}\n"),
+              "expected a start before the end of the scenario, got 10 s");
+}
+
+TEST(Scenario, RefusesWalkingInModeStand) {
+  const std::string walk = "commands: [{at: 1, walk: {steps: 2}}]\n";
+  EXPECT_PART(errors_of(kHead + walk),
+              "test.yaml:5: commands: walk at 1 s will be refused: the gait mode is stand; write "
+              "mode: walk-bent");
+  EXPECT_PART(errors_of(kWalking + "commands: [{at: 1, mode: stand}, {at: 2, footsteps: [{side: "
+                                   "left, x: 0, y: 0.1}]}]\n"),
+              "footsteps at 2 s will be refused: the gait mode is stand");
+  EXPECT_EQ(errors_of(kHead + "commands: [{at: 2, walk: {steps: 2}}, {at: 1, mode: walk-bent}]\n"),
+            "");
+}
+
+TEST(Scenario, RefusesWalkingWhileNotArmed) {
+  const auto with = [](const std::string& before) {
+    return errors_of(kWalking + "commands:\n" + before + "  - {at: 4, walk: {steps: 2}}\n");
+  };
+  EXPECT_PART(with("  - {at: 1, disarm: true}\n"),
+              "test.yaml:8: commands: walk at 4 s will be refused: the robot is not armed since "
+              "'disarm' at 1 s; add arm before it");
+  EXPECT_PART(with("  - {at: 1, estop: true}\n"), "add reset and arm before it");
+  EXPECT_PART(with("  - {at: 1, estop: true}\n  - {at: 1.1, reset: true}\n"),
+              "not armed since 'reset'");
+  EXPECT_PART(with("  - {at: 1, estop: true}\n  - {at: 1.1, arm: true}\n"),
+              "arm at 1.1 s will be refused: a fault is latched by 'estop'; add a reset");
+  EXPECT_EQ(with("  - {at: 1, estop: true}\n  - {at: 1.1, reset: true}\n  - {at: 2, arm: true}\n"),
+            "");
+  EXPECT_EQ(with("  - {at: 1, disarm: true}\n  - {at: 2, arm: true}\n"), "");
+  EXPECT_EQ(with("  - {at: 1, estop: true}\n  - {at: 2, sim.reset: true}\n"), "");
+}
+
+TEST(Scenario, RefusesFeetThatDoNotAlternate) {
+  const auto of = [](const std::string& commands) {
+    return errors_of(kWalking + "commands:\n" + commands);
+  };
+  // Right, left and the closing right: the second walk cannot begin right.
+  const std::string walk = "  - {at: 1, walk: {steps: 2, first: right}}\n";
+  EXPECT_PART(of(walk + "  - {at: 1, walk: {steps: 2, first: right}}\n"),
+              "test.yaml:8: commands: walk at 1 s will be refused: it begins right, as the "
+              "footsteps ahead of line 7 end");
+  EXPECT_EQ(of(walk + "  - {at: 1, walk: {steps: 2, first: left}}\n"), "");
+  EXPECT_EQ(of(walk + "  - {at: 6, walk: {steps: 2, first: right}}\n"), "");
+  EXPECT_EQ(
+      of(walk + "  - {at: 1.1, abort: true}\n  - {at: 1.2, walk: {steps: 2, first: right}}\n"), "");
+  EXPECT_PART(
+      of("  - {at: 1, footsteps: [{side: left, x: 0, y: 0.1}, {side: right, x: 0, y: -0.1}, "
+         "{side: right, x: 0.1, y: -0.1}]}\n"),
+      "footsteps 2 and 3 are both right; let the sides alternate");
+}
+
+TEST(Scenario, RefusesReversedOutlinesAndRegionsBesideTheFoothold) {
+  const auto of = [](const std::string& more) {
+    return errors_of(kWalking + "commands: [{at: 1, footsteps: [{side: left, x: 0.3, y: 0.1, " +
+                     more + "}]}]\n");
+  };
+  EXPECT_PART(of("contact_polygon: [[0.1, 0.05], [0.1, -0.05], [0, -0.05], [0, 0.05]]"),
+              "commands[0].footsteps.footsteps[0].contact_polygon: expected a convex outline, "
+              "counter-clockwise from above, got points in clockwise order; reverse the list");
+  EXPECT_PART(of("landing_region: [[0, 0, 0], [1, 1, 0], [1, 0, 0]]"), "clockwise order");
+  EXPECT_PART(of("landing_region: [[1, 0, 0], [2, 0, 0], [2, 1, 0]]"),
+              "expected a region around the foothold itself, got one beside it");
+  EXPECT_EQ(of("landing_region: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]"), "");
 }
 
 TEST(Scenario, TheCommandLineReplacesKeysOfTheScenario) {
@@ -282,6 +364,36 @@ TEST(Scenario, LinksAreCheckedAgainstTheRobot) {
   EXPECT_PART(issues.error_text(), "did you mean 'utorso'?");
   EXPECT_PART(issues.error_text(), "test.yaml:6: disturbances.link");
   EXPECT_PART(issues.error_text(), "did you mean 'head'?");
+}
+
+TEST(Scenario, TheRobotMustHaveRoomAtItsStart) {
+  Issues none;
+  Settings settings;
+  const auto robot = load_robot(Paths::detect().robot("atlas").value_or("").string(),
+                                Profile::kSimulation, &settings, &none);
+  ASSERT_TRUE(robot) << none.error_text();
+  const auto check = [&](const std::string& text, bool warning = false) {
+    Issues issues;
+    const auto scenario = read(kHead + text, &issues, &settings);
+    EXPECT_TRUE(scenario) << issues.error_text();
+    if (scenario) check_scenario(*scenario, robot->model, &issues);
+    return warning ? issues.warning_text() : issues.error_text();
+  };
+  const std::string box =
+      "terrain: {ground_z: 0, boxes: [{center: [1, 0, 0.1], size: [1, 1, 0.2]}]}\n";
+  EXPECT_EQ(check(box), "");
+  EXPECT_PART(check(box + "start: {x: 1}\n"),
+              "test.yaml:6: start: expected a place that is free, got (1, 0), inside "
+              "terrain.boxes[0]; move the start, the box, or start.z to the top of the box");
+  EXPECT_PART(check(box + "start: {x: 0.4}\n"), "inside terrain.boxes[0]");  // with its toes
+  EXPECT_EQ(check(box + "start: {x: 1, z: 0.2}\n", false), "");
+  EXPECT_EQ(check(box + "start: {x: 1, z: 0.2}\n", true), "");
+  const std::string beam =
+      "terrain: {ground_z: 0, boxes: [{center: [0, 0, 0.8], size: [1, 1, 0.1]}]}\n";
+  EXPECT_PART(check(beam), "inside terrain.boxes[0]");
+  EXPECT_PART(check("start: {z: -0.1}\n"), "expected a height on or above the ground, got -0.1 m");
+  EXPECT_EQ(check("start: {z: 0.3}\n"), "");
+  EXPECT_PART(check("start: {z: 0.3}\n", true), "the robot will drop");
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "daemon/config/test/temporary_folder.h"
+
 namespace gaitd::daemon {
 namespace {
 
@@ -186,6 +188,45 @@ TEST(YamlReader, RefusesLargeTextsSeveralDocumentsTagsAndOddKeys) {
   Issues empty;
   EXPECT_EQ(parse_yaml("# nothing\n", "x.yaml", &empty), nullptr);
   EXPECT_TRUE(contains(empty.error_text(), "a YAML document")) << empty.error_text();
+}
+
+TEST(YamlReader, RefusesWhatIsNoText) {
+  const std::string head = "schema: x\nname: ";
+  for (const std::string bytes :
+       {std::string("\0", 1), std::string("\4"), std::string("\x7f"), std::string("\xff\xfe"),
+        std::string("\xc0\x80"), std::string("\xed\xa0\x80"), std::string("\xe2\x82"),
+        std::string("\xf4\x90\x80\x80"), std::string("caf\xe9")}) {
+    Issues issues;
+    EXPECT_EQ(parse_yaml(head + bytes, "x.yaml", &issues), nullptr);
+    EXPECT_TRUE(contains(issues.error_text(), "x.yaml:2: expected text in UTF-8, got the byte 0x"))
+        << issues.error_text();
+  }
+  Issues issues;
+  EXPECT_EQ(
+      read("name: gr\xc3\xb6\xc3\x9f\xe2\x82\xac\xf0\x9f\xa4\x96\t\r\n", &issues).text("name"),
+      "gr\xc3\xb6\xc3\x9f\xe2\x82\xac\xf0\x9f\xa4\x96");
+  EXPECT_TRUE(issues.ok()) << issues.error_text();
+}
+
+TEST(YamlReader, RefusesTabsAsIndentation) {
+  Issues issues;
+  EXPECT_EQ(parse_yaml("a:\n\tb: 1\n", "x.yaml", &issues), nullptr);
+  EXPECT_TRUE(contains(issues.error_text(), "x.yaml:2: ")) << issues.error_text();
+}
+
+TEST(YamlReader, RefusesWhatIsNoFile) {
+  const TemporaryFolder folder;
+  Issues directory;
+  EXPECT_EQ(load_yaml_file(folder.path().string(), &directory), nullptr);
+  EXPECT_TRUE(contains(directory.error_text(), "expected a file, got something else"));
+  Issues device;
+  EXPECT_EQ(load_yaml_file("/dev/zero", &device), nullptr);
+  EXPECT_TRUE(contains(device.error_text(), "expected a file, got something else"));
+  const std::string large = folder.write("large.yaml", "a: 1\n");
+  std::filesystem::resize_file(large, kMaxFileSize + 1);
+  Issues size;
+  EXPECT_EQ(load_yaml_file(large, &size), nullptr);
+  EXPECT_TRUE(contains(size.error_text(), "expected at most 4194304 bytes, got 4194305"));
 }
 
 TEST(YamlReader, SaysThatAFileIsNotThere) {

@@ -97,6 +97,31 @@ TEST(CommandText, APushNamesItsForce) {
   EXPECT_EQ(json.at("duration"), 0.1);
 }
 
+TEST(CommandText, AChangeOfAParameterIsThereToTheLastBit) {
+  Command command;
+  command.type = CommandType::kSetParameter;
+  command.request = 5;
+  command.parameter_value = 1.0 / 3.0;
+  CommandReply reply = reply_of(nullptr);
+  reply.old_value = 0.1;
+  reply.new_value = 1.0 / 3.0;
+  char buffer[480];
+  const int before = testing::allocation_count();
+  std::string_view text =
+      parameter_text("gait.swing_height", command, reply, buffer, sizeof(buffer));
+  EXPECT_EQ(testing::allocation_count(), before);
+  EXPECT_EQ(nlohmann::json::parse(text),
+            (nlohmann::json{
+                {"name", "gait.swing_height"}, {"old", 0.1}, {"new", 1.0 / 3.0}, {"request", 5}}));
+  text = parameter_text("gait.omega", command, reply_of("it \"walks\""), buffer, sizeof(buffer));
+  EXPECT_EQ(nlohmann::json::parse(text), (nlohmann::json{{"command", "param.set"},
+                                                         {"request", 5},
+                                                         {"accepted", false},
+                                                         {"name", "gait.omega"},
+                                                         {"value", 1.0 / 3.0},
+                                                         {"reason", "it \"walks\""}}));
+}
+
 TEST(CommandText, ABufferThatIsTooSmallIsNotOverrun) {
   Command command;
   command.type = CommandType::kWalk;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "daemon/parameters/safety_parameters.h"
 #include "walking/test/atlas.h"
 
 namespace gaitd::daemon {
@@ -51,7 +52,7 @@ Scenario scenario(double duration = 10.0) {
 class Player {
  public:
   explicit Player(const Scenario& s)
-      : player(s, atlas(), &issues), data(std::make_unique<TickData>()) {
+      : player(s, atlas(), parameters, &issues), data(std::make_unique<TickData>()) {
     data->gait.phase = GAITD_PHASE_STAND;
     data->safety = SafetyState::kStanding;
   }
@@ -78,6 +79,7 @@ class Player {
     return ScenarioPlayer::End::kRunning;
   }
   Issues issues;
+  LiveParameters parameters;
   ScenarioPlayer player;
   std::unique_ptr<TickData> data;
 };
@@ -128,6 +130,29 @@ TEST(ScenarioPlayer, WhatIsWrongWithACommandIsReportedBeforeTheFirstTick) {
   EXPECT_EQ(p.issues.error_count(), 2u) << p.issues.error_text();
   EXPECT_NE(p.issues.error_text().find("tail"), std::string::npos);
   ASSERT_NE(p.player.next_command(1.0), nullptr);  // the good one stays
+}
+
+TEST(ScenarioPlayer, AParameterIsCheckedBeforeTheFirstTickAndSetAtItsTime) {
+  const Scenario none = scenario();
+  Player p(none);
+  p.parameters.add(kSafetyParameterOwner, "safety", "", kSafetyParameters,
+                   std::vector<double>(kSafetyParameters.size(), 1.0));
+  Scenario s = scenario();
+  s.commands = {command(2.0, "param.set", {{"name", "safety.tilt_limit"}, {"value", 0.5}}),
+                command(3.0, "param.set", {{"name", "safety.tilt_limit"}, {"value", 50}}),
+                command(4.0, "param.set", {{"name", "safety.tilt"}, {"value", 0.5}})};
+  Issues issues;
+  ScenarioPlayer player(s, atlas(), p.parameters, &issues);
+  EXPECT_EQ(issues.error_count(), 2u);
+  EXPECT_NE(issues.error_text().find("0.1"), std::string::npos) << issues.error_text();
+  EXPECT_NE(issues.error_text().find("no such parameter"), std::string::npos);
+  EXPECT_EQ(player.next_command(1.999), nullptr);
+  const Command* c = player.next_command(2.0);
+  ASSERT_NE(c, nullptr);
+  EXPECT_EQ(c->type, CommandType::kSetParameter);
+  EXPECT_EQ(c->parameter_index, static_cast<int>(SafetyParameter::kTiltLimit));
+  EXPECT_EQ(c->parameter_value, 0.5);
+  EXPECT_EQ(player.next_command(10.0), nullptr);
 }
 
 TEST(ScenarioPlayer, ADisturbanceByTimeComesOnce) {

@@ -59,6 +59,7 @@ TEST(Descriptor, OfAnotherLayerIsRefusedWithBothLayers) {
 
 TEST(Descriptor, WithABadNameOrParameterTableIsRefused) {
   EXPECT_EQ(refusal_of("ill_named").reasons.at(0).has, "\"Bad-Name\"");
+  EXPECT_EQ(refusal_of("bad_version").reasons.at(0).has, "\"new\"");
   EXPECT_NE(refusal_of("bad_range").text().find("got 2, expected a number from 4 to 10 1/s"),
             std::string::npos);
   EXPECT_NE(refusal_of("twice_named").text().find("the name of an earlier parameter"),
@@ -101,6 +102,16 @@ TEST(Descriptor, FilesThatAreNoLibraryAreRefused) {
   Refusal folder;
   EXPECT_FALSE(read_plugin_file(directory.path(), std::nullopt, &folder));
   EXPECT_NE(folder.text().find("no regular file"), std::string::npos) << folder.text();
+}
+
+TEST(Descriptor, AFileForAnotherMachineIsRefused) {
+  const TemporaryDirectory directory;
+  std::vector<char> bytes = contents(plugin_path("good"));
+  bytes[18] = static_cast<char>(183);  // e_machine: AArch64
+  write_file(directory.path() / "arm.so", bytes);
+  Refusal refusal;
+  EXPECT_FALSE(read_plugin_file(directory.path() / "arm.so", std::nullopt, &refusal));
+  EXPECT_NE(refusal.text().find("machine 183"), std::string::npos) << refusal.text();
 }
 
 TEST(Descriptor, CutFilesAreRefusedAtAnyLength) {

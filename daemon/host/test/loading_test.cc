@@ -116,6 +116,12 @@ TEST_F(Loading, AnUnresolvedSymbolIsNamed) {
   EXPECT_HAS(reason("unresolved"), "gaitd_test_function_that_nobody_has");
 }
 
+TEST_F(Loading, AChildStartsNoChildOfItsOwn) {
+  setenv("GAITD_CHILD_PROCESS", "1", 1);
+  EXPECT_HAS(reason("good"), "a child process starts no child");
+  unsetenv("GAITD_CHILD_PROCESS");
+}
+
 TEST_F(Loading, AFailedInitIsReportedWithWhatThePluginLogged) {
   const std::string text = reason("error_in_init");
   EXPECT_HAS(text, "init() returned GAITD_ERROR (-1)");
@@ -124,6 +130,18 @@ TEST_F(Loading, AFailedInitIsReportedWithWhatThePluginLogged) {
 
 TEST_F(Loading, AnExceptionAcrossTheBoundaryIsARefusal) {
   EXPECT_HAS(reason("throw_in_init"), "no such luck");
+  EXPECT_HAS(reason("throw_in_create"), "out of order");
+}
+
+TEST_F(Loading, AnExceptionOutOfProcessIsAStatus) {
+  const auto layer = load(plugin_path("throw_in_process"));
+  ASSERT_TRUE(layer) << refusal_.text();
+  GaitdToeOff output{};
+  EXPECT_EQ(layer->process(nullptr, &output), GAITD_EXCEPTION);
+}
+
+TEST_F(Loading, ABackendIsNoLayer) {
+  EXPECT_HAS(reason("backend"), "layer: has backend, needs toe_off");
 }
 
 TEST_F(Loading, AMissingFunctionIsNamed) {

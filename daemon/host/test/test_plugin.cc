@@ -28,6 +28,9 @@
 #ifndef TEST_ID
 #define TEST_ID "good"
 #endif
+#ifndef TEST_VERSION
+#define TEST_VERSION "1.2.3"
+#endif
 #ifndef TEST_MINIMUM
 #define TEST_MINIMUM 0.0
 #endif
@@ -54,7 +57,7 @@ __attribute__((used, section(TEST_SECTION))) const GaitdPluginDescriptor gaitd_p
     1,
     0,
     TEST_ID,
-    "1.2.3",
+    TEST_VERSION,
     "test",
     5.0,
     2,
@@ -99,6 +102,9 @@ GaitdStatus init(void* self, const GaitdModel* model, const double* parameters, 
 }
 GaitdStatus ok(void*) { return GAITD_OK; }
 GaitdStatus process(void* self, const void*, void* output) {
+#ifdef TEST_THROW_IN_PROCESS
+  throw std::runtime_error("not now");
+#endif
   auto* out = static_cast<GaitdToeOff*>(output);
   out->active = TEST_ANSWER;
   out->side = ++calls;
@@ -169,6 +175,7 @@ struct AtLoad {
 extern "C" {
 #if defined(TEST_BACKEND)
 EXPORT GaitdStatus gaitd_create_backend(const GaitdHost* host, GaitdBackendInstance* instance) {
+  if (host->abi_major != GAITD_ABI_MAJOR) return GAITD_INVALID_ARGUMENT;
   *instance = {new Self{0.0, host}, &kBackendVtable};
   return GAITD_OK;
 }
@@ -176,6 +183,9 @@ EXPORT GaitdStatus gaitd_create_backend(const GaitdHost* host, GaitdBackendInsta
 EXPORT GaitdStatus gaitd_create(const GaitdHost* host, GaitdInstance* instance) {
 #ifdef TEST_UNRESOLVED
   gaitd_test_function_that_nobody_has();
+#endif
+#ifdef TEST_THROW_IN_CREATE
+  throw std::runtime_error("out of order");
 #endif
   *instance = {new Self{0.0, host}, &kVtable};
   return GAITD_OK;

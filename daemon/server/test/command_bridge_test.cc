@@ -46,11 +46,39 @@ TEST_F(Bridge, CarriesCommandsInOrderAndAnswersToTheirSenders) {
   EXPECT_TRUE(bridge_->push({first, true, 8, {}}));
   bridge_->poll(CommandBridge::Clock::now());
   EXPECT_EQ(std::get<nlohmann::json>(arm->value()),
-            (nlohmann::json{{"accepted", true}, {"tick", 8}}));
+            (nlohmann::json{{"accepted", true}, {"tick", 8}, {"note", nullptr}}));
   EXPECT_EQ(error(*stop).code, rpc_code::kRefused);
   EXPECT_EQ(error(*stop).message, "not walking");
   EXPECT_EQ(error(*stop).data["tick"], 7);
   EXPECT_FALSE(bridge_->waiting());
+}
+
+TEST_F(Bridge, HoldsAnAcceptanceBackUntilItsEffectShows) {
+  std::int64_t newest = 7;
+  bridge_->show_effect_first([&] { return newest; });
+  const auto stop = submit(CommandType::kStop);
+  ASSERT_TRUE(bridge_->try_pop(*command_));
+  CommandReply reply{command_->request, true, 8, {}};
+  std::string("nothing to stop").copy(reply.message.data(), reply.message.size());
+  bridge_->push(reply);
+  const auto now = CommandBridge::Clock::now();
+  bridge_->poll(now);
+  EXPECT_FALSE(stop->has_value());
+  EXPECT_TRUE(bridge_->waiting());
+  newest = 8;
+  bridge_->poll(now);
+  ASSERT_TRUE(stop->has_value());
+  EXPECT_EQ(std::get<nlohmann::json>(stop->value())["note"], "nothing to stop");
+  EXPECT_FALSE(bridge_->waiting());
+
+  // Where no tick comes any more, the answer still does.
+  const auto arm = submit(CommandType::kArm);
+  ASSERT_TRUE(bridge_->try_pop(*command_));
+  bridge_->push({command_->request, true, 9, {}});
+  bridge_->poll(now);
+  EXPECT_FALSE(arm->has_value());
+  bridge_->poll(now + CommandBridge::kShowTime);
+  EXPECT_TRUE(arm->has_value());
 }
 
 TEST_F(Bridge, AMessageThatFillsItsFieldIsNotOverread) {

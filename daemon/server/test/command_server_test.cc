@@ -138,6 +138,41 @@ TEST_F(Server, ALineOverTheLimitEndsTheConnection) {
   expect_alive();
 }
 
+TEST_F(Server, HalfALineIsNotWaitedForForEver) {
+  options_.max_line_time = std::chrono::milliseconds(100);
+  start();
+  RawClient silent(directory_.file());
+  RawClient half(directory_.file());
+  RawClient dripping(directory_.file());
+  half.send(R"({"jsonrpc":"2.0",)");
+  // A line that never ends is no better for a byte now and then.
+  for (int i = 0; i < 200 && dripping.send(" "); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  for (RawClient* client : {&half, &dripping}) {
+    const json error = client->answer()["error"];
+    EXPECT_EQ(error["code"], -32600);
+    EXPECT_NE(error["message"].get<std::string>().find("no newline within 100 ms"),
+              std::string::npos);
+    EXPECT_TRUE(client->ended());
+  }
+  EXPECT_TRUE(silent.ask(kStatus)["result"].is_object());
+}
+
+TEST_F(Server, TheTimeOfALineBeginsWithItsFirstByte) {
+  options_.max_line_time = std::chrono::milliseconds(400);
+  start();
+  RawClient client(directory_.file());
+  const std::string line = std::string(kStatus) + "\n";
+  // Longer than the limit altogether, every line within it.
+  client.send(line.substr(0, 5));
+  for (int i = 0; i < 6; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    client.send(line.substr(5) + line.substr(0, 5));
+    EXPECT_TRUE(client.answer()["result"].is_object());
+  }
+}
+
 TEST_F(Server, AClientThatDoesNotReadIsDropped) {
   options_.max_unread_output = 1 << 20;
   start();

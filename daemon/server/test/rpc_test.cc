@@ -57,6 +57,50 @@ TEST_F(Rpc, RefusesWhatIsNoJson) {
   }
 }
 
+TEST_F(Rpc, NumbersMustBeFinite) {
+  for (const char* number : {"NaN", "nan", "Infinity", "-Infinity", "1e999", "-1e999", "0x10", "+1",
+                             "01", ".5", "1.", "--1"}) {
+    const std::string line =
+        std::string(R"({"jsonrpc":"2.0","id":1,"method":"echo","params":[)") + number + "]}";
+    EXPECT_EQ(error_code(line), -32700) << number;
+  }
+}
+
+TEST_F(Rpc, AKeyThatStandsTwiceIsRefused) {
+  for (const char* line :
+       {R"({"jsonrpc":"2.0","id":1,"method":"echo","method":"throw"})",
+        R"({"jsonrpc":"2.0","id":1,"method":"echo","params":{"x":1,"y":2,"x":3}})",
+        R"([{"jsonrpc":"2.0","id":1,"method":"echo","params":[{"x":[{}],"x":1}]}])"}) {
+    const json error = one(line)["error"];
+    EXPECT_EQ(error["code"], -32600) << line;
+    EXPECT_NE(error["message"].get<std::string>().find("stands twice in one object"),
+              std::string::npos);
+  }
+  // The same key in different objects is none.
+  EXPECT_TRUE(one(R"({"jsonrpc":"2.0","id":1,"method":"echo","params":{"id":{"id":[{"id":1}]}}})")
+                  .contains("result"));
+}
+
+TEST_F(Rpc, ALargeLineTakesNoLongTime) {
+  // A megabyte of the smallest objects there are: a square of their number would take minutes.
+  std::string line = R"({"jsonrpc":"2.0","id":1,"method":"echo","params":[{})";
+  for (int i = 0; i < 300000; ++i) line += ",{}";
+  EXPECT_EQ(one(line + "]}")["result"].size(), 300001u);
+}
+
+TEST_F(Rpc, QuotesNoMoreOfARequestThanHelps) {
+  const std::string much(100000, 'y');
+  for (const std::string& line :
+       {"{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"" + much + "\"}",
+        "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"echo\",\"" + much + "\":1}", "\"" + much,
+        R"({"jsonrpc":"2.0","id":1,"method":"status","params":[")" + much + "\"]}",
+        "{\"" + much + "\":1,\"" + much + "\":2}"}) {
+    const std::string message = one(line)["error"]["message"];
+    EXPECT_LT(message.size(), 600u);
+    EXPECT_GT(message.size(), 20u);
+  }
+}
+
 TEST_F(Rpc, RefusesWhatIsNoRequest) {
   for (const char* line :
        {"1", "\"x\"", "null", "{}", R"({"id":1,"method":"echo"})",

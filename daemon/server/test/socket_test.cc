@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <grp.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -72,6 +73,48 @@ TEST(Listening, HasMode0660AndGoesAwayWithItsOwner) {
   EXPECT_EQ(info.st_mode & 0777, 0660u);
   socket.reset();
   EXPECT_FALSE(std::filesystem::exists(directory.file()));
+}
+
+TEST(Listening, BelongsToTheGroupWhereThereIsOne) {
+  const SocketDirectory directory;
+  std::string error;
+  // Root may give it to any group, others to one of theirs.
+  gid_t own[64];
+  const int count = getgroups(64, own);
+  const gid_t wanted = getuid() == 0 ? 1 : count > 0 ? own[count - 1] : getgid();
+  const group* entry = getgrgid(wanted);
+  ASSERT_NE(entry, nullptr);
+  const std::string name = entry->gr_name;
+  struct stat info {};
+  auto socket = ListeningSocket::open(directory.file(), &error, name);
+  ASSERT_TRUE(socket) << error;
+  ASSERT_EQ(stat(directory.file().c_str(), &info), 0);
+  EXPECT_EQ(info.st_gid, wanted);
+  EXPECT_EQ(info.st_uid, geteuid());
+  EXPECT_EQ(info.st_mode & 0777, 0660u);
+  socket = nullptr;
+  socket = ListeningSocket::open(directory.file(), &error, "no-such-group");
+  ASSERT_TRUE(socket) << error;
+  ASSERT_EQ(stat(directory.file().c_str(), &info), 0);
+  EXPECT_EQ(info.st_gid, getegid());
+}
+
+TEST(Listening, FollowsNoSymbolicLink) {
+  const SocketDirectory directory;
+  std::string error;
+  std::filesystem::create_symlink(directory.file("elsewhere"), directory.file());
+  EXPECT_FALSE(ListeningSocket::open(directory.file(), &error));
+  EXPECT_NE(error.find("no socket is there"), std::string::npos) << error;
+  const auto elsewhere = ListeningSocket::open(directory.file("elsewhere"), &error);
+  ASSERT_TRUE(elsewhere) << error;
+  EXPECT_FALSE(ListeningSocket::open(directory.file(), &error));
+  EXPECT_TRUE(std::filesystem::is_symlink(directory.file()));
+  EXPECT_TRUE(RawClient(directory.file("elsewhere")).connected());
+  // Nor for its lock.
+  std::filesystem::create_symlink(directory.file("precious"), directory.file("other.lock"));
+  EXPECT_FALSE(ListeningSocket::open(directory.file("other"), &error));
+  EXPECT_NE(error.find("symbolic links"), std::string::npos) << error;
+  EXPECT_FALSE(std::filesystem::exists(directory.file("precious")));
 }
 
 TEST(Listening, KeepsASecondDaemonOut) {

@@ -55,6 +55,8 @@ class SyntheticRun {
   // Called for every tick, after the perfect values were set.
   std::function<void(SyntheticRun&, int tick)> disturb;
 
+  std::vector<Event> events;
+
   LogMetadata metadata = {
       {"joints",
        R"([{"name": "l_knee", "effort_limit": 100}, {"name": "r_knee", "effort_limit": 100},
@@ -89,6 +91,7 @@ class SyntheticRun {
         if (disturb) disturb(*this, tick);
         writer.write_tick(tick, 0.001 * tick, values_, nullptr);
       }
+      for (const Event& event : events) writer.write_event(event);
       EXPECT_TRUE(writer.close({{"realtime_factor", "4.5"}}));
     }
     const auto log = LogReader::open(path, &error);

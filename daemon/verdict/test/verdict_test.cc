@@ -35,6 +35,28 @@ Expectations all_of_it() {
   return expected;
 }
 
+TEST(Verdict, ARefusedCommandFailsUnlessItIsExpected) {
+  SyntheticRun run(1);
+  run.events = {{.tick = 20,
+                 .time = 0.02,
+                 .kind = "command",
+                 .text = R"({"command":"walk","accepted":false,"reason":"too far"})"},
+                {.tick = 30,
+                 .time = 0.03,
+                 .kind = "command",
+                 .text = R"({"command":"stop","accepted":true})"}};
+  Verdict verdict = run.judge({});
+  EXPECT_FALSE(verdict.pass);
+  EXPECT_EQ(only(verdict).name, "refused_commands");
+  ASSERT_EQ(verdict.refusals.size(), 1u);
+  EXPECT_EQ(verdict.refusals[0], "0.02 s: walk: too far");
+  Expectations expected;
+  expected.refused_commands = 1;
+  EXPECT_TRUE(run.judge(expected).pass);
+  run.events.clear();
+  EXPECT_FALSE(run.judge(expected).pass) << "a refusal that is expected has to come";
+}
+
 TEST(Verdict, APerfectRunPasses) {
   SyntheticRun run(6);
   const Verdict verdict = run.judge(all_of_it());

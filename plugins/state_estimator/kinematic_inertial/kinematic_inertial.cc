@@ -83,7 +83,11 @@ void KinematicInertial::set_state(const GaitdStateEstimatorState& s) {
   velocity_W_ = view(s.pelvis_velocity);
   gyro_bias_ = view(s.gyro_bias);
   accelerometer_bias_ = view(s.accelerometer_bias);
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) feet_[side].contact = s.contact[side];
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    feet_[side].contact = s.contact[side];
+    feet_[side].anchor = view(s.anchor[side]);
+    feet_[side].anchor_orientation = sdk::from_yaw(s.anchor_yaw[side]);
+  }
 }
 
 const GaitdImuSensor* KinematicInertial::imu(const GaitdSensors& sensors, int& index) const {

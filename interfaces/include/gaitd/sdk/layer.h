@@ -127,6 +127,9 @@ class LayerAdapter {
         (count != 0 && count != Layer::kParameters.size())) {
       return GAITD_INVALID_ARGUMENT;
     }
+    for (uint32_t i = 0; i < count; ++i) {
+      if (!allowed(Layer::kParameters[i], values[i])) return GAITD_INVALID_ARGUMENT;
+    }
     return a.guard("init", [&] {
       a.layer_ = std::make_unique<Layer>(*model);
       for (uint32_t i = 0; i < count; ++i) a.layer_->set_parameter(static_cast<int>(i), values[i]);
@@ -174,6 +177,7 @@ class LayerAdapter {
   static GaitdStatus set_parameter(void* self, uint32_t index, double value) {
     LayerAdapter& a = of(self);
     if (index >= Layer::kParameters.size()) return GAITD_INVALID_ARGUMENT;
+    if (!allowed(Layer::kParameters[index], value)) return GAITD_INVALID_ARGUMENT;
     return a.guard_rt([&] {
       a.layer_->set_parameter(static_cast<int>(index), value);
       return GaitdStatus{GAITD_OK};

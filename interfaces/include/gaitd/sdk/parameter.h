@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 #include "gaitd/abi/plugin.h"
@@ -44,6 +45,13 @@ constexpr GaitdParameter boolean_parameter(std::string_view name, bool default_v
   GaitdParameter p = real_parameter(name, "", 0, 1, default_value ? 1 : 0, description);
   p.type = GAITD_PARAMETER_BOOLEAN;
   return p;
+}
+
+// Whether the declaration allows the value: in its range, and whole unless it is a real number.
+constexpr bool allowed(const GaitdParameter& parameter, double value) {
+  if (!(value >= parameter.minimum && value <= parameter.maximum)) return false;  // NaN as well
+  return parameter.type == GAITD_PARAMETER_REAL ||
+         value == static_cast<double>(static_cast<std::int64_t>(value));
 }
 
 // Values of one table, in the order of the table. `Enum` numbers the rows and ends with kCount.

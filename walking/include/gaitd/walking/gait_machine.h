@@ -33,6 +33,9 @@ class GaitMachine {
   Refusal stop();
   Refusal abort();
 
+  // For changes outside that move the plan: whoever follows it goes on from its reference so far.
+  void plan_anew() { changed(); }
+
   // One tick. `icp_reference` (m, W) is that of the tick before; `toe_off` and `adjustment` are
   // the outputs of the tick before.
   void update(double dt, const GaitdRobotState& robot, const GaitdIcpPlan& plan,

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/ask.h"
+
+#include <chrono>
+#include <iostream>
+#include <thread>
+
+#include "cli/failure.h"
+#include "cli/print.h"
+#include "daemon/server/socket_path.h"
+
+namespace gaitd::cli {
+namespace {
+
+using nlohmann::json;
+
+// Waits, at most 15 s, until the robot has the posture in which it takes commands.
+void wait_until_ready(RpcClient* client) {
+  using std::chrono::milliseconds;
+  for (milliseconds waited{0}; waited < milliseconds(15000); waited += milliseconds(50)) {
+    const daemon::RpcResult status = client->call("status", nullptr);
+    const json* value = std::get_if<json>(&status);
+    if (value == nullptr || !value->is_object()) return;
+    if (value->value("state", json()) != "readying") return;
+    std::this_thread::sleep_for(milliseconds(50));
+  }
+}
+
+// What both versions are, if they differ; "" otherwise.
+std::string other_version(RpcClient* client) {
+  const daemon::RpcResult result = client->call("version", nullptr);
+  const json* value = std::get_if<json>(&result);
+  if (value == nullptr || !value->is_object()) return "";
+  const json version = value->value("version", json());
+  if (!version.is_string() || version == GAITD_VERSION) return "";
+  return "this gaitd is version " + version.get<std::string>() +
+         ", gaitctl is " GAITD_VERSION "; start the gaitd that was installed with this gaitctl";
+}
+
+// Names of a command and the commands it is in, without the program.
+std::string full_name(const CLI::App* command) {
+  const CLI::App* parent = command->get_parent();
+  if (parent == nullptr) return "";
+  const std::string before = full_name(parent);
+  return before.empty() ? command->get_name() : before + " " + command->get_name();
+}
+
+}  // namespace
+
+std::unique_ptr<RpcClient> connect(const Context& context, const std::string& command) {
+  std::string error;
+  auto client = RpcClient::connect(
+      daemon::connect_paths(context.socket, daemon::SocketPlaces::of_this_process()), &error);
+  if (!client) fail(context, kNoDaemon, command, error);
+  return client;
+}
+
+int ask(const Context& context, const std::string& command, const std::string& method,
+        const json& params) {
+  const auto client = connect(context, command);
+  if (!client) return kNoDaemon;
+  daemon::RpcResult result = client->call(method, params);
+  if (auto* error = std::get_if<daemon::RpcError>(&result)) {
+    // Two programs of different versions may not know the same methods and params.
+    if (error->code == daemon::rpc_code::kMethodNotFound ||
+        error->code == daemon::rpc_code::kInvalidParams) {
+      const std::string versions = other_version(client.get());
+      if (!versions.empty()) error->message += "\n" + versions;
+    }
+    return fail(context, command, method, *error);
+  }
+  if (method == "arm" || method == "sim.reset") wait_until_ready(client.get());
+  const json& value = std::get<json>(result);
+  std::cout << (context.json ? json_text(value) : result_text(command, method, value))
+            << std::flush;
+  return kDone;
+}
+
+CLI::App* add_plain(CLI::App* app, Context* context, const std::string& name,
+                    const std::string& method, const std::string& description) {
+  CLI::App* command = app->add_subcommand(name, description);
+  command->callback([context, method, full = full_name(command)] {
+    context->action = [context, method, full] { return ask(*context, full, method, nullptr); };
+  });
+  return command;
+}
+
+}  // namespace gaitd::cli

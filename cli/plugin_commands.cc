@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/plugin_commands.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "cli/failure.h"
+#include "cli/print.h"
+#include "daemon/config/paths.h"
+#include "daemon/config/robot.h"
+#include "daemon/conformance/check_plugin.h"
+#include "daemon/host/layers.h"
+
+namespace gaitd::cli {
+namespace {
+
+using daemon::CheckResult;
+using daemon::PluginReport;
+using daemon::Verdict;
+using nlohmann::json;
+
+struct Arguments {
+  std::string file;
+  std::string robot = "atlas";
+  double timeout = 60.0;  // s
+};
+
+json report_json(const PluginReport& report) {
+  json checks = json::array();
+  for (const CheckResult& check : report.checks) {
+    const char* verdict = check.verdict == Verdict::kFail ? "fail" : verdict_text(check.verdict);
+    checks.push_back({{"name", check.name},
+                      {"demands", check.demands},
+                      {"verdict", verdict},
+                      {"detail", check.detail}});
+  }
+  json out = {{"file", report.file}, {"pass", report.pass()}, {"checks", std::move(checks)}};
+  if (report.descriptor.layer >= 0) {
+    out["layer"] = daemon::layer_name(report.descriptor.layer);
+    out["variant"] = report.descriptor.id;
+    out["version"] = report.descriptor.version;
+  }
+  return out;
+}
+
+std::string counted(int count, const char* noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string report_text(const PluginReport& report) {
+  std::ostringstream out;
+  for (const CheckResult& check : report.checks) {
+    std::string verdict = verdict_text(check.verdict);
+    verdict.resize(8, ' ');
+    std::string name = check.name;
+    name.resize(12, ' ');
+    out << verdict << ' ' << name << ' ' << check.demands;
+    if (!check.detail.empty()) out << "\n         " << std::string(12, ' ') << ' ' << check.detail;
+    out << '\n';
+  }
+  const int failures = report.count(Verdict::kFail);
+  const int warnings = report.count(Verdict::kWarning);
+  out << (failures == 0 ? "passed: " : "failed: ") << report.file << ": "
+      << counted(failures, "failure") << ", " << counted(warnings, "warning") << ", "
+      << report.count(Verdict::kPass) << " passed, " << report.count(Verdict::kSkipped)
+      << " skipped\n";
+  return out.str();
+}
+
+int check(const Context& context, const Arguments& arguments) {
+  const daemon::Paths paths = daemon::Paths::detect();
+  const auto robot_file = paths.robot(arguments.robot);
+  if (!robot_file) {
+    std::string there;
+    for (const std::string& name : paths.robots()) there += " " + name;
+    return fail(context, kFailed, "plugin check",
+                "no robot '" + arguments.robot + "'; give a robot.yaml with --robot, or one of:" +
+                    (there.empty() ? " (none found)" : there));
+  }
+  daemon::Settings settings;
+  daemon::Issues issues;
+  const auto robot =
+      daemon::load_robot(robot_file->string(), daemon::Profile::kSimulation, &settings, &issues);
+  if (!robot) return fail(context, kFailed, "plugin check", issues.error_text());
+  daemon::CheckOptions options;
+  options.timeout = std::chrono::milliseconds(static_cast<long>(1000.0 * arguments.timeout));
+  const PluginReport report = daemon::check_plugin(arguments.file, robot->model, options);
+  std::cout << (context.json ? json_text(report_json(report)) : report_text(report));
+  return report.pass() ? kDone : kFailed;
+}
+
+}  // namespace
+
+void add_plugin_commands(CLI::App* app, Context* context) {
+  auto* command = app->get_subcommand("plugin")->add_subcommand(
+      "check", "Try a plugin library, for its author: every demand that it fulfils or fails");
+  command->footer(
+      "The library is loaded and called in child processes; no daemon is needed. Exit code 0 only "
+      "if nothing failed; warnings do not fail.");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("FILE", arguments->file, "The library, e.g. build/toe_off/my_variant.so")
+      ->required();
+  command
+      ->add_option("--robot", arguments->robot, "Robot that it is tried with, name or robot.yaml")
+      ->capture_default_str();
+  command
+      ->add_option("--timeout", arguments->timeout,
+                   "Time of one child process before it counts as "
+                   "hung, s")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  command->callback([context, arguments] {
+    context->action = [context, arguments] { return check(*context, *arguments); };
+  });
+}
+
+}  // namespace gaitd::cli

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace gaitd::cli {
+
+/// The status of the daemon as a table for a screen. What is missing in it is shown as "-".
+std::vector<std::string> status_screen(const nlohmann::json& status);
+
+/// The same on one line, for outputs that are no terminal.
+std::string status_line(const nlohmann::json& status);
+
+}  // namespace gaitd::cli

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/watch_command.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/failure.h"
+#include "cli/rpc_client.h"
+#include "cli/status_view.h"
+#include "cli/stop_signals.h"
+#include "cli/terminal.h"
+#include "daemon/server/socket_path.h"
+
+namespace gaitd::cli {
+namespace {
+
+using nlohmann::json;
+using std::chrono::milliseconds;
+
+struct WatchOptions {
+  double interval = 0.2;  // s
+  bool once = false;
+  bool reconnect = false;
+};
+
+// Where the refreshes go.
+class Output {
+ public:
+  Output(bool json, bool once) : json_(json) {
+    if (!json && !once && isatty(STDOUT_FILENO) != 0) screen_.emplace();
+  }
+
+  // False if nobody takes them any more.
+  bool show(const json& status) {
+    if (screen_) {
+      std::vector<std::string> lines = status_screen(status);
+      lines.push_back("");
+      lines.push_back("q or Ctrl-C ends it");
+      return screen_->draw(lines);
+    }
+    std::cout << (json_ ? status.dump(-1, ' ', false, json::error_handler_t::replace)
+                        : status_line(status))
+              << std::endl;
+    return static_cast<bool>(std::cout);
+  }
+  // While there is no daemon. Not between the lines of a script.
+  bool show_waiting(const std::string& why) {
+    return !screen_ || screen_->draw({"waiting for gaitd", "", why});
+  }
+  // False if the user is done.
+  bool wait(milliseconds time) {
+    if (screen_) return screen_->wait(time) != Screen::Event::kQuit && !StopSignals::requested();
+    for (; time.count() > 0 && !StopSignals::requested(); time -= milliseconds(20)) {
+      std::this_thread::sleep_for(std::min(time, milliseconds(20)));
+    }
+    return !StopSignals::requested();
+  }
+  void close() { screen_.reset(); }
+
+ private:
+  bool json_;
+  std::optional<Screen> screen_;
+};
+
+int watch(const Context& context, const WatchOptions& options) {
+  const StopSignals signals;
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that has enough is no failure
+  const milliseconds interval(std::lround(1e3 * options.interval));
+  const std::vector<std::string> paths =
+      daemon::connect_paths(context.socket, daemon::SocketPlaces::of_this_process());
+  std::string error;
+  std::unique_ptr<RpcClient> client = RpcClient::connect(paths, &error);
+  if (!client && !options.reconnect) return fail(context, kNoDaemon, "watch", error);
+  Output output(context.json, options.once);
+  do {
+    if (!client) client = RpcClient::connect(paths, &error);
+    if (!client) {
+      if (!output.show_waiting(error)) return kDone;
+      continue;
+    }
+    const daemon::RpcResult result = client->call("status", nullptr);
+    if (const json* status = std::get_if<json>(&result)) {
+      if (!output.show(*status) || options.once) return kDone;
+      continue;
+    }
+    if (StopSignals::requested()) return kDone;
+    const auto& problem = std::get<daemon::RpcError>(result);
+    const bool gone =
+        problem.code == kConnectionLost || problem.code == daemon::rpc_code::kStopping;
+    if (gone && options.reconnect) {
+      client.reset();
+      continue;
+    }
+    output.close();
+    if (gone) return fail(context, kNoDaemon, "watch", "gaitd has ended");
+    return fail(context, "watch", "status", problem);
+  } while (output.wait(interval));
+  return kDone;
+}
+
+}  // namespace
+
+void add_watch_command(CLI::App* app, Context* context) {
+  auto* command = app->add_subcommand(
+      "watch", "Show the status live: a table on a terminal, else a line each time");
+  command->footer("Exit code 0 when you end it, 3 when gaitd ends.");
+  auto options = std::make_shared<WatchOptions>();
+  command->add_flag("--once", options->once, "Show it once, on one line, and end");
+  command
+      ->add_option("--interval", options->interval,
+                   "Time between refreshes, s, 0.02 to 3600; 0.2 if left out")
+      ->check(CLI::Range(0.02, 3600.0))
+      ->type_name("S");
+  command->add_flag("--reconnect", options->reconnect,
+                    "Wait for a daemon if there is none, and for the next when it ends");
+  command->callback([context, options] {
+    context->action = [context, options] { return watch(*context, *options); };
+  });
+}
+
+}  // namespace gaitd::cli

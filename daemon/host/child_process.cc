@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/host/child_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sched.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+
+#include "daemon/host/child_side.h"
+
+extern char** environ;
+
+namespace gaitd::daemon {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// In the environment of every child. A program that does not take the role of a child by its
+// arguments would run as itself and start children of its own, without end.
+constexpr const char* kChildMark = "GAITD_CHILD_PROCESS";
+
+// A file descriptor that closes itself.
+class Fd {
+ public:
+  explicit Fd(int fd = -1) : fd_(fd) {}
+  ~Fd() { reset(); }
+  Fd(const Fd&) = delete;
+  Fd& operator=(const Fd&) = delete;
+  int get() const { return fd_; }
+  void reset(int fd = -1) {
+    if (fd_ >= 0) close(fd_);
+    fd_ = fd;
+  }
+
+ private:
+  int fd_;
+};
+
+// The model in an anonymous file, positioned at its start.
+bool share_model(const GaitdModel& model, Fd* fd) {
+  fd->reset(memfd_create("gaitd-model", MFD_CLOEXEC));
+  return fd->get() >= 0 && write(fd->get(), &model, sizeof(model)) == sizeof(model) &&
+         lseek(fd->get(), 0, SEEK_SET) == 0;
+}
+
+int spawn_child(const ChildRequest& request, int model_fd, int report_fd, pid_t* pid) {
+  posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawnattr_init(&attributes);
+  // dup2 to the same number would leave close-on-exec set; both sources lie above the targets,
+  // since the caller moved them there.
+  posix_spawn_file_actions_adddup2(&actions, model_fd, kChildModelFd);
+  posix_spawn_file_actions_adddup2(&actions, report_fd, kChildReportFd);
+  sigset_t none;
+  sigset_t all;
+  sigemptyset(&none);
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  sched_param ordinary{};
+  posix_spawnattr_setschedpolicy(&attributes, SCHED_OTHER);
+  posix_spawnattr_setschedparam(&attributes, &ordinary);
+  posix_spawnattr_setpgroup(&attributes, 0);  // what it starts itself ends with it
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
+                                            POSIX_SPAWN_SETSCHEDULER | POSIX_SPAWN_SETPGROUP);
+  std::string program = request.executable.string();
+  std::vector<std::string> arguments = request.arguments;
+  std::vector<char*> argv = {program.data()};
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  std::string mark = std::string(kChildMark) + "=1";
+  std::vector<char*> environment = {mark.data()};
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    environment.push_back(*variable);
+  }
+  environment.push_back(nullptr);
+  const int error =
+      posix_spawn(pid, program.c_str(), &actions, &attributes, argv.data(), environment.data());
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  return error;
+}
+
+// Reads what the child reports until it closes its end. False if the time ran out.
+bool read_report(int fd, Clock::time_point deadline, std::string* report) {
+  constexpr std::size_t kMaximumReport = 64 * 1024;
+  for (;;) {
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    if (left <= 0) return false;
+    pollfd entry{fd, POLLIN, 0};
+    const int ready = poll(&entry, 1, static_cast<int>(left));
+    if (ready < 0 && errno == EINTR) continue;
+    if (ready <= 0) return false;
+    char buffer[4096];
+    const ssize_t n = read(fd, buffer, sizeof(buffer));
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return true;
+    if (report->size() < kMaximumReport) report->append(buffer, static_cast<std::size_t>(n));
+  }
+}
+
+// Waits for the end of the child, which has until the deadline before it is killed.
+int wait_for_end(pid_t pid, Clock::time_point deadline, bool* killed) {
+  int status = 0;
+  *killed = false;
+  for (;;) {
+    const pid_t ended = waitpid(pid, &status, *killed ? 0 : WNOHANG);
+    if (ended == pid) return status;
+    if (ended < 0 && errno != EINTR) return 0;
+    if (ended == 0 && Clock::now() >= deadline) {
+      kill(-pid, SIGKILL);
+      *killed = true;
+    } else if (ended == 0) {
+      usleep(1000);
+    }
+  }
+}
+
+std::string signal_name(int signal) {
+  const char* name = sigabbrev_np(signal);
+  return name == nullptr ? "signal " + std::to_string(signal) : std::string("SIG") + name;
+}
+
+ChildEnd no_child(const std::string& what, int error) {
+  ChildEnd end;
+  end.start_error = what + ": " + std::strerror(error);
+  return end;
+}
+
+}  // namespace
+
+std::string ChildEnd::last(const std::string& key) const {
+  std::size_t begin = report.rfind("\n" + key);
+  if (begin == std::string::npos) return "";
+  begin += 1 + key.size();
+  return report.substr(begin, report.find('\n', begin) - begin);
+}
+
+std::string ChildEnd::abnormal_end() const {
+  if (killed) return "hung: not done after " + std::to_string(timeout.count()) + " ms";
+  if (WIFSIGNALED(status)) return "crashed with " + signal_name(WTERMSIG(status));
+  if (report.ends_with("\ndone\n") || !last("error ").empty()) return "";
+  return "ended the process with exit code " + std::to_string(WEXITSTATUS(status));
+}
+
+ChildEnd run_child(const ChildRequest& request) {
+  if (std::getenv(kChildMark) != nullptr) {
+    return no_child("a child process starts no child", EPERM);
+  }
+  Fd model_fd;
+  if (!share_model(*request.model, &model_fd)) return no_child("memfd_create", errno);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return no_child("pipe", errno);
+  Fd report_read(ends[0]);
+  Fd report_write(ends[1]);
+  const Fd high_model(fcntl(model_fd.get(), F_DUPFD_CLOEXEC, kChildReportFd + 1));
+  Fd high_report(fcntl(report_write.get(), F_DUPFD_CLOEXEC, kChildReportFd + 1));
+  if (high_model.get() < 0 || high_report.get() < 0) return no_child("dup", errno);
+
+  pid_t pid = -1;
+  const Clock::time_point deadline = Clock::now() + request.timeout;
+  const int error = spawn_child(request, high_model.get(), high_report.get(), &pid);
+  if (error != 0) return no_child("start of " + request.executable.string(), error);
+  report_write.reset();
+  high_report.reset();
+
+  ChildEnd end;
+  end.timeout = request.timeout;
+  end.report = "\n";
+  read_report(report_read.get(), deadline, &end.report);
+  end.status = wait_for_end(pid, deadline, &end.killed);
+  return end;
+}
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/parameters/scopes.h"
+
+#include <iterator>
+
+#include "daemon/parameters/safety_parameters.h"
+#include "gaitd/walking/parameters.h"
+
+namespace gaitd::daemon {
+namespace {
+
+constexpr DaemonScope kScopes[] = {
+    {kGaitParameterOwner, "gait", walking::kGaitParameters, "footsteps and their timing"},
+    {kSwingParameterOwner, "swing", walking::kSwingParameters, "path of the swing foot"},
+    {kLegParameterOwner, "legs", walking::kLegParameters, "knees: privileged leg configuration"},
+    {kObjectiveParameterOwner, "objectives", walking::kObjectiveParameters,
+     "gains and weights of what the whole-body controller is asked for"},
+    {kSafetyParameterOwner, "safety", kSafetyParameters, "faults, readying, fall-backs"},
+    {kLimitParameterOwner, "limits", kLimitParameters, "clamps behind the plugins"},
+};
+
+struct Rule {
+  std::string_view key;
+  ParameterEffect effect;
+};
+
+constexpr auto kLater = ParameterEffect::kLater;
+constexpr auto kAtRest = ParameterEffect::kAtRest;
+constexpr const char* kCommanded = "footsteps commanded afterwards";
+constexpr const char* kNextSwing = "the next swing";
+constexpr const char* kRamp = "a joint on its ramp to the standing posture would jump";
+constexpr const char* kKnee = "a knee on its ramp would jump";
+
+constexpr Rule kRules[] = {
+    {"gait.omega", {kAtRest, "the plan of the footsteps under way depends on it"}},
+    {"gait.swing_duration", {kLater, kCommanded}},
+    {"gait.transfer_duration", {kLater, kCommanded}},
+    {"gait.swing_height", {kLater, kCommanded}},
+    {"gait.min_foot_separation", {kLater, kCommanded}},
+    {"gait.max_foot_separation", {kLater, kCommanded}},
+    {"gait.max_step_forward", {kLater, kCommanded}},
+    {"gait.max_step_backward", {kLater, kCommanded}},
+    {"gait.max_step_height", {kLater, kCommanded}},
+    {"gait.max_step_turn", {kLater, kCommanded}},
+    {"gait.max_step_tilt", {kLater, kCommanded}},
+    {"gait.initial_transfer_duration", {kLater, "the next walk"}},
+    {"gait.final_transfer_duration", {kLater, "the next transfer"}},
+    {"swing.touchdown_velocity", {kLater, kNextSwing}},
+    {"swing.apex_fraction", {kLater, kNextSwing}},
+    {"swing.late_velocity", {kLater, kNextSwing}},
+    {"legs.straighten_rate", {kAtRest, kKnee}},
+    {"legs.collapse_duration", {kAtRest, kKnee}},
+    {"objectives.contact_ramp", {kAtRest, "a foot that carries the robot would lose its load"}},
+    {"safety.ready_duration", {kAtRest, kRamp}},
+    {"safety.ready_stiffness", {kAtRest, kRamp}},
+    {"safety.ready_damping", {kAtRest, kRamp}},
+};
+
+}  // namespace
+
+std::span<const DaemonScope> daemon_scopes() { return kScopes; }
+
+ParameterEffect parameter_effect(std::string_view key) {
+  for (const Rule& rule : kRules) {
+    if (rule.key == key) return rule.effect;
+  }
+  return {};
+}
+
+int parameter_rule_count() { return static_cast<int>(std::size(kRules)); }
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,81 @@
+# `gaitctl watch`: in place on a terminal that it leaves as it found it, lines elsewhere.
+source "$(dirname "$0")/common.sh"
+enter=$'\e[?1049h' leave=$'\e[?1049l' show_cursor=$'\e[?25h'
+
+expect 3 gaitctl watch
+expect 3 gaitctl watch --once
+start_daemon --log "$scratch/log.mcap"
+wait_for state standing 20
+
+# No terminal: lines, that a pipe may end.
+gaitctl watch --interval 0.02 | head -n 3 >"$scratch/lines"
+(($(wc -l <"$scratch/lines") == 3)) || fail "no three lines: $(cat "$scratch/lines")"
+grep -q 'standing.*ICP error' "$scratch/lines" || fail "the lines do not say much"
+if grep -q $'\e' "$scratch/lines"; then fail "escape sequences in a file"; fi
+expect 0 gaitctl watch --once >"$scratch/once"
+(($(wc -l <"$scratch/once") == 1)) || fail "--once printed $(wc -l <"$scratch/once") lines"
+gaitctl --json watch --interval 0.02 | head -n 2 >"$scratch/json"
+(($(grep -c '^{.*"state":"standing".*}$' "$scratch/json") == 2)) || fail "not one object per line"
+expect 2 gaitctl watch --interval 0 2>/dev/null
+
+# start_watch NAME ARGUMENTS...: on a terminal of 60 x 12, its output in $scratch/NAME.
+start_watch() {
+  local name=$1
+  shift
+  rm -f "$scratch/$name.code" "$scratch/pid"
+  {
+    code=0
+    script -qefc "stty rows 12 cols 60; echo \$\$ >$scratch/pid; \
+      exec gaitctl watch --interval 0.02 $*" "$scratch/$name" </dev/null >/dev/null || code=$?
+    echo "$code" >"$scratch/$name.code"
+  } &
+  for _ in {1..200}; do
+    grep -qF "ICP error" "$scratch/$name" 2>/dev/null && return
+    sleep 0.05
+  done
+  fail "watch shows nothing on a terminal: $(cat "$scratch/$name" 2>/dev/null)"
+}
+# ends NAME CODE: the program has ended so, and left the terminal.
+ends() {
+  for _ in {1..200}; do
+    [[ -s $scratch/$1.code ]] && break
+    sleep 0.05
+  done
+  [[ $(cat "$scratch/$1.code") == "$2" ]] ||
+    fail "$1: exit code $(cat "$scratch/$1.code"), expected $2"
+  grep -qF "$enter" "$scratch/$1" || fail "$1: no alternate screen"
+  [[ $(tail -c 400 "$scratch/$1") == *"$show_cursor$leave"* ]] ||
+    fail "$1: the terminal is not restored"
+}
+
+for signal in INT TERM; do
+  start_watch "$signal"
+  kill -"$signal" "$(cat "$scratch/pid")"
+  ends "$signal" 0
+done
+# Redrawn in place: cleared once, then only overwritten; no line is longer than the window.
+(($(grep -aoF $'\e[2J' "$scratch/INT" | wc -l) == 1)) || fail "the screen is cleared again and again"
+sed 's/\x1b\[[?0-9;]*[a-zA-Z]//g' "$scratch/INT" | tr -d '\r' | grep -v '^Script ' |
+  LC_ALL=C.UTF-8 awk 'length($0) > 60 { exit 1 }' || fail "a line is longer than the window"
+
+# When gaitd ends.
+start_watch gone
+start_watch reconnect --reconnect
+reconnecting=$(cat "$scratch/pid")
+stop_daemon
+ends gone 3
+grep -q 'gaitd has ended' "$scratch/gone" || fail "it does not say that gaitd has ended"
+for _ in {1..100}; do
+  grep -q 'waiting for gaitd' "$scratch/reconnect" && break
+  sleep 0.05
+done
+shown=$(wc -c <"$scratch/reconnect")
+start_daemon --log "$scratch/log.mcap"
+for _ in {1..200}; do
+  tail -c +"$shown" "$scratch/reconnect" | grep -q 'ICP error' && break
+  sleep 0.05
+done
+tail -c +"$shown" "$scratch/reconnect" | grep -q 'ICP error' || fail "it does not connect again"
+kill -INT "$reconnecting"
+ends reconnect 0
+stop_daemon
