@@ -45,6 +45,12 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
   const bool straightened = reference_.knee <= p[Legs::kStraightKnee] + 1e-9;
   const LegState wanted = next_state(reference_.state, straightened, side, gait, p);
   if (wanted != reference_.state) enter(wanted, knee);
+  if (gait.mode != mode_) {
+    mode_ = gait.mode;
+    enter(LegState::kStraighten == wanted || LegState::kStraight == wanted ? LegState::kStraighten
+                                                                           : wanted,
+          knee);
+  }
 
   if (gait.mode != GAITD_MODE_WALK_STRAIGHT) {
     // The commanded height bends a leg that carries the robot; only the others need to be told.
@@ -61,14 +67,17 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
   reference_.weight = p[soft ? Legs::kBentWeight : Legs::kStraightWeight];
   switch (reference_.state) {
     case LegState::kStraighten: {
-      const double ramp = knee_at_entry_ - p[Legs::kStraightenRate] * time_in_state_;
+      const bool standing = gait.phase == GAITD_PHASE_STAND;
+      const double rate = p[standing ? Legs::kSettleRate : Legs::kStraightenRate];
+      const double ramp = knee_at_entry_ - rate * time_in_state_;
       reference_.knee = std::max({straight, ramp, knee - p[Legs::kMaxLead]});
       break;
     }
     case LegState::kCollapsed: {
       const double s = std::min(1.0, time_in_state_ / p[Legs::kCollapseDuration]);
       const double goal = p[Legs::kCollapsedKnee];
-      reference_.knee = straight + (goal - straight) * s * s;
+      const double start = std::max(straight, knee_at_entry_);
+      reference_.knee = start + (goal - start) * s * s;
       break;
     }
     case LegState::kBent:

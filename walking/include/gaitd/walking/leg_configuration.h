@@ -38,6 +38,7 @@ class LegConfiguration {
   Reference reference_{LegState::kBent, 0.0, 0.0, 0.0, 0.0};
   double time_in_state_ = 0.0;
   double knee_at_entry_ = 0.0;
+  int mode_ = GAITD_MODE_STAND;
 };
 
 }  // namespace gaitd::walking

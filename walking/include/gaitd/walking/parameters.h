@@ -80,13 +80,14 @@ enum class Legs {
   kBentWeight,
   kStraightWeight,
   kStraightenRate,
+  kSettleRate,
   kMaxLead,
   kCollapseFraction,
   kCollapseDuration,
   kExtendFraction,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 15> kLegParameters = {
+inline constexpr std::array<GaitdParameter, 16> kLegParameters = {
     real_parameter("bent_knee", "rad", 0, 2.5, 0.9, "privileged knee of both legs, walk-bent"),
     real_parameter("straight_knee", "rad", 0, 1, 0.2, "privileged knee of a straight leg"),
     real_parameter("collapsed_knee", "rad", 0, 2, 0.45, "privileged knee of a trailing leg"),
@@ -98,6 +99,7 @@ inline constexpr std::array<GaitdParameter, 15> kLegParameters = {
     real_parameter("bent_weight", "", 0, 1000, 5, "privileged weight of a bent leg"),
     real_parameter("straight_weight", "", 0, 1000, 150, "privileged weight of a straight leg"),
     real_parameter("straighten_rate", "rad/s", 0.1, 50, 4, "of the knee after touchdown"),
+    real_parameter("settle_rate", "rad/s", 0.05, 50, 0.5, "of the knees when standing"),
     real_parameter("max_lead", "rad", 0.01, 2, 0.4,
                    "furthest that the reference runs ahead of the knee"),
     real_parameter("collapse_fraction", "", 0, 1, 0.65,
@@ -145,13 +147,14 @@ enum class Objective {
   kToeWeight,
   kToeAngularStiffness,
   kToeAngularWeight,
+  kToeRamp,
   kSupportDriveDamping,
   kSwingDriveStiffness,
   kSwingDriveDamping,
   kStrikeDriveDamping,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 42> kObjectiveParameters = {
+inline constexpr std::array<GaitdParameter, 43> kObjectiveParameters = {
     real_parameter("friction", "", 0.05, 2, 0.7, "coefficient that the controller counts on"),
     real_parameter("com_height", "", 0.5, 1.2, 1.0,
                    "CoM height when standing, over the height in the nominal posture"),
@@ -200,6 +203,8 @@ inline constexpr std::array<GaitdParameter, 42> kObjectiveParameters = {
     real_parameter("toe_angular_stiffness", "1/s^2", 0, 2000, 200,
                    "roll and yaw of the foot in toe-off"),
     real_parameter("toe_angular_weight", "", 0, 1e6, 5, "of them"),
+    real_parameter("toe_ramp", "s", 0, 0.5, 0.03,
+                   "in which the rest of the sole is unloaded before it may rise"),
     real_parameter("support_drive_damping", "limits s/rad", 0, 1, 0.012,
                    "drives of the legs, where robot.yaml has no impedance; in effort limits"),
     real_parameter("swing_drive_stiffness", "limits/rad", 0, 10, 0.2, "the same, leg in swing"),
