@@ -40,6 +40,12 @@ double heading_target(const GaitdGaitState& gait) {
   return mean_heading(heading(gait.footholds[gait.support].pose), heading(gait.adjusted[0].pose));
 }
 
+// s, for which the touchdown is overdue.
+double late_time(const GaitdGaitState& gait) {
+  return gait.phase == GAITD_PHASE_SWING ? std::max(0.0, gait.time_in_phase - gait.phase_duration)
+                                         : 0.0;
+}
+
 }  // namespace
 
 ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
@@ -52,6 +58,7 @@ ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
   const Eigen::Vector3d hip = kinematics_.p_WB(model_.joints[leg.hip_pitch].child_body);
   const Eigen::Vector3d ankle = kinematics_.p_WB(model_.joints[leg.ankle_pitch].child_body);
   leg_length_ = (hip - ankle).norm();
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) legs_[side].set_leg(model_, side);
   posture_joint_.fill(false);
   for (int i = 0; i < model_.joint_count; ++i) posture_joint_[i] = true;
   for (const GaitdLeg& l : model_.legs) {
@@ -244,6 +251,20 @@ void ObjectiveBuilder::add_orientation_task(int body, const Eigen::Quaterniond& 
   view(task.weight).head<3>().setConstant(weight);
 }
 
+// While a touchdown is overdue the pelvis may turn towards the foot, up to a limit.
+double ObjectiveBuilder::pelvis_weight(const GaitdGaitState& gait,
+                                       const Eigen::Quaterniond& goal) const {
+  const double full = parameters_[Objective::kPelvisWeight];
+  const double fade = parameters_[Objective::kLatePelvisFade];
+  const double late = late_time(gait);
+  if (late <= 0.0 || fade <= 0.0) return full;
+  const Eigen::Vector3d turned =
+      sdk::log_so3(goal.conjugate() * Eigen::Quaterniond(kinematics_.R_WB(0)));
+  const double used = std::max(std::abs(turned.x()) / parameters_[Objective::kPelvisRollLimit],
+                               std::abs(turned.z()) / parameters_[Objective::kPelvisYawLimit]);
+  return full * std::clamp(std::max(1.0 - late / fade, used), 0.05, 1.0);
+}
+
 void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot,
                                          const GaitdGaitState& gait, GaitdObjectives& out) {
   // Unwrapped, so that the filter never turns the long way round.
@@ -253,8 +274,7 @@ void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot
   const Eigen::Quaterniond goal = sdk::from_yaw(yaw_.value()) * sdk::exp_so3(tilt_);
   const Eigen::Vector3d rate(0.0, 0.0, yaw_.velocity());
   add_orientation_task(0, goal, rate, parameters_[Objective::kPelvisStiffness],
-                       parameters_[Objective::kPelvisDampingRatio],
-                       parameters_[Objective::kPelvisWeight], out);
+                       parameters_[Objective::kPelvisDampingRatio], pelvis_weight(gait, goal), out);
   if (model_.chest_body > 0) {
     add_orientation_task(
         model_.chest_body, goal * chest_in_pelvis_, rate, parameters_[Objective::kChestStiffness],
@@ -332,7 +352,8 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
                                       GaitdObjectives& out) {
   const GaitdFootstep& goal = gait.adjusted[0];
   if (swing_step_ != gait.step_index) {
-    swing_.begin(lift_off, goal, gait.phase_duration, swing_parameters_);
+    swing_.begin(lift_off, view(robot.feet[side].twist), gait.footholds[side].pose.position[2],
+                 goal, gait.phase_duration, swing_parameters_);
     swing_step_ = gait.step_index;
     swing_revision_ = gait.plan_revision;
   } else if (swing_revision_ != gait.plan_revision) {
@@ -357,8 +378,9 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
       s.angular_acceleration +
       kp_z * rotation_error(s.orientation, sdk::quaternion(now.orientation)) +
       damping(kp_z, ratio) * (s.angular_velocity - twist.head<3>());
-  view(task.weight).head<3>().setConstant(parameters_[Objective::kSwingAngularWeight]);
-  view(task.weight).tail<3>().setConstant(parameters_[Objective::kSwingWeight]);
+  const double heavier = 1.0 + parameters_[Objective::kLateSwingWeight] * late_time(gait);
+  view(task.weight).head<3>().setConstant(heavier * parameters_[Objective::kSwingAngularWeight]);
+  view(task.weight).tail<3>().setConstant(heavier * parameters_[Objective::kSwingWeight]);
 }
 
 void ObjectiveBuilder::update_privileged(double dt, const GaitdRobotState& robot,

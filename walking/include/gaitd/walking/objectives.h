@@ -66,6 +66,7 @@ class ObjectiveBuilder {
   void add_orientation_task(int body, const Eigen::Quaterniond& goal,
                             const Eigen::Vector3d& goal_rate, double stiffness,
                             double damping_ratio, double weight, GaitdObjectives& out) const;
+  double pelvis_weight(const GaitdGaitState& gait, const Eigen::Quaterniond& goal) const;
   // The rest of the sole is unloaded: the foot may roll.
   bool on_toe(int side) const;
   // Share of the full load that the contacts of a foot may carry now, 0..1.

@@ -38,7 +38,7 @@ inline constexpr std::array<GaitdParameter, 18> kGaitParameters = {
     real_parameter("initial_transfer_duration", "s", 0.3, 10, 1.0,
                    "least duration of the transfer out of standing"),
     real_parameter("final_transfer_duration", "s", 0.2, 10, 0.8, "of the transfer into standing"),
-    real_parameter("swing_height", "m", 0.01, 0.5, 0.10,
+    real_parameter("swing_height", "m", 0.01, 0.5, 0.13,
                    "apex above the higher of lift-off and touchdown"),
     real_parameter("touchdown_force", "weight", 0.005, 0.5, 0.06,
                    "normal force of the swing foot that ends the swing, in body weights"),
@@ -61,11 +61,31 @@ inline constexpr std::array<GaitdParameter, 18> kGaitParameters = {
     real_parameter("max_step_tilt", "rad", 0, 1, 0.4, "roll or pitch of a foothold"),
 };
 
-enum class Swing { kTouchdownVelocity, kApexFraction, kLateVelocity, kCount };
-inline constexpr std::array<GaitdParameter, 3> kSwingParameters = {
+enum class Swing {
+  kTouchdownVelocity,
+  kApexFraction,
+  kLateVelocity,
+  kLateAcceleration,
+  kEdgeHeight,
+  kRiseWait,
+  kRiseLevel,
+  kDropArrive,
+  kDropApex,
+  kCount
+};
+inline constexpr std::array<GaitdParameter, 9> kSwingParameters = {
     real_parameter("touchdown_velocity", "m/s", 0, 2, 0.3, "downwards at the end of the swing"),
     real_parameter("apex_fraction", "", 0.1, 0.9, 0.45, "part of the swing at the highest point"),
-    real_parameter("late_velocity", "m/s", 0, 2, 0.3, "downwards while the touchdown is overdue"),
+    real_parameter("late_velocity", "m/s", 0, 2, 0.3, "downwards when the touchdown is due"),
+    real_parameter("late_acceleration", "m/s^2", 0, 20, 2, "downwards while it is overdue"),
+    real_parameter("edge_height", "m", 0.01, 1, 0.12,
+                   "step up or down that counts as an edge in full; less of it in proportion"),
+    real_parameter("rise_wait", "", 0, 0.5, 0.18,
+                   "part of a swing onto an edge in which the foot only rises"),
+    real_parameter("rise_level", "", 0.2, 1, 0.5, "part of it after which the sole is level"),
+    real_parameter("drop_arrive", "", 0.5, 1, 0.75,
+                   "part of a swing down an edge after which the foot is above its foothold"),
+    real_parameter("drop_apex", "", 0.1, 0.9, 0.5, "part of it at the highest point"),
 };
 
 enum class Legs {
@@ -84,18 +104,23 @@ enum class Legs {
   kMaxLead,
   kCollapseFraction,
   kCollapseDuration,
+  kCollapseShare,
+  kCollapseRate,
+  kLargestDrop,
+  kLateKnee,
+  kLateRate,
   kExtendFraction,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 16> kLegParameters = {
+inline constexpr std::array<GaitdParameter, 21> kLegParameters = {
     real_parameter("bent_knee", "rad", 0, 2.5, 0.9, "privileged knee of both legs, walk-bent"),
     real_parameter("straight_knee", "rad", 0, 1, 0.2, "privileged knee of a straight leg"),
-    real_parameter("collapsed_knee", "rad", 0, 2, 0.45, "privileged knee of a trailing leg"),
+    real_parameter("collapsed_knee", "rad", 0, 2, 0.3, "privileged knee of a trailing leg"),
     real_parameter("swing_knee", "rad", 0, 2.5, 1.1, "privileged knee early in swing"),
     real_parameter("bent_stiffness", "1/s^2", 0, 1000, 100, "feedback on a bent knee"),
     real_parameter("bent_damping", "1/s", 0, 100, 6, "feedback on a bent knee"),
-    real_parameter("straight_stiffness", "1/s^2", 0, 1000, 60, "feedback on a straight knee"),
-    real_parameter("straight_damping", "1/s", 0, 100, 8, "feedback on a straight knee"),
+    real_parameter("straight_stiffness", "1/s^2", 0, 1000, 80, "feedback on a straight knee"),
+    real_parameter("straight_damping", "1/s", 0, 100, 10, "feedback on a straight knee"),
     real_parameter("bent_weight", "", 0, 1000, 5, "privileged weight of a bent leg"),
     real_parameter("straight_weight", "", 0, 1000, 150, "privileged weight of a straight leg"),
     real_parameter("straighten_rate", "rad/s", 0.1, 50, 4, "of the knee after touchdown"),
@@ -105,6 +130,13 @@ inline constexpr std::array<GaitdParameter, 16> kLegParameters = {
     real_parameter("collapse_fraction", "", 0, 1, 0.65,
                    "part of the other leg's swing after which the stance leg collapses"),
     real_parameter("collapse_duration", "s", 0.01, 5, 0.3, "of the ramp to the collapsed knee"),
+    real_parameter("collapse_share", "", 0, 1.5, 0.9,
+                   "of the bend with which a step down is reached by a straight leg"),
+    real_parameter("collapse_rate", "rad/s", 0.1, 20, 2.5, "of a knee that bends for it"),
+    real_parameter("largest_drop", "leg lengths", 0, 1, 0.16,
+                   "of the hip from mid-stance to touchdown; less for longer steps bends the knee"),
+    real_parameter("late_knee", "rad", 0, 2, 1.0, "stance knee while a touchdown is overdue"),
+    real_parameter("late_rate", "rad/s", 0, 50, 6, "with which it gets there"),
     real_parameter("extend_fraction", "", 0, 1, 0.5, "part of its swing after which a leg extends"),
 };
 
@@ -142,6 +174,10 @@ enum class Objective {
   kSwingDampingRatio,
   kSwingWeight,
   kSwingAngularWeight,
+  kLateSwingWeight,
+  kLatePelvisFade,
+  kPelvisRollLimit,
+  kPelvisYawLimit,
   kToeStiffness,
   kToeDampingRatio,
   kToeWeight,
@@ -154,7 +190,7 @@ enum class Objective {
   kStrikeDriveDamping,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 43> kObjectiveParameters = {
+inline constexpr std::array<GaitdParameter, 47> kObjectiveParameters = {
     real_parameter("friction", "", 0.05, 2, 0.7, "coefficient that the controller counts on"),
     real_parameter("com_height", "", 0.5, 1.2, 1.0,
                    "CoM height when standing, over the height in the nominal posture"),
@@ -197,6 +233,12 @@ inline constexpr std::array<GaitdParameter, 43> kObjectiveParameters = {
     real_parameter("swing_damping_ratio", "", 0, 5, 0.7, "of the swing foot"),
     real_parameter("swing_weight", "", 0, 1e6, 30, "of the position of the swing foot"),
     real_parameter("swing_angular_weight", "", 0, 1e6, 5, "of its orientation"),
+    real_parameter("late_swing_weight", "1/s", 0, 1e4, 100,
+                   "growth of both while a touchdown is overdue, over what they were"),
+    real_parameter("late_pelvis_fade", "s", 0, 10, 0.1,
+                   "overdue time in which the pelvis orientation loses its weight; 0: never"),
+    real_parameter("pelvis_roll_limit", "rad", 0.01, 1, 0.3, "that it may then turn by"),
+    real_parameter("pelvis_yaw_limit", "rad", 0.01, 1, 0.2, "that it may then turn by"),
     real_parameter("toe_stiffness", "1/s^2", 0, 2000, 100, "holds the toe point in toe-off"),
     real_parameter("toe_damping_ratio", "", 0, 5, 0.4, "holds the toe point in toe-off"),
     real_parameter("toe_weight", "", 0, 1e6, 50, "of the toe point in toe-off"),
