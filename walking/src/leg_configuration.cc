@@ -102,10 +102,15 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
     return reference_;
   }
   const double straight = reach_.straight_knee;
-  const bool soft = reference_.state == LegState::kBent || reference_.state == LegState::kCollapsed;
-  reference_.stiffness = p[soft ? Legs::kBentStiffness : Legs::kStraightStiffness];
-  reference_.damping = p[soft ? Legs::kBentDamping : Legs::kStraightDamping];
-  reference_.weight = p[soft ? Legs::kBentWeight : Legs::kStraightWeight];
+  const bool bent = reference_.state == LegState::kBent;
+  const bool firm =
+      reference_.state == LegState::kStraighten || reference_.state == LegState::kStraight;
+  reference_.stiffness = p[bent ? Legs::kBentStiffness : Legs::kStraightStiffness];
+  reference_.damping = p[bent ? Legs::kBentDamping : Legs::kStraightDamping];
+  reference_.weight = p[firm                                       ? Legs::kStraightWeight
+                        : reference_.state == LegState::kExtend    ? Legs::kExtendWeight
+                        : reference_.state == LegState::kCollapsed ? Legs::kCollapsedWeight
+                                                                   : Legs::kBentWeight];
   switch (reference_.state) {
     case LegState::kStraighten: {
       const bool standing = gait.phase == GAITD_PHASE_STAND;
@@ -120,7 +125,7 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
       if (gait.phase == GAITD_PHASE_SWING) collapsed_knee_ = reach_.collapsed_knee;
       const double goal = std::max(collapsed_knee_, p[Legs::kCollapsedKnee]);
       const double start = std::max(straight, knee_at_entry_);
-      reference_.knee = start + (goal - start) * s * s;
+      reference_.knee = start + (goal - start) * s * s * (3.0 - 2.0 * s);
       break;
     }
     case LegState::kBent:

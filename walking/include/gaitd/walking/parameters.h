@@ -99,6 +99,8 @@ enum class Legs {
   kStraightDamping,
   kBentWeight,
   kStraightWeight,
+  kExtendWeight,
+  kCollapsedWeight,
   kStraightenRate,
   kSettleRate,
   kMaxLead,
@@ -112,7 +114,7 @@ enum class Legs {
   kExtendFraction,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 21> kLegParameters = {
+inline constexpr std::array<GaitdParameter, 23> kLegParameters = {
     real_parameter("bent_knee", "rad", 0, 2.5, 0.9, "privileged knee of both legs, walk-bent"),
     real_parameter("straight_knee", "rad", 0, 1, 0.2, "privileged knee of a straight leg"),
     real_parameter("collapsed_knee", "rad", 0, 2, 0.3, "privileged knee of a trailing leg"),
@@ -123,6 +125,8 @@ inline constexpr std::array<GaitdParameter, 21> kLegParameters = {
     real_parameter("straight_damping", "1/s", 0, 100, 10, "feedback on a straight knee"),
     real_parameter("bent_weight", "", 0, 1000, 5, "privileged weight of a bent leg"),
     real_parameter("straight_weight", "", 0, 1000, 150, "privileged weight of a straight leg"),
+    real_parameter("extend_weight", "", 0, 1000, 5, "privileged weight of a leg that reaches out"),
+    real_parameter("collapsed_weight", "", 0, 1000, 50, "privileged weight of a collapsed leg"),
     real_parameter("straighten_rate", "rad/s", 0.1, 50, 4, "of the knee after touchdown"),
     real_parameter("settle_rate", "rad/s", 0.05, 50, 0.5, "of the knees when standing"),
     real_parameter("max_lead", "rad", 0.01, 2, 0.4,
@@ -132,7 +136,7 @@ inline constexpr std::array<GaitdParameter, 21> kLegParameters = {
     real_parameter("collapse_duration", "s", 0.01, 5, 0.3, "of the ramp to the collapsed knee"),
     real_parameter("collapse_share", "", 0, 1.5, 0.9,
                    "of the bend with which a step down is reached by a straight leg"),
-    real_parameter("collapse_rate", "rad/s", 0.1, 20, 2.5, "of a knee that bends for it"),
+    real_parameter("collapse_rate", "rad/s", 0.1, 20, 2.0, "of a knee that bends for it"),
     real_parameter("largest_drop", "leg lengths", 0, 1, 0.16,
                    "of the hip from mid-stance to touchdown; less for longer steps bends the knee"),
     real_parameter("late_knee", "rad", 0, 2, 1.0, "stance knee while a touchdown is overdue"),
