@@ -47,8 +47,8 @@ struct DaemonConfig {
   int clock = GAITD_CLOCK_REALTIME;
   double period = 0.001;  // s
   Profile profile = Profile::kSimulation;
-  std::array<std::string, GAITD_LAYER_COUNT> variants = {"kinematic_inertial", "heel_to_toe",
-                                                         "fixed_steps", "never", "com_height_qp"};
+  std::array<std::string, GAITD_LAYER_COUNT> variants = {
+      "kinematic_inertial", "heel_to_toe", "fixed_steps", "icp_criteria", "nullspace_qp"};
   RealtimeConfig realtime;
   LogConfig log;
   std::string socket;  // "": the default place for the user

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "icp_criteria.h"
 #include "layer_inputs.h"
 #include "never.h"
 
@@ -31,6 +32,94 @@ TEST(Never, IsNeverActiveAndNamesTheToePointOfTheTrailingFoot) {
   w.tick();
   ASSERT_TRUE(w.run_until_stand());
   EXPECT_GT(trailing_seen, 100);
+}
+
+// A walk whose trailing foot has its CoP `cop_ahead` metres ahead of the middle of the sole and
+// whose desired CMP is the reference.
+class RollingWalk : public SyntheticWalk {
+ public:
+  explicit RollingWalk(double cop_ahead) : layer(atlas()) {
+    on_update = [this, cop_ahead] {
+      for (GaitdFootState& foot : robot.feet) {
+        foot.contact = GAITD_CONTACT_FULL;
+        foot.cop_valid = 1;
+        foot.cop[0] = cop_ahead;
+        foot.cop[1] = 0.0;
+      }
+      GaitdStepAdjustment desired{};
+      const int lead = walking::other_side(gait().trailing_side & 1);
+      for (int k = 0; k < 2; ++k) {
+        desired.cmp[k] = cmp_at_lead ? gait().footholds[lead].pose.position[k] : 1e3;
+      }
+      const GaitdToeOffInput in{sizeof(in), 0,       testing::layer_time(dt), &robot, &gait(),
+                                &plan,      &desired};
+      ASSERT_EQ(layer.process(in, toe_off), GAITD_OK);
+      if (toe_off.active != 0 && !was_active) {
+        ++starts;
+        first_fraction = gait().time_in_phase / gait().phase_duration;
+      }
+      was_active = toe_off.active != 0;
+      if (was_active) {
+        EXPECT_EQ(toe_off.side, gait().trailing_side);
+        EXPECT_EQ(gait().phase, GAITD_PHASE_TRANSFER);
+      }
+    };
+  }
+  IcpCriteria layer;
+  bool cmp_at_lead = true;
+  bool was_active = false;
+  int starts = 0;
+  double first_fraction = -1.0;
+};
+
+TEST(IcpCriteria, EveryLongEnoughStepRollsOverTheToeUntilLiftOff) {
+  RollingWalk w(0.1);
+  ASSERT_FALSE(w.machine.walk({.steps = 5, .length = 0.35}).refused());
+  w.tick();
+  ASSERT_TRUE(w.run_until_stand());
+  // The first step leaves from side by side; the closing one trails by a whole step.
+  EXPECT_EQ(w.starts, 5);
+  EXPECT_GT(w.first_fraction, 0.0);
+}
+
+TEST(IcpCriteria, AFootInToeContactCarriesLoadAtItsToeOnly) {
+  RollingWalk w(0.1);
+  ASSERT_FALSE(w.machine.walk({.steps = 3, .length = 0.35}).refused());
+  w.tick();
+  ASSERT_TRUE(w.run_until([&] { return w.toe_off.active != 0; }));
+  w.tick();
+  EXPECT_EQ(w.gait().footholds[w.toe_off.side].contact, GAITD_CONTACT_TOE);
+}
+
+TEST(IcpCriteria, ShortStepsStayFlat) {
+  RollingWalk w(0.1);
+  ASSERT_FALSE(w.machine.walk({.steps = 5, .length = 0.15}).refused());
+  w.tick();
+  ASSERT_TRUE(w.run_until_stand());
+  EXPECT_EQ(w.starts, 0);
+}
+
+TEST(IcpCriteria, ACopAtTheHeelOrADistantCmpHoldsItBack) {
+  for (bool cop : {true, false}) {
+    RollingWalk w(cop ? -0.1 : 0.1);
+    w.cmp_at_lead = cop;
+    ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.35}).refused());
+    w.tick();
+    ASSERT_TRUE(w.run_until_stand());
+    EXPECT_EQ(w.starts, 0);
+    EXPECT_EQ(w.toe_off.active, 0);
+  }
+}
+
+TEST(IcpCriteria, TheAnkleAtItsLimitStartsItAlone) {
+  RollingWalk w(-0.1);
+  for (const GaitdLeg& leg : atlas().legs) {
+    w.robot.joint_position[leg.ankle_pitch] = leg.ankle_pitch_bend_sign * 0.7;
+  }
+  ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.35}).refused());
+  w.tick();
+  ASSERT_TRUE(w.run_until_stand());
+  EXPECT_EQ(w.starts, 4);
 }
 
 }  // namespace

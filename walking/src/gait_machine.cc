@@ -149,18 +149,18 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
   state_.time_in_phase += dt;
   const double end = state_.phase_duration - 0.5 * dt;
   const bool over = state_.time_in_phase >= end;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    GaitdFoothold& foothold = state_.footholds[side];
+    if (foothold.contact == GAITD_CONTACT_NONE) continue;
+    const bool toe = toe_off.active != 0 && toe_off.side == side;
+    foothold.contact = toe ? GAITD_CONTACT_TOE : GAITD_CONTACT_FULL;
+  }
   switch (state_.phase) {
     case GAITD_PHASE_STAND:
       apply_pending_mode();
       if (queue_.size() > 0 && state_.paused == 0) begin_transfer(GAITD_BOTH);
       break;
     case GAITD_PHASE_TRANSFER: {
-      const int trailing = state_.trailing_side;
-      if (trailing != GAITD_BOTH && state_.transfer_final == 0) {
-        state_.footholds[trailing].contact = toe_off.active != 0 && toe_off.side == trailing
-                                                 ? GAITD_CONTACT_TOE
-                                                 : GAITD_CONTACT_FULL;
-      }
       if (state_.transfer_final != 0) {
         if (queue_.size() > 0 && state_.paused == 0) {
           begin_transfer(GAITD_BOTH);

@@ -2,30 +2,69 @@
 #include "gaitd/walking/leg_configuration.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
 
 namespace gaitd::walking {
-namespace {
+
+void LegConfiguration::set_leg(const GaitdModel& model, int side) {
+  leg_ = LegGeometry(model, side);
+  separation_ = model.nominal_foot_separation;
+}
+
+StepReach LegConfiguration::reach(int side, const GaitdGaitState& gait,
+                                  const LegParameters& p) const {
+  const double straight = p[Legs::kStraightKnee];
+  const bool stands = gait.phase != GAITD_PHASE_STAND && gait.transfer_final == 0 &&
+                      gait.footstep_count > 0 && gait.next_side != side;
+  if (!stands) return {straight, p[Legs::kCollapsedKnee]};
+  const GaitdPose& foothold = gait.footholds[side].pose;
+  const double yaw = sdk::yaw_of(sdk::quaternion(foothold.orientation));
+  const Eigen::Vector3d step = sdk::from_yaw(-yaw) * (sdk::view(gait.adjusted[0].pose.position) -
+                                                      sdk::view(foothold.position));
+  const double sideways = std::max(0.0, std::abs(step.y()) - separation_);
+  StepReach r = step_reach(leg_, std::hypot(step.x(), sideways), -step.z(), straight,
+                           p[Legs::kLargestDrop] * leg_.length(0.0));
+  r.collapsed_knee = std::max(p[Legs::kCollapsedKnee], p[Legs::kCollapseShare] * r.collapsed_knee);
+  if (gait.phase == GAITD_PHASE_SWING && gait.late_contact != 0) {
+    const double late = gait.time_in_phase - gait.phase_duration;
+    r.collapsed_knee =
+        std::max(r.collapsed_knee,
+                 std::min(r.collapsed_knee + p[Legs::kLateRate] * late, p[Legs::kLateKnee]));
+  }
+  return r;
+}
+
+// Deeper than usual takes longer, so that the knee is there at touchdown.
+double LegConfiguration::collapse_time(const LegParameters& p) const {
+  return std::max(p[Legs::kCollapseDuration],
+                  (reach_.collapsed_knee - p[Legs::kStraightKnee]) / p[Legs::kCollapseRate]);
+}
 
 // The state that the gait asks for, given the one the leg is in.
-LegState next_state(LegState state, bool straightened, int side, const GaitdGaitState& gait,
-                    const LegParameters& p) {
+LegState LegConfiguration::next_state(bool straightened, int side, const GaitdGaitState& gait,
+                                      const LegParameters& p) const {
   const double fraction =
       gait.phase_duration > 0.0 ? gait.time_in_phase / gait.phase_duration : 0.0;
   if (gait.phase == GAITD_PHASE_SWING) {
     if (gait.next_side == side) {
       return fraction < p[Legs::kExtendFraction] ? LegState::kBent : LegState::kExtend;
     }
-    if (fraction >= p[Legs::kCollapseFraction]) return LegState::kCollapsed;
+    const bool deep = reach_.collapsed_knee > p[Legs::kCollapsedKnee] + 0.05;
+    if (fraction >= p[Legs::kCollapseFraction] ||
+        (deep && gait.time_remaining <= collapse_time(p))) {
+      return LegState::kCollapsed;
+    }
   } else if (gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 &&
              gait.trailing_side == side) {
     return LegState::kCollapsed;
   }
+  const LegState state = reference_.state;
   if (state == LegState::kStraight) return state;
   return state == LegState::kStraighten && straightened ? LegState::kStraight
                                                         : LegState::kStraighten;
 }
-
-}  // namespace
 
 void LegConfiguration::reset(double knee) {
   reference_.knee = knee;
@@ -36,15 +75,23 @@ void LegConfiguration::enter(LegState state, double knee) {
   reference_.state = state;
   time_in_state_ = 0.0;
   knee_at_entry_ = knee;
+  if (state != LegState::kCollapsed) collapsed_knee_ = 0.0;
 }
 
 const LegConfiguration::Reference& LegConfiguration::update(double dt, int side, double knee,
                                                             const GaitdGaitState& gait,
                                                             const LegParameters& p) {
   time_in_state_ += dt;
-  const bool straightened = reference_.knee <= p[Legs::kStraightKnee] + 1e-9;
-  const LegState wanted = next_state(reference_.state, straightened, side, gait, p);
+  reach_ = reach(side, gait, p);
+  const bool straightened = reference_.knee <= reach_.straight_knee + 1e-9;
+  const LegState wanted = next_state(straightened, side, gait, p);
   if (wanted != reference_.state) enter(wanted, knee);
+  if (gait.mode != mode_) {
+    mode_ = gait.mode;
+    enter(LegState::kStraighten == wanted || LegState::kStraight == wanted ? LegState::kStraighten
+                                                                           : wanted,
+          knee);
+  }
 
   if (gait.mode != GAITD_MODE_WALK_STRAIGHT) {
     // The commanded height bends a leg that carries the robot; only the others need to be told.
@@ -54,29 +101,41 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
                   p[Legs::kBentDamping], leaving ? p[Legs::kBentWeight] : 0.0};
     return reference_;
   }
-  const double straight = p[Legs::kStraightKnee];
-  const bool soft = reference_.state == LegState::kBent || reference_.state == LegState::kCollapsed;
-  reference_.stiffness = p[soft ? Legs::kBentStiffness : Legs::kStraightStiffness];
-  reference_.damping = p[soft ? Legs::kBentDamping : Legs::kStraightDamping];
-  reference_.weight = p[soft ? Legs::kBentWeight : Legs::kStraightWeight];
+  const double straight = reach_.straight_knee;
+  const bool bent = reference_.state == LegState::kBent;
+  const bool firm =
+      reference_.state == LegState::kStraighten || reference_.state == LegState::kStraight;
+  reference_.stiffness = p[bent ? Legs::kBentStiffness : Legs::kStraightStiffness];
+  reference_.damping = p[bent ? Legs::kBentDamping : Legs::kStraightDamping];
+  reference_.weight = p[firm                                       ? Legs::kStraightWeight
+                        : reference_.state == LegState::kExtend    ? Legs::kExtendWeight
+                        : reference_.state == LegState::kCollapsed ? Legs::kCollapsedWeight
+                                                                   : Legs::kBentWeight];
   switch (reference_.state) {
     case LegState::kStraighten: {
-      const double ramp = knee_at_entry_ - p[Legs::kStraightenRate] * time_in_state_;
+      const bool standing = gait.phase == GAITD_PHASE_STAND;
+      const double rate = p[standing ? Legs::kSettleRate : Legs::kStraightenRate];
+      const double ramp = knee_at_entry_ - rate * time_in_state_;
       reference_.knee = std::max({straight, ramp, knee - p[Legs::kMaxLead]});
       break;
     }
     case LegState::kCollapsed: {
-      const double s = std::min(1.0, time_in_state_ / p[Legs::kCollapseDuration]);
-      const double goal = p[Legs::kCollapsedKnee];
-      reference_.knee = straight + (goal - straight) * s * s;
+      const double s = std::min(1.0, time_in_state_ / collapse_time(p));
+      // While trailing it keeps what it had at touchdown.
+      if (gait.phase == GAITD_PHASE_SWING) collapsed_knee_ = reach_.collapsed_knee;
+      const double goal = std::max(collapsed_knee_, p[Legs::kCollapsedKnee]);
+      const double start = std::max(straight, knee_at_entry_);
+      reference_.knee = start + (goal - start) * s * s * (3.0 - 2.0 * s);
       break;
     }
     case LegState::kBent:
       reference_.knee = p[Legs::kSwingKnee];
       break;
     case LegState::kStraight:
-    case LegState::kExtend:
       reference_.knee = straight;
+      break;
+    case LegState::kExtend:
+      reference_.knee = p[Legs::kStraightKnee];
       break;
   }
   return reference_;

@@ -16,7 +16,8 @@ constexpr double kHeightRate = 8.0;      // 1/s, of the reference filter of the 
 constexpr double kTouchdownTime = 0.05;  // s, in which the touchdown damping fades
 constexpr double kHeelStrikeTime = 0.1;  // s after touchdown in which the drives damp
 constexpr double kLevelRate = 1.0;       // 1/s, with which a walk levels the pelvis
-constexpr double kYawRate = 6.0;         // 1/s, of the reference filter of the heading
+constexpr double kToeEdge = 0.01;  // m, points this far behind the toe point are not on the edge
+constexpr double kYawRate = 6.0;   // 1/s, of the reference filter of the heading
 constexpr std::uint32_t kAngularRows = 0b000111;
 constexpr std::uint32_t kLinearRows = 0b111000;
 constexpr std::uint32_t kAllRows = 0b111111;
@@ -39,6 +40,12 @@ double heading_target(const GaitdGaitState& gait) {
   return mean_heading(heading(gait.footholds[gait.support].pose), heading(gait.adjusted[0].pose));
 }
 
+// s, for which the touchdown is overdue.
+double late_time(const GaitdGaitState& gait) {
+  return gait.phase == GAITD_PHASE_SWING ? std::max(0.0, gait.time_in_phase - gait.phase_duration)
+                                         : 0.0;
+}
+
 }  // namespace
 
 ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
@@ -51,6 +58,7 @@ ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
   const Eigen::Vector3d hip = kinematics_.p_WB(model_.joints[leg.hip_pitch].child_body);
   const Eigen::Vector3d ankle = kinematics_.p_WB(model_.joints[leg.ankle_pitch].child_body);
   leg_length_ = (hip - ankle).norm();
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) legs_[side].set_leg(model_, side);
   posture_joint_.fill(false);
   for (int i = 0; i < model_.joint_count; ++i) posture_joint_[i] = true;
   for (const GaitdLeg& l : model_.legs) {
@@ -66,6 +74,7 @@ void ObjectiveBuilder::reset(const GaitdRobotState& robot, const GaitdGaitState&
     const GaitdLeg& leg = model_.legs[side];
     legs_[side].reset(leg.knee_bend_sign * robot.joint_position[leg.knee]);
     time_in_contact_[side] = 1e3;
+    time_in_toe_off_[side] = 0.0;
   }
   swing_step_ = -1;
   height_.reset(robot.com[2]);
@@ -92,8 +101,10 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const bool touching = gait.footholds[side].contact != GAITD_CONTACT_NONE;
     time_in_contact_[side] = touching ? time_in_contact_[side] + dt : 0.0;
+    const bool toe = toe_off.active != 0 && toe_off.side == side;
+    time_in_toe_off_[side] = toe ? time_in_toe_off_[side] + dt : 0.0;
   }
-  update_contacts(gait, toe_off, out);
+  update_contacts(dt, gait, toe_off, out);
   update_momentum(dt, robot, gait, adjustment, out);
   update_upper_body(dt, robot, gait, out);
   update_feet(dt, robot, gait, lift_off, toe_off, out);
@@ -132,6 +143,10 @@ void ObjectiveBuilder::update_impedance(const GaitdGaitState& gait, GaitdObjecti
   }
 }
 
+bool ObjectiveBuilder::on_toe(int side) const {
+  return time_in_toe_off_[side] > parameters_[Objective::kToeRamp];
+}
+
 double ObjectiveBuilder::load_share(int side, const GaitdGaitState& gait) const {
   const double ramp = parameters_[Objective::kContactRamp];
   if (ramp <= 0.0) return 1.0;
@@ -144,15 +159,17 @@ double ObjectiveBuilder::load_share(int side, const GaitdGaitState& gait) const 
   return std::clamp(share, 0.0, 1.0);
 }
 
-void ObjectiveBuilder::update_contacts(const GaitdGaitState& gait, const GaitdToeOff& toe_off,
-                                       GaitdObjectives& out) const {
+void ObjectiveBuilder::update_contacts(double dt, const GaitdGaitState& gait,
+                                       const GaitdToeOff& toe_off, GaitdObjectives& out) const {
   const double rho_max = parameters_[Objective::kRhoMax] * weight_;
   const double rho_min = parameters_[Objective::kRhoMin] * weight_;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdFoothold& foothold = gait.footholds[side];
     if (foothold.contact == GAITD_CONTACT_NONE) continue;
     const GaitdFoot& foot = model_.feet[side];
-    const bool toe = toe_off.active != 0 && toe_off.side == side;
+    const bool toe = on_toe(side);
+    // On the way onto the toe the points behind it carry less and less.
+    const double unloaded = time_in_toe_off_[side] / std::max(parameters_[Objective::kToeRamp], dt);
     const Eigen::Quaterniond sole = sdk::quaternion(foothold.pose.orientation);
     const double share = load_share(side, gait);
     const int points = toe ? 1 : foothold.polygon_count;
@@ -167,7 +184,9 @@ void ObjectiveBuilder::update_contacts(const GaitdGaitState& gait, const GaitdTo
       view(c.normal) = sole * Eigen::Vector3d::UnitZ();
       view(c.tangent) = sole * Eigen::Vector3d::UnitX();
       c.friction = parameters_[Objective::kFriction];
-      c.rho_max = std::max(share * share * rho_max, 1e-3);
+      const bool behind = in_sole.x() < toe_off.toe_point[0] - kToeEdge;
+      const double rest = behind ? std::max(0.0, 1.0 - unloaded) : 1.0;
+      c.rho_max = std::max(share * share * rest * rest * rho_max, 1e-3);
       c.rho_min = std::min(rho_min, 0.5 * c.rho_max);
     }
   }
@@ -201,6 +220,7 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
   const double vertical = parameters_[Objective::kMomentumHeightWeight] / (mass * mass);
   for (int i = 0; i < 6; ++i) out.momentum_weight[i] = i == 5 ? vertical : horizontal;
   const bool straight = gait.mode == GAITD_MODE_WALK_STRAIGHT;
+  if (straight) height_.reset(robot.com[2], robot.com_velocity[2]);  // where a mode change finds it
   out.momentum_mask =
       (static_cast<std::uint32_t>(adjustment.angular_momentum_mask) & kAngularRows) |
       (straight ? 0b011000u : kLinearRows);
@@ -231,6 +251,20 @@ void ObjectiveBuilder::add_orientation_task(int body, const Eigen::Quaterniond& 
   view(task.weight).head<3>().setConstant(weight);
 }
 
+// While a touchdown is overdue the pelvis may turn towards the foot, up to a limit.
+double ObjectiveBuilder::pelvis_weight(const GaitdGaitState& gait,
+                                       const Eigen::Quaterniond& goal) const {
+  const double full = parameters_[Objective::kPelvisWeight];
+  const double fade = parameters_[Objective::kLatePelvisFade];
+  const double late = late_time(gait);
+  if (late <= 0.0 || fade <= 0.0) return full;
+  const Eigen::Vector3d turned =
+      sdk::log_so3(goal.conjugate() * Eigen::Quaterniond(kinematics_.R_WB(0)));
+  const double used = std::max(std::abs(turned.x()) / parameters_[Objective::kPelvisRollLimit],
+                               std::abs(turned.z()) / parameters_[Objective::kPelvisYawLimit]);
+  return full * std::clamp(std::max(1.0 - late / fade, used), 0.05, 1.0);
+}
+
 void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot,
                                          const GaitdGaitState& gait, GaitdObjectives& out) {
   // Unwrapped, so that the filter never turns the long way round.
@@ -240,8 +274,7 @@ void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot
   const Eigen::Quaterniond goal = sdk::from_yaw(yaw_.value()) * sdk::exp_so3(tilt_);
   const Eigen::Vector3d rate(0.0, 0.0, yaw_.velocity());
   add_orientation_task(0, goal, rate, parameters_[Objective::kPelvisStiffness],
-                       parameters_[Objective::kPelvisDampingRatio],
-                       parameters_[Objective::kPelvisWeight], out);
+                       parameters_[Objective::kPelvisDampingRatio], pelvis_weight(gait, goal), out);
   if (model_.chest_body > 0) {
     add_orientation_task(
         model_.chest_body, goal * chest_in_pelvis_, rate, parameters_[Objective::kChestStiffness],
@@ -263,7 +296,7 @@ void ObjectiveBuilder::update_feet(double dt, const GaitdRobotState& robot,
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     if (gait.footholds[side].contact == GAITD_CONTACT_NONE) {
       add_swing_foot(side, robot, gait, lift_off, out);
-    } else if (toe_off.active != 0 && toe_off.side == side) {
+    } else if (on_toe(side)) {
       add_toe(side, robot, gait, toe_off, out);
     } else {
       add_stance_foot(side, robot, out);
@@ -299,8 +332,10 @@ void ObjectiveBuilder::add_toe(int side, const GaitdRobotState& robot, const Gai
       stiffness * (sdk::transform(hold, in_sole) - kinematics_.frame_position(foot.body, in_body)) -
       damping(stiffness, ratio) * kinematics_.frame_velocity(foot.body, in_body).tail<3>();
   view(point.weight).setConstant(parameters_[Objective::kToeWeight]);
-  // Roll and yaw of the sole are held; its pitch has no row at all.
-  GaitdTask& turn = add_task(out, GAITD_TASK_FRAME, foot.body, 0b000101);
+  // Roll and yaw of the sole are held; its pitch has no row at all, but for a foot that has to come
+  // back because no step follows.
+  const bool stays = gait.phase == GAITD_PHASE_STAND || gait.transfer_final != 0;
+  GaitdTask& turn = add_task(out, GAITD_TASK_FRAME, foot.body, stays ? kAngularRows : 0b000101);
   view(turn.point) = in_body;
   const Eigen::Quaterniond now = sdk::quaternion(robot.feet[side].orientation);
   sdk::store(now, turn.axes);
@@ -317,7 +352,8 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
                                       GaitdObjectives& out) {
   const GaitdFootstep& goal = gait.adjusted[0];
   if (swing_step_ != gait.step_index) {
-    swing_.begin(lift_off, goal, gait.phase_duration, swing_parameters_);
+    swing_.begin(lift_off, view(robot.feet[side].twist), gait.footholds[side].pose.position[2],
+                 goal, gait.phase_duration, swing_parameters_);
     swing_step_ = gait.step_index;
     swing_revision_ = gait.plan_revision;
   } else if (swing_revision_ != gait.plan_revision) {
@@ -342,8 +378,9 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
       s.angular_acceleration +
       kp_z * rotation_error(s.orientation, sdk::quaternion(now.orientation)) +
       damping(kp_z, ratio) * (s.angular_velocity - twist.head<3>());
-  view(task.weight).head<3>().setConstant(parameters_[Objective::kSwingAngularWeight]);
-  view(task.weight).tail<3>().setConstant(parameters_[Objective::kSwingWeight]);
+  const double heavier = 1.0 + parameters_[Objective::kLateSwingWeight] * late_time(gait);
+  view(task.weight).head<3>().setConstant(heavier * parameters_[Objective::kSwingAngularWeight]);
+  view(task.weight).tail<3>().setConstant(heavier * parameters_[Objective::kSwingWeight]);
 }
 
 void ObjectiveBuilder::update_privileged(double dt, const GaitdRobotState& robot,

@@ -10,6 +10,9 @@ namespace gaitd::walking {
 namespace {
 
 constexpr double kShortest = 0.01;  // s, of one polynomial
+constexpr double kFastest = 0.7;    // m/s, gained at most by an overdue touchdown
+
+double blend(double a, double b, double share) { return a + share * (b - a); }
 
 bool same_goal(const GaitdFootstep& a, const GaitdFootstep& b) {
   return sdk::view(a.pose.position) == sdk::view(b.pose.position) &&
@@ -41,18 +44,25 @@ double Quintic::acceleration(double t) const {
   return 2.0 * c_[2] + t * (6.0 * c_[3] + t * (12.0 * c_[4] + t * 20.0 * c_[5]));
 }
 
-void SwingTrajectory::begin(const GaitdPose& from, const GaitdFootstep& to, double duration,
+void SwingTrajectory::begin(const GaitdPose& from, const sdk::Vector6d& twist, double ground,
+                            const GaitdFootstep& to, double duration,
                             const SwingParameters& parameters) {
   Sample now;
   now.position = sdk::view(from.position);
   now.orientation = sdk::quaternion(from.orientation);
-  now.velocity.setZero();
+  now.velocity = twist.tail<3>();
   now.acceleration.setZero();
-  now.angular_velocity.setZero();
+  now.angular_velocity = twist.head<3>();
   now.angular_acceleration.setZero();
-  apex_ = parameters[Swing::kApexFraction] * duration;
-  lift_off_height_ = from.position[2];
+  ground_ = ground;
+  const double drop = std::clamp(-edge(to, parameters), 0.0, 1.0);
+  apex_ = duration * blend(parameters[Swing::kApexFraction], parameters[Swing::kDropApex], drop);
   plan(0.0, now, to, duration, parameters);
+}
+
+// How much of an edge the way to `to` is: 1 up, -1 down, 0 level.
+double SwingTrajectory::edge(const GaitdFootstep& to, const SwingParameters& parameters) const {
+  return std::clamp((to.pose.position[2] - ground_) / parameters[Swing::kEdgeHeight], -1.0, 1.0);
 }
 
 void SwingTrajectory::replan(double t, const GaitdFootstep& to, double duration,
@@ -70,16 +80,27 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   duration_ = std::max(duration, t + kShortest);
   late_velocity_ = parameters[Swing::kLateVelocity];
   goal_ = to;
+  late_acceleration_ = parameters[Swing::kLateAcceleration];
   const double T = duration_ - t;
+  const double rise = std::max(0.0, edge(to, parameters));
+  const double drop = std::max(0.0, -edge(to, parameters));
+  leave_ = std::max(t, rise * parameters[Swing::kRiseWait] * duration_);
+  arrive_ =
+      std::max(blend(1.0, parameters[Swing::kDropArrive], drop) * duration_, leave_ + kShortest);
+  level_ = std::max(blend(1.0, parameters[Swing::kRiseLevel], rise) * duration_, t + kShortest);
+  const double way = arrive_ - leave_;
+  // Who waits does not move.
+  const Eigen::Vector3d v = leave_ > t ? Eigen::Vector3d::Zero() : now.velocity;
+  const Eigen::Vector3d a = leave_ > t ? Eigen::Vector3d::Zero() : now.acceleration;
   const Eigen::Vector3d end = sdk::view(to.pose.position);
-  x_.fit(now.position.x(), now.velocity.x(), now.acceleration.x(), end.x(), 0.0, 0.0, T);
-  y_.fit(now.position.y(), now.velocity.y(), now.acceleration.y(), end.y(), 0.0, 0.0, T);
+  x_.fit(now.position.x(), v.x(), a.x(), end.x(), 0.0, 0.0, way);
+  y_.fit(now.position.y(), v.y(), a.y(), end.y(), 0.0, 0.0, way);
   const double down = -parameters[Swing::kTouchdownVelocity];
   if (apex_ - t > kShortest) {
-    apex_height_ = std::max(lift_off_height_, end.z()) + to.swing_height;
+    apex_height_ = std::max(ground_, end.z()) + to.swing_height;
     // Curvature of a parabola of this height over the swing: no flat top, no hard corner.
-    const double rise = apex_height_ - 0.5 * (lift_off_height_ + end.z());
-    const double curvature = -6.0 * std::max(rise, 0.0) / (duration_ * duration_);
+    const double height = apex_height_ - 0.5 * (ground_ + end.z());
+    const double curvature = -6.0 * std::max(height, 0.0) / (duration_ * duration_);
     z_up_.fit(now.position.z(), now.velocity.z(), now.acceleration.z(), apex_height_, 0.0,
               curvature, apex_ - t);
     z_down_.fit(apex_height_, 0.0, curvature, end.z(), down, 0.0,
@@ -92,7 +113,8 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   const Eigen::Quaterniond goal = sdk::quaternion(to.pose.orientation);
   const Eigen::Vector3d turn = sdk::log_so3(goal * now.orientation.conjugate());
   for (int i = 0; i < 3; ++i) {
-    turn_[i].fit(0.0, now.angular_velocity[i], now.angular_acceleration[i], turn[i], 0.0, 0.0, T);
+    turn_[i].fit(0.0, now.angular_velocity[i], now.angular_acceleration[i], turn[i], 0.0, 0.0,
+                 level_ - t);
   }
 }
 
@@ -103,22 +125,29 @@ SwingTrajectory::Sample SwingTrajectory::evaluate(double t) const {
   const bool up = inside < apex_;
   const Quintic& z = up ? z_up_ : z_down_;
   const double uz = up ? u : inside - std::max(apex_, start_);
-  s.position = {x_.position(u), y_.position(u), z.position(uz)};
-  s.velocity = {x_.velocity(u), y_.velocity(u), z.velocity(uz)};
-  s.acceleration = {x_.acceleration(u), y_.acceleration(u), z.acceleration(uz)};
+  const double w = std::clamp(inside, leave_, arrive_) - leave_;
+  s.position = {x_.position(w), y_.position(w), z.position(uz)};
+  s.velocity = {x_.velocity(w), y_.velocity(w), z.velocity(uz)};
+  s.acceleration = {x_.acceleration(w), y_.acceleration(w), z.acceleration(uz)};
+  const double v = std::min(inside, level_) - start_;
   Eigen::Vector3d turn, rate, acceleration;
   for (int i = 0; i < 3; ++i) {
-    turn[i] = turn_[i].position(u);
-    rate[i] = turn_[i].velocity(u);
-    acceleration[i] = turn_[i].acceleration(u);
+    turn[i] = turn_[i].position(v);
+    rate[i] = turn_[i].velocity(v);
+    acceleration[i] = turn_[i].acceleration(v);
   }
   s.orientation = sdk::exp_so3(turn) * from_orientation_;
   // First order of the left Jacobian of SO(3); exact while the axis stays.
   s.angular_velocity = rate + 0.5 * turn.cross(rate);
   s.angular_acceleration = acceleration + 0.5 * turn.cross(acceleration);
   if (t > duration_) {
-    s.position.z() -= late_velocity_ * (t - duration_);
-    s.velocity = {0.0, 0.0, -late_velocity_};
+    const double late = t - duration_;
+    const double gain = std::min(late_acceleration_ * late, kFastest);
+    const double full = late_acceleration_ > 0.0 ? kFastest / late_acceleration_ : 0.0;
+    const double way =
+        late < full ? 0.5 * gain * late : 0.5 * kFastest * full + kFastest * (late - full);
+    s.position.z() -= late_velocity_ * late + (late_acceleration_ > 0.0 ? way : 0.0);
+    s.velocity = {0.0, 0.0, -late_velocity_ - gain};
     s.acceleration.setZero();
     s.angular_velocity.setZero();
     s.angular_acceleration.setZero();

@@ -39,7 +39,7 @@ constexpr double kDuration = 0.6;
 
 SwingTrajectory swing(const GaitdPose& from, const GaitdFootstep& to) {
   SwingTrajectory s;
-  s.begin(from, to, kDuration, parameters());
+  s.begin(from, sdk::Vector6d::Zero(), from.position[2], to, kDuration, parameters());
   return s;
 }
 
@@ -244,6 +244,56 @@ TEST(Quintic, MeetsPositionVelocityAndAccelerationAtBothEnds) {
     EXPECT_NEAR(q.velocity(duration), v[4], 1e-9);
     EXPECT_NEAR(q.acceleration(duration), v[5], 1e-8);
   }
+}
+
+TEST(SwingTrajectory, RisesInFrontOfAnEdgeAndIsLevelAboveIt) {
+  const GaitdPose from = pose(0.0, 0.0, 0.06, 0.0, 0.35, 0.0);  // rolled over the toe
+  const GaitdPose to = pose(0.3, 0.0, 0.2);
+  SwingTrajectory s;
+  s.begin(from, sdk::Vector6d::Zero(), 0.0, landing(to), kDuration, parameters());
+  for (double t = 0.0; t <= kDuration; t += 0.005) {
+    const auto sample = s.evaluate(t);
+    // The front half of the foot is 0.13 m long, the edge 0.16 m ahead of where the foot stood.
+    const Vector3d toe = sample.position + sample.orientation * Vector3d(0.13, 0.0, 0.0);
+    if (toe.x() > 0.155) EXPECT_GT(toe.z(), 0.2) << t;
+    EXPECT_LT(sample.position.z(), 0.2 + 0.1 + 1e-9) << t;
+  }
+}
+
+TEST(SwingTrajectory, IsPastAnEdgeBeforeItComesDown) {
+  const GaitdPose from = pose(0.0, 0.0, 0.2);
+  const GaitdPose to = pose(0.38, 0.0, 0.0);
+  const SwingTrajectory s = swing(from, landing(to));
+  for (double t = 0.0; t <= kDuration; t += 0.005) {
+    const Vector3d heel = s.evaluate(t).position - Vector3d(0.13, 0.0, 0.0);
+    if (heel.z() < 0.2) EXPECT_TRUE(heel.x() > 0.19 || heel.x() < 0.001) << t;
+  }
+}
+
+TEST(SwingTrajectory, GoesOnFromTheTwistOfTheFoot) {
+  sdk::Vector6d twist;
+  twist << 0.1, 1.5, -0.2, 0.3, 0.0, 0.4;
+  SwingTrajectory s;
+  s.begin(pose(0.0, 0.0, 0.05, 0.0, 0.3, 0.0), twist, 0.0, landing(pose(0.4, 0.0, 0.0)), kDuration,
+          parameters());
+  const auto begin = s.evaluate(0.0);
+  EXPECT_LT((begin.velocity - twist.tail<3>()).norm(), 1e-12);
+  EXPECT_LT((begin.angular_velocity - twist.head<3>()).norm(), 1e-12);
+}
+
+TEST(SwingTrajectory, AnOverdueTouchdownIsSoughtFasterAndFaster) {
+  const SwingTrajectory s = swing(pose(0, 0, 0), landing(pose(0.3, 0, 0)));
+  double last = -parameters()[Swing::kTouchdownVelocity] + 1e-9;
+  for (double late = 0.01; late < 0.3; late += 0.01) {
+    const double now = s.evaluate(kDuration + late).velocity.z();
+    EXPECT_LT(now, last);
+    last = now;
+  }
+  const double dt = 1e-6;
+  const double before = s.evaluate(kDuration + 0.2 - dt).position.z();
+  const double after = s.evaluate(kDuration + 0.2 + dt).position.z();
+  EXPECT_NEAR((after - before) / (2 * dt), s.evaluate(kDuration + 0.2).velocity.z(), 1e-6);
+  EXPECT_GT(s.evaluate(kDuration + 10.0).velocity.z(), -1.5);  // not without end
 }
 
 }  // namespace

@@ -350,13 +350,28 @@ void KinematicInertial::level_attitude(double dt, bool standing) {
   gyro_bias_ += faster * faster * p_[P::kTiltBiasRate] * dt * (orientation_.conjugate() * tilt);
 }
 
+void KinematicInertial::update_lagged_twist(double dt) {
+  sdk::Vector6d twist;
+  twist << rate_, orientation_.conjugate() * velocity_W_;
+  if (p_[P::kLegPole] <= 0.0 || time_since_start_ < kAveragingTime) {
+    half_lagged_ = lagged_ = twist;
+    return;
+  }
+  const double share = 1.0 - std::exp(-p_[P::kLegPole] * dt);
+  half_lagged_ += share * (twist - half_lagged_);
+  lagged_ += share * (half_lagged_ - lagged_);
+}
+
 void KinematicInertial::write(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
-  update_kinematics(out);
+  update_lagged_twist(in.time.period);
+  kinematics_.update(position_, orientation_, lagged_,
+                     sdk::head(out.joint_position, model_.joint_count),
+                     sdk::head(out.joint_velocity, model_.joint_count));
   out.joint_count = model_.joint_count;
   out.valid = 1;
   view(out.pelvis_position) = position_;
   sdk::store(orientation_, out.pelvis_orientation);
-  view(out.pelvis_twist) << rate_, orientation_.conjugate() * velocity_W_;
+  view(out.pelvis_twist) = lagged_;
   view(out.com) = kinematics_.com();
   view(out.com_velocity) = kinematics_.com_velocity();
   view(out.icp) = kinematics_.com().head<2>() + kinematics_.com_velocity().head<2>() / in.omega;

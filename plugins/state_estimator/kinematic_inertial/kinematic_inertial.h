@@ -50,7 +50,7 @@ class KinematicInertial {
       sdk::real_parameter("force_filter", "Hz", 1, 500, 80, "low-pass of the normal force"),
       sdk::real_parameter("leg_pole", "1/s", 0, 2000, 300,
                           "observer of the rates of leg joints; 0: the rates of the sensors"),
-      sdk::real_parameter("upper_body_pole", "1/s", 0, 2000, 60,
+      sdk::real_parameter("upper_body_pole", "1/s", 0, 2000, 300,
                           "the same for all other joints, which follow their commands closely"),
       sdk::real_parameter("position_rate", "1/s", 0.5, 200, 12,
                           "pole of the observer of position, velocity and bias"),
@@ -98,6 +98,7 @@ class KinematicInertial {
   void update_anchors(const GaitdStateEstimatorInput& in, double dt);
   void update_position(const GaitdStateEstimatorInput& in, double dt);
   void level_attitude(double dt, bool standing);
+  void update_lagged_twist(double dt);
   void write(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void update_kinematics(const GaitdRobotState& joints);
   Eigen::Quaterniond sole_orientation(int side) const;
@@ -122,6 +123,10 @@ class KinematicInertial {
   Eigen::Vector3d accelerometer_bias_ = Eigen::Vector3d::Zero();     // pelvis frame
   Eigen::Vector3d specific_force_ = Eigen::Vector3d::Zero();         // at the pelvis, its frame
   Eigen::Vector3d last_rate_ = Eigen::Vector3d::Zero();
+  // Pelvis twist as late as the observed rates of the leg joints: what is built from both, such as
+  // the velocity of the CoM or of a foot, would otherwise see every quick turn of the pelvis twice.
+  sdk::Vector6d half_lagged_ = sdk::Vector6d::Zero();
+  sdk::Vector6d lagged_ = sdk::Vector6d::Zero();
   std::array<Foot, GAITD_MAX_FEET> feet_;
   Eigen::Vector2d last_cop_ = Eigen::Vector2d::Zero();
 };

@@ -25,18 +25,13 @@ class ComHeightQp {
   static constexpr std::array<GaitdParameter, 8> kParameters = {
       sdk::real_parameter("privileged_scale", "", 0, 10, 0.1,
                           "of the privileged weights; small: it must not disturb the tasks"),
-      sdk::real_parameter("joint_rate_gain", "1/s", 1, 500, 30,
-                          "allowed joint rate per distance to a position limit"),
-      sdk::real_parameter("limit_horizon", "s", 0.001, 1, 0.02,
-                          "in which a joint may reach its allowed rate"),
-      sdk::real_parameter("joint_acceleration_limit", "rad/s^2", 10, 1e5, 2000, "of every joint"),
-      sdk::real_parameter("base_acceleration_limit", "m/s^2", 10, 1e5, 1000,
-                          "of the pelvis, also in rad/s^2"),
-      sdk::real_parameter("torque_scale", "", 0.05, 1, 1, "share of the effort limits in use"),
-      sdk::integer_parameter("max_iterations", "", 10, 10000, 300,
-                             "changes of the active set after which the solver gives up"),
-      sdk::real_parameter("reference_leak", "1/s", 0, 1000, 8,
-                          "with which the references of the drives follow the joints"),
+      kJointRateGainParameter,
+      kHorizonParameter,
+      kJointAccelerationParameter,
+      kBaseAccelerationParameter,
+      kTorqueScaleParameter,
+      kMaxIterationsParameter,
+      kReferenceLeakParameter,
   };
 
   explicit ComHeightQp(const GaitdModel& model);

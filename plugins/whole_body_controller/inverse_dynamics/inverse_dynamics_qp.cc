@@ -132,14 +132,22 @@ void InverseDynamicsQp::add_rows(const GaitdObjectives& objectives, std::uint32_
 
 double InverseDynamicsQp::previous_rho(const GaitdObjectives& objectives, int contact,
                                        int edge) const {
-  // Contacts are matched by body and by their place among the contacts of that body.
+  // Contacts are matched by body and by their place among the contacts of that body; when their
+  // number has changed, as onto the toe, the new ones share the old force.
   const int body = objectives.contacts[contact].body;
-  int place = 0;
-  for (int i = 0; i < contact; ++i) place += objectives.contacts[i].body == body ? 1 : 0;
-  for (int i = 0; i < state_.contact_count; ++i) {
-    if (state_.contact_body[i] == body && place-- == 0) return state_.rho[i][edge];
+  int place = 0, now = 0, before = 0;
+  for (int i = 0; i < rho_count_ / kEdges; ++i) {
+    if (objectives.contacts[i].body != body) continue;
+    place += i < contact ? 1 : 0;
+    ++now;
   }
-  return 0.0;
+  double sum = 0.0, matching = 0.0;
+  for (int i = 0; i < state_.contact_count; ++i) {
+    if (state_.contact_body[i] != body) continue;
+    if (before++ == place) matching = state_.rho[i][edge];
+    sum += state_.rho[i][edge];
+  }
+  return before == now ? matching : sum / now;
 }
 
 void InverseDynamicsQp::add_costs(const GaitdObjectives& objectives) {
@@ -171,6 +179,22 @@ void InverseDynamicsQp::add_costs(const GaitdObjectives& objectives) {
 void InverseDynamicsQp::add_joint(int joint, double acceleration, double weight) {
   H_(6 + joint, 6 + joint) += weight;
   g_[6 + joint] -= weight * acceleration;
+}
+
+void InverseDynamicsQp::add_row(const Eigen::VectorXd& row, double target, double weight) {
+  H_.topLeftCorner(nv_, nv_).triangularView<Eigen::Lower>() +=
+      (weight * row).lazyProduct(row.transpose());
+  g_.head(nv_) -= weight * target * row;
+}
+
+void InverseDynamicsQp::claim(const GaitdObjectives& objectives,
+                              NullSpaceProjector& projector) const {
+  for (int i = 0; i < row_count_; ++i) {
+    if (weights_[i] > 0.0) projector.add(rows_.row(i));
+  }
+  for (int i = 0; i < joints_; ++i) {
+    if (objectives.posture_weight[i] > 0.0) projector.claim(6 + i);
+  }
 }
 
 void InverseDynamicsQp::add_equalities(const GaitdObjectives& objectives) {

@@ -6,8 +6,28 @@
 #include "gaitd/abi/plugin.h"
 #include "gaitd/dynamics/dynamics.h"
 #include "gaitd/qp/dense_solver.h"
+#include "gaitd/sdk/parameter.h"
+#include "null_space_projector.h"
 
 namespace gaitd::plugins {
+
+// Parameters that every variant has.
+inline constexpr GaitdParameter kJointRateGainParameter = sdk::real_parameter(
+    "joint_rate_gain", "1/s", 1, 500, 30, "allowed joint rate per distance to a position limit");
+inline constexpr GaitdParameter kHorizonParameter = sdk::real_parameter(
+    "limit_horizon", "s", 0.001, 1, 0.02, "in which a joint may reach its allowed rate");
+inline constexpr GaitdParameter kJointAccelerationParameter =
+    sdk::real_parameter("joint_acceleration_limit", "rad/s^2", 10, 1e5, 2000, "of every joint");
+inline constexpr GaitdParameter kBaseAccelerationParameter = sdk::real_parameter(
+    "base_acceleration_limit", "m/s^2", 10, 1e5, 1000, "of the pelvis, also in rad/s^2");
+inline constexpr GaitdParameter kTorqueScaleParameter =
+    sdk::real_parameter("torque_scale", "", 0.05, 1, 1, "share of the effort limits in use");
+inline constexpr GaitdParameter kMaxIterationsParameter =
+    sdk::integer_parameter("max_iterations", "", 10, 10000, 300,
+                           "changes of the active set after which the solver gives up");
+inline constexpr GaitdParameter kReferenceLeakParameter =
+    sdk::real_parameter("reference_leak", "1/s", 0, 1000, 8,
+                        "with which the references of the drives follow the joints");
 
 // The quadratic program that every whole-body controller here solves (theory section 4):
 //   unknowns   z = [vdot (6+n); rho], rho the multipliers of the friction-pyramid edges
@@ -42,9 +62,10 @@ class InverseDynamicsQp {
              const Limits& limits);
   // Adds weight * (vdot_joint - acceleration)^2.
   void add_joint(int joint, double acceleration, double weight);
-  // Rows and targets of everything that was added so far, without weights: what no task claims is
-  // the null space of these. velocity_size() columns.
-  Eigen::Ref<const Eigen::MatrixXd> task_rows() const { return rows_.topRows(row_count_); }
+  // Adds weight * (row vdot - target)^2; `row` has velocity_size() entries.
+  void add_row(const Eigen::VectorXd& row, double target, double weight);
+  // Everything that the tasks taken by begin() claim: rows of weight zero claim nothing.
+  void claim(const GaitdObjectives& objectives, NullSpaceProjector& projector) const;
 
   void solve(int max_iterations);
   // Torques, references and figures of the last solve, for a tick of `dt` seconds. The references

@@ -9,9 +9,10 @@ namespace gaitd::walking {
 // continuous velocity and known acceleration.
 class ReferenceFilter {
  public:
-  void reset(double value) {
+  void reset(double value, double velocity = 0.0) {
     value_ = value;
-    velocity_ = acceleration_ = 0.0;
+    velocity_ = velocity;
+    acceleration_ = 0.0;
   }
   // `rate` in 1/s.
   void update(double dt, double target, double rate) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gaitd/abi/types.h"
+#include "gaitd/walking/leg_geometry.h"
 #include "gaitd/walking/parameters.h"
 
 namespace gaitd::walking {
@@ -12,8 +13,9 @@ enum class LegState { kStraighten = 0, kStraight, kCollapsed, kBent, kExtend };
 
 // Privileged knee angle of one leg, from a small state machine (Griffin 2018; theory section 4):
 //   straighten  touchdown of this leg: ramps from the measured knee to the straight angle
-//   straight    ramp done
-//   collapsed   late in the other leg's swing and while trailing: slightly bent
+//   straight    ramp done; as straight as the coming step allows
+//   collapsed   late in the other leg's swing and while trailing: slightly bent, more so when the
+//               step goes down or the touchdown is late
 //   bent        start of this leg's swing: picks the foot up
 //   extend      later in this leg's swing: straight, reaching for the ground
 // In walk-bent every state has the bent angle. Knee angles here are positive when bent.
@@ -27,6 +29,7 @@ class LegConfiguration {
     double weight;
   };
 
+  void set_leg(const GaitdModel& model, int side);
   void reset(double knee);
   // `side` is this leg, `knee` its measured bend (rad). One call per tick of `dt` seconds.
   const Reference& update(double dt, int side, double knee, const GaitdGaitState& gait,
@@ -35,9 +38,19 @@ class LegConfiguration {
 
  private:
   void enter(LegState state, double knee);
+  LegState next_state(bool straightened, int side, const GaitdGaitState& gait,
+                      const LegParameters& p) const;
+  // What the next step asks of this leg while it stands.
+  StepReach reach(int side, const GaitdGaitState& gait, const LegParameters& p) const;
+  double collapse_time(const LegParameters& p) const;
   Reference reference_{LegState::kBent, 0.0, 0.0, 0.0, 0.0};
+  LegGeometry leg_;
+  double separation_ = 0.0;  // m, of the feet in the nominal posture
+  StepReach reach_{};
   double time_in_state_ = 0.0;
   double knee_at_entry_ = 0.0;
+  double collapsed_knee_ = 0.0;
+  int mode_ = GAITD_MODE_STAND;
 };
 
 }  // namespace gaitd::walking

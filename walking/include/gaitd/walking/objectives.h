@@ -46,7 +46,7 @@ class ObjectiveBuilder {
   const LegConfiguration::Reference& leg(int side) const { return legs_[side].reference(); }
 
  private:
-  void update_contacts(const GaitdGaitState& gait, const GaitdToeOff& toe_off,
+  void update_contacts(double dt, const GaitdGaitState& gait, const GaitdToeOff& toe_off,
                        GaitdObjectives& out) const;
   void update_momentum(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                        const GaitdStepAdjustment& adjustment, GaitdObjectives& out);
@@ -66,6 +66,9 @@ class ObjectiveBuilder {
   void add_orientation_task(int body, const Eigen::Quaterniond& goal,
                             const Eigen::Vector3d& goal_rate, double stiffness,
                             double damping_ratio, double weight, GaitdObjectives& out) const;
+  double pelvis_weight(const GaitdGaitState& gait, const Eigen::Quaterniond& goal) const;
+  // The rest of the sole is unloaded: the foot may roll.
+  bool on_toe(int side) const;
   // Share of the full load that the contacts of a foot may carry now, 0..1.
   double load_share(int side, const GaitdGaitState& gait) const;
 
@@ -88,6 +91,7 @@ class ObjectiveBuilder {
   ReferenceFilter yaw_;
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // rad, held while standing, level in a walk
   std::array<double, GAITD_MAX_FEET> time_in_contact_{};
+  std::array<double, GAITD_MAX_FEET> time_in_toe_off_{};
   bool impedance_given_ = false;
   std::array<PerJoint, static_cast<int>(Impedance::kCount)> stiffness_{};
   std::array<PerJoint, static_cast<int>(Impedance::kCount)> damping_{};

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "gaitd/abi/types.h"
+#include "gaitd/sdk/views.h"
 #include "gaitd/walking/parameters.h"
 
 namespace gaitd::walking {
@@ -25,7 +26,9 @@ class Quintic {
 
 // Path of the sole of the swing foot in W, with continuous acceleration: from lift-off over an apex
 // above the higher of both footholds down to the foothold, which it meets with a downward velocity.
-// After the planned end it keeps going down at the late velocity until the ground is met.
+// Onto an edge the foot first rises, and is level before it is above it; down an edge it is above
+// its foothold before it comes down. After the planned end it keeps going down, faster and faster,
+// until the ground is met.
 class SwingTrajectory {
  public:
   struct Sample {
@@ -34,9 +37,10 @@ class SwingTrajectory {
     Eigen::Vector3d angular_velocity, angular_acceleration;  // rad/s, rad/s^2, W
   };
 
-  // A new swing from rest at `from`, `duration` seconds long.
-  void begin(const GaitdPose& from, const GaitdFootstep& to, double duration,
-             const SwingParameters& parameters);
+  // A new swing, `duration` seconds long, from `from` with `twist` (of the sole origin, W axes,
+  // angular first). `ground` is the height of the foothold that is left (m, W).
+  void begin(const GaitdPose& from, const sdk::Vector6d& twist, double ground,
+             const GaitdFootstep& to, double duration, const SwingParameters& parameters);
   // The foothold or the timing changed at time t of the swing: goes on from the present reference,
   // continuous in acceleration, and ends at `to` at `duration`.
   void replan(double t, const GaitdFootstep& to, double duration,
@@ -44,19 +48,24 @@ class SwingTrajectory {
   Sample evaluate(double t) const;
 
  private:
+  double edge(const GaitdFootstep& to, const SwingParameters& parameters) const;
   void plan(double t, const Sample& now, const GaitdFootstep& to, double duration,
             const SwingParameters& parameters);
 
   double start_ = 0.0;     // s, of the polynomials below
   double apex_ = 0.0;      // s, where z changes polynomial
   double duration_ = 0.0;  // s, end of the swing
+  double leave_ = 0.0;     // s, before which the foot stays where it is from above
+  double arrive_ = 0.0;    // s, after which it is above its foothold
+  double level_ = 0.0;     // s, after which it has the orientation of its foothold
   double apex_height_ = 0.0;
   double late_velocity_ = 0.0;
+  double late_acceleration_ = 0.0;
   Quintic x_, y_, z_up_, z_down_;
   Quintic turn_[3];  // rotation vector from from_orientation_, W, rad
   Eigen::Quaterniond from_orientation_ = Eigen::Quaterniond::Identity();
-  GaitdFootstep goal_{};          // what the polynomials lead to
-  double lift_off_height_ = 0.0;  // m
+  GaitdFootstep goal_{};  // what the polynomials lead to
+  double ground_ = 0.0;   // m, height of the foothold that was left
 };
 
 }  // namespace gaitd::walking

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "icp_criteria.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
+
+namespace gaitd::plugins {
+namespace {
+
+using sdk::view;
+using walking::ConvexPolygon;
+
+constexpr double kFlat = 0.03;  // rad, pitch of a foot that is back on the ground
+
+double distance(const ConvexPolygon& polygon, const Eigen::Vector2d& p) {
+  return (polygon.closest_point(p) - p).norm();
+}
+
+}  // namespace
+
+IcpCriteria::IcpCriteria(const GaitdModel& model) : model_(model) {
+  const GaitdLeg& leg = model_.legs[GAITD_LEFT];
+  leg_length_ = 0.0;
+  bool below_hip = false;
+  for (int i = 0; i < leg.joint_count; ++i) {
+    const int joint = leg.joints[i];
+    if (below_hip) leg_length_ += view(model_.joints[joint].origin).norm();
+    below_hip = below_hip || joint == leg.hip_pitch;
+    if (joint == leg.ankle_pitch) break;
+  }
+  const walking::SoleExtent sole = walking::sole_extent(
+      walking::whole_sole(model_, GAITD_LEFT, GaitdPose{{0, 0, 0}, {0, 0, 0, 1}}));
+  foot_length_ = sole.x_max - sole.x_min;
+  reset();
+}
+
+void IcpCriteria::reset() {
+  state_ = {};
+  state_.size = sizeof(state_);
+  state_.side = GAITD_BOTH;
+}
+
+Eigen::Vector3d IcpCriteria::toe_point(const GaitdFoothold& foothold, int side) const {
+  Eigen::Vector3d point = view(model_.feet[side].toe_point);
+  point.x() = std::min(point.x(), walking::sole_extent(foothold).x_max);
+  return point;
+}
+
+bool IcpCriteria::far_enough(const GaitdFoothold& trailing, const GaitdFoothold& leading) const {
+  const double yaw = sdk::yaw_of(sdk::quaternion(trailing.pose.orientation));
+  const Eigen::Vector3d d =
+      sdk::from_yaw(-yaw) * (view(leading.pose.position) - view(trailing.pose.position));
+  return d.x() >= p_[P::kMinForward] ||
+         (std::abs(d.z()) >= p_[P::kMinHeight] && d.x() >= 0.5 * p_[P::kMinForward]);
+}
+
+IcpCriteria::Candidate IcpCriteria::candidate(const GaitdGaitState& gait) const {
+  Candidate c;
+  if (gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 &&
+      gait.trailing_side != GAITD_BOTH && gait.trailing_side == gait.next_side) {
+    c.side = gait.trailing_side;
+    c.leading = gait.footholds[walking::other_side(c.side)];
+  } else if (gait.phase == GAITD_PHASE_SWING && gait.footstep_count > 1 &&
+             gait.time_in_phase >= p_[P::kSwingStart] * gait.phase_duration) {
+    c.leading = walking::foothold_of(model_, gait.adjusted[0]);
+    const Eigen::Vector3d step =
+        view(c.leading.pose.position) - view(gait.footholds[gait.support].pose.position);
+    if (step.norm() >= p_[P::kSwingReach] * leg_length_) c.side = gait.support;
+  }
+  if (c.side != GAITD_BOTH && !far_enough(gait.footholds[c.side], c.leading)) c.side = GAITD_BOTH;
+  return c;
+}
+
+void IcpCriteria::evaluate(const GaitdToeOffInput& in, const Candidate& c, GaitdToeOff& out) const {
+  const GaitdFoot& foot = model_.feet[c.side];
+  const GaitdFootState& measured = in.robot->feet[c.side];
+  const GaitdFoothold& toe = in.gait->footholds[c.side];
+  const Eigen::Vector3d edge = toe_point(toe, c.side);
+  const Eigen::Vector2d toe_world = sdk::transform(toe.pose, edge).head<2>();
+  GaitdFoothold leading = c.leading;
+  leading.contact = GAITD_CONTACT_FULL;
+  ConvexPolygon lead, predicted;
+  walking::add_foothold(leading, foot.toe_point, lead);
+  lead.make_hull();
+  walking::add_foothold(leading, foot.toe_point, predicted);
+  predicted.add(toe_world);
+  predicted.make_hull();
+
+  const Eigen::Vector2d icp = view(in.robot->icp);
+  const Eigen::Vector2d desired = view(in.plan->icp);
+  const double span = std::max(distance(lead, toe_world), 1e-3);
+  const Eigen::Vector2d cop_to_toe = view(measured.cop) - edge.head<2>();
+  const GaitdLeg& leg = model_.legs[c.side];
+  const double dorsiflexion = leg.ankle_pitch_bend_sign * in.robot->joint_position[leg.ankle_pitch];
+
+  double* value = out.criterion;
+  value[GAITD_TOE_OFF_ICP] =
+      std::min(predicted.inside_distance(icp), predicted.inside_distance(desired));
+  value[GAITD_TOE_OFF_ICP_DISTANCE] = std::max(distance(lead, icp), distance(lead, desired)) / span;
+  // Sideways the CoP is moved as it likes: only the way to the toe counts.
+  value[GAITD_TOE_OFF_COP] = measured.cop_valid != 0 ? std::abs(cop_to_toe.x()) : 1.0;
+  value[GAITD_TOE_OFF_CMP] = distance(predicted, view(in.adjustment->cmp));
+  value[GAITD_TOE_OFF_ANKLE] = p_[P::kAnkleLimit] - dorsiflexion;
+
+  int32_t* ok = out.satisfied;
+  ok[GAITD_TOE_OFF_ICP] = value[GAITD_TOE_OFF_ICP] >= p_[P::kIcpMargin];
+  ok[GAITD_TOE_OFF_ICP_DISTANCE] = value[GAITD_TOE_OFF_ICP_DISTANCE] <= p_[P::kIcpDistance];
+  ok[GAITD_TOE_OFF_COP] = value[GAITD_TOE_OFF_COP] <= p_[P::kCopDistance] * foot_length_;
+  ok[GAITD_TOE_OFF_CMP] = value[GAITD_TOE_OFF_CMP] <= p_[P::kCmpDistance];
+  ok[GAITD_TOE_OFF_ANKLE] = value[GAITD_TOE_OFF_ANKLE] <= 0.0;
+}
+
+bool IcpCriteria::rolling_on(const GaitdRobotState& robot, const GaitdGaitState& gait) const {
+  const GaitdFoothold& foothold = gait.footholds[state_.side];
+  if (foothold.contact == GAITD_CONTACT_NONE) return false;
+  if (gait.phase == GAITD_PHASE_SWING) return true;
+  if (gait.phase == GAITD_PHASE_TRANSFER && gait.next_side == state_.side) return true;
+  // No step follows after all: the foot comes back to the ground first.
+  const Eigen::Quaterniond turned = sdk::quaternion(foothold.pose.orientation).conjugate() *
+                                    sdk::quaternion(robot.feet[state_.side].orientation);
+  return std::abs(sdk::log_so3(turned).y()) > kFlat;
+}
+
+GaitdStatus IcpCriteria::process(const GaitdToeOffInput& in, GaitdToeOff& out) {
+  out = {};
+  out.size = sizeof(out);
+  out.side = GAITD_BOTH;
+  const GaitdGaitState& gait = *in.gait;
+  const Candidate c = candidate(gait);
+  const bool goes_on = state_.active != 0 && rolling_on(*in.robot, gait);
+  const int side = goes_on ? state_.side : c.side;
+  if (c.side != GAITD_BOTH) evaluate(in, c, out);
+  if (goes_on) {
+    out.active = 1;
+  } else if (c.side == GAITD_BOTH || in.robot->feet[c.side].contact == GAITD_CONTACT_NONE) {
+    state_.time_satisfied = 0.0;
+  } else {
+    const int32_t* ok = out.satisfied;
+    const bool all = ok[GAITD_TOE_OFF_ICP] && ok[GAITD_TOE_OFF_ICP_DISTANCE] &&
+                     ok[GAITD_TOE_OFF_COP] && ok[GAITD_TOE_OFF_CMP];
+    const bool limit = ok[GAITD_TOE_OFF_ICP] && ok[GAITD_TOE_OFF_ANKLE];
+    state_.time_satisfied = all || limit ? state_.time_satisfied + in.time.period : 0.0;
+    out.active = state_.time_satisfied > p_[P::kHoldTime] ? 1 : 0;
+  }
+  state_.active = out.active;
+  state_.side = out.active != 0 ? side : GAITD_BOTH;
+  if (out.active == 0 && goes_on) state_.time_satisfied = 0.0;
+  out.side = state_.side;
+  if (side != GAITD_BOTH) view(out.toe_point) = toe_point(gait.footholds[side], side);
+  return GAITD_OK;
+}
+
+}  // namespace gaitd::plugins

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "gaitd/sdk/layer.h"
+#include "gaitd/walking/polygon.h"
+
+namespace gaitd::plugins {
+
+// Decides when the trailing foot rolls over its toe (Griffin et al. 2018, section IV; theory
+// section 6). Toe-off starts when the leading foot is far enough ahead, clearly higher or lower,
+// and all four criteria hold for a moment, or when the trailing ankle has no dorsiflexion left and
+// the first one holds. It then lasts until the foot is lifted. Values in the output:
+//   icp           m, how far the worse of measured and desired ICP is inside the predicted support
+//                 polygon (toe point and leading foothold); at least 0 expected
+//   icp_distance  the larger distance of the two to the leading foothold over the distance of the
+//                 toe point to it; at most `icp_distance` expected
+//   cop           m, from the CoP of the trailing foot to its toe point
+//   cmp           m, from the desired CMP to the predicted polygon
+//   ankle         rad, dorsiflexion of the trailing ankle that is left
+// Late in a swing that needs the reach the stance foot may roll likewise; its polygon is the toe
+// point and the coming foothold.
+class IcpCriteria {
+ public:
+  enum class P {
+    kMinForward,
+    kMinHeight,
+    kIcpMargin,
+    kIcpDistance,
+    kCopDistance,
+    kCmpDistance,
+    kAnkleLimit,
+    kHoldTime,
+    kSwingStart,
+    kSwingReach,
+    kCount
+  };
+  static constexpr std::array<GaitdParameter, 10> kParameters = {
+      sdk::real_parameter("min_forward", "m", 0, 1, 0.2, "leading foot ahead of the trailing one"),
+      sdk::real_parameter("min_height", "m", 0.01, 1, 0.1,
+                          "or higher or lower by this much, and ahead"),
+      sdk::real_parameter("icp_margin", "m", -0.1, 0.1, 0,
+                          "how far inside the predicted polygon both ICPs must be"),
+      sdk::real_parameter("icp_distance", "", 0, 2, 0.25,
+                          "of the ICPs to the leading foothold, over that of the toe point"),
+      sdk::real_parameter("cop_distance", "foot lengths", 0, 1, 0.54,
+                          "of the trailing CoP to the toe point"),
+      sdk::real_parameter("cmp_distance", "m", 0, 0.5, 0.03,
+                          "of the desired CMP to the predicted polygon"),
+      sdk::real_parameter("ankle_limit", "rad", 0, 1.5, 0.6,
+                          "dorsiflexion after which the ankle alone starts toe-off"),
+      sdk::real_parameter("hold_time", "s", 0, 0.2, 0.002, "for which the criteria must hold"),
+      sdk::real_parameter("swing_start", "", 0.3, 1, 0.7,
+                          "part of a swing after which the stance foot may roll"),
+      sdk::real_parameter("swing_reach", "leg lengths", 0, 3, 0.75,
+                          "step from which on the stance foot may roll before touchdown"),
+  };
+
+  explicit IcpCriteria(const GaitdModel& model);
+  void set_parameter(int index, double value) { p_.set(index, value); }
+  GaitdStatus process(const GaitdToeOffInput& in, GaitdToeOff& out);
+  void reset();
+  void get_state(GaitdToeOffState& s) const { s = state_; }
+  void set_state(const GaitdToeOffState& s) { state_ = s; }
+
+ private:
+  // The foot that may roll, and where the other one stands or is about to.
+  struct Candidate {
+    int side = GAITD_BOTH;  // GAITD_BOTH: none
+    GaitdFoothold leading{};
+  };
+  Candidate candidate(const GaitdGaitState& gait) const;
+  // m, sole frame: the middle of the front edge, or of the part of the sole that stands on ground.
+  Eigen::Vector3d toe_point(const GaitdFoothold& foothold, int side) const;
+  bool rolling_on(const GaitdRobotState& robot, const GaitdGaitState& gait) const;
+  bool far_enough(const GaitdFoothold& trailing, const GaitdFoothold& leading) const;
+  void evaluate(const GaitdToeOffInput& in, const Candidate& c, GaitdToeOff& out) const;
+
+  const GaitdModel model_;
+  sdk::Parameters<P> p_{kParameters};
+  GaitdToeOffState state_{};
+  double foot_length_;  // m
+  double leg_length_;   // m, hip to ankle, joints of the leg straight
+};
+
+}  // namespace gaitd::plugins

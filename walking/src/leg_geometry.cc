@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/walking/leg_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+
+namespace gaitd::walking {
+namespace {
+
+Eigen::Vector3d across(const Eigen::Vector3d& v, const Eigen::Vector3d& axis) {
+  return v - axis * axis.dot(v);
+}
+
+}  // namespace
+
+LegGeometry::LegGeometry(const GaitdModel& model, int side) {
+  const GaitdLeg& leg = model.legs[side];
+  const GaitdJoint& knee = model.joints[leg.knee];
+  const Eigen::Quaterniond turn = sdk::quaternion(knee.orientation);
+  const Eigen::Vector3d axis = turn * (leg.knee_bend_sign * sdk::view(knee.axis));
+  // From the child of the hip to the knee, and from the knee to the ankle at knee 0.
+  const Eigen::Vector3d thigh = across(sdk::view(knee.origin), axis);
+  const Eigen::Vector3d shank =
+      across(turn * sdk::view(model.joints[leg.ankle_pitch].origin), axis);
+  thigh_ = thigh.norm();
+  shank_ = shank.norm();
+  offset_ = std::atan2(axis.dot(thigh.cross(shank)), thigh.dot(shank));
+}
+
+double LegGeometry::length(double knee) const {
+  return std::sqrt(thigh_ * thigh_ + shank_ * shank_ +
+                   2.0 * thigh_ * shank_ * std::cos(knee + offset_));
+}
+
+double LegGeometry::knee(double length) const {
+  const double cosine =
+      (length * length - thigh_ * thigh_ - shank_ * shank_) / (2.0 * thigh_ * shank_);
+  return std::acos(std::clamp(cosine, -1.0, 1.0)) - offset_;
+}
+
+StepReach step_reach(const LegGeometry& leg, double horizontal, double drop, double straight,
+                     double largest_drop) {
+  const double longest = leg.length(straight);
+  const double half = std::min(0.5 * horizontal, 0.9 * longest);
+  const double level = std::sqrt(longest * longest - half * half);  // hip above both ankles
+  const double at_touchdown = std::max(level - std::max(drop, 0.0), 0.3 * longest);
+  return {.straight_knee = std::max(straight, leg.knee(std::min(longest, level + largest_drop))),
+          .collapsed_knee = leg.knee(std::min(longest, std::hypot(at_touchdown, half)))};
+}
+
+}  // namespace gaitd::walking
