@@ -114,9 +114,8 @@ void ControlLoop::execute(const Command& command, bool from_client) {
   char text[kMaxEventText];
   if (command.type == CommandType::kSetParameter) {
     const std::string& key = pipeline_->parameters().row(command.parameter_index).key;
-    telemetry_->push_event(
-        reply.accepted ? EventKind::kParameter : EventKind::kCommand, tick_, time,
-        parameter_text(key.c_str(), command, reply, text, sizeof(text)));
+    telemetry_->push_event(reply.accepted ? EventKind::kParameter : EventKind::kCommand, tick_,
+                           time, parameter_text(key.c_str(), command, reply, text, sizeof(text)));
   } else {
     telemetry_->push_event(EventKind::kCommand, tick_, time,
                            command_text(command, reply, text, sizeof(text)));
@@ -181,8 +180,7 @@ void ControlLoop::report_changes() {
   length += std::snprintf(text + length, sizeof(text) - length, "]");
   const LayerChain::Failure& failure = pipeline_->layers().failure();
   if ((d.faults & (kFaultEstimator | kFaultLayer | kFaultSolver)) != 0 && failure.layer >= 0) {
-    length += std::snprintf(text + length, sizeof(text) - length,
-                            R"(,"layer":"%s","what":"%s")",
+    length += std::snprintf(text + length, sizeof(text) - length, R"(,"layer":"%s","what":"%s")",
                             sdk::kLayerNames[failure.layer].data(), failure.what);
   }
   length += std::snprintf(text + length, sizeof(text) - length, "}");

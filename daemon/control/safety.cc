@@ -28,7 +28,8 @@ const char* Safety::disarm() {
     return "disarm: the robot is walking; stop it first: `gaitctl stop`, or `gaitctl estop`";
   }
   if (state_ == SafetyState::kFault) {
-    return "disarm: a fault is latched and the joints are damped already; `gaitctl reset` clears it "
+    return "disarm: a fault is latched and the joints are damped already; `gaitctl reset` clears "
+           "it "
            "and leaves the robot disarmed";
   }
   state_ = SafetyState::kDisarmed;
@@ -216,8 +217,7 @@ void Safety::clamp(double dt, const TickData& d, GaitdJointCommands& commands) {
     if (rate < -fastest) torque = std::max(torque, 0.0);
     c.torque = torque;
     const double margin = limits_[Limit::kPositionMargin];
-    c.position =
-        std::clamp(c.position, joint.position_min + margin, joint.position_max - margin);
+    c.position = std::clamp(c.position, joint.position_min + margin, joint.position_max - margin);
     c.velocity = std::clamp(c.velocity, -fastest, fastest);
     // While readying the drives make the torque: what they make now is where control takes over.
     last_torque_[i] = state_ == SafetyState::kReadying ? d.sensors.joints[i].torque : torque;

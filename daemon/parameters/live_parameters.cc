@@ -39,11 +39,14 @@ std::string without_variant(std::string_view key, std::string* variant) {
 }  // namespace
 
 void LiveParameters::add(int owner, std::string_view scope, std::string_view variant,
-                         std::span<const GaitdParameter> table,
-                         const std::vector<double>& values) {
+                         std::span<const GaitdParameter> table, const std::vector<double>& values) {
   for (std::size_t i = 0; i < table.size(); ++i) {
-    Row row{std::string(scope) + "." + table[i].name, std::string(variant), table[i], owner,
-            static_cast<int>(i), {}};
+    Row row{std::string(scope) + "." + table[i].name,
+            std::string(variant),
+            table[i],
+            owner,
+            static_cast<int>(i),
+            {}};
     row.effect = parameter_effect(row.key);
     rows_.push_back(std::move(row));
     values_.emplace_back(values[i]);

@@ -11,6 +11,7 @@
 #include "gaitd/dynamics/dynamics.h"
 #include "gaitd/walking/objectives.h"
 #include "layer_inputs.h"
+#include "nullspace_qp.h"
 #include "walking/test/allocation_counter.h"
 
 namespace gaitd::plugins {
@@ -51,7 +52,21 @@ class Bench {
             &toe_off,
             objectives.get()};
   }
-  GaitdStatus process(ComHeightQp& layer) { return layer.process(input(), *out); }
+  template <class Controller>
+  GaitdStatus process(Controller& layer) {
+    return layer.process(input(), *out);
+  }
+  // Stands with straight legs from now on.
+  void straighten(double knee) {
+    ASSERT_FALSE(walk.machine.set_mode(GAITD_MODE_WALK_STRAIGHT).refused());
+    for (const GaitdLeg& leg : atlas().legs) {
+      walk.robot.joint_position[leg.knee] = leg.knee_bend_sign * knee;
+      walk.robot.joint_position[leg.hip_pitch] = 0.5 * leg.hip_pitch_bend_sign * knee;
+      walk.robot.joint_position[leg.ankle_pitch] = 0.5 * leg.ankle_pitch_bend_sign * knee;
+    }
+    testing::fill_kinematics(atlas(), walk.gait().omega, walk.robot);
+    walk.run_for(3 * walk.dt);
+  }
   // Small random velocities and joint offsets.
   void stir(unsigned seed) {
     std::mt19937 random(seed);
@@ -346,6 +361,58 @@ TEST(ComHeightQp, NeverAllocatesAfterTheFirstTicks) {
     allocations += testing::allocation_count() - before;
   }
   EXPECT_EQ(allocations, 0);
+}
+
+TEST(NullspaceQp, StraightLegsLeaveOneFreedomBentOnesNone) {
+  Bench bent;
+  NullspaceQp controller(atlas());
+  ASSERT_EQ(bent.process(controller), GAITD_OK);
+  EXPECT_EQ(bent.out->info.status, GAITD_WBC_SOLVED);
+  EXPECT_LT(bent.out->info.null_trace, 0.5);
+
+  Bench straight;
+  straight.straighten(0.3);
+  controller.reset();
+  ASSERT_EQ(straight.process(controller), GAITD_OK);
+  EXPECT_EQ(straight.out->info.status, GAITD_WBC_SOLVED);
+  EXPECT_NEAR(straight.out->info.null_trace, 1.0, 0.3);
+}
+
+TEST(NullspaceQp, KneesAtTheSingularityGetNoTorqueSpike) {
+  NullspaceQp controller(atlas());
+  std::array<double, 4> torque{};
+  const std::array<double, 4> knees = {0.0, 0.001, 0.01, 0.05};
+  for (std::size_t i = 0; i < knees.size(); ++i) {
+    Bench b;
+    b.straighten(knees[i]);
+    controller.reset();
+    for (int k = 0; k < 5; ++k) {
+      ASSERT_EQ(b.process(controller), GAITD_OK);
+      ASSERT_EQ(b.out->info.status, GAITD_WBC_SOLVED) << knees[i];
+    }
+    const int knee = atlas().legs[GAITD_LEFT].knee;
+    torque[i] = b.out->commands.joints[knee].torque;
+    EXPECT_LT(std::abs(torque[i]), 0.3 * atlas().joints[knee].effort_limit) << knees[i];
+    if (i > 0) EXPECT_NEAR(torque[i], torque[i - 1], 0.1 * atlas().joints[knee].effort_limit);
+  }
+}
+
+TEST(NullspaceQp, ThePrivilegedKneeDecidesWhichWayTheBodyMoves) {
+  for (double goal : {-50.0, 50.0}) {
+    Bench b;
+    b.straighten(0.4);
+    for (const GaitdLeg& leg : atlas().legs) {
+      b.objectives->privileged_acceleration[leg.knee] = leg.knee_bend_sign * goal;
+      b.objectives->privileged_acceleration[leg.hip_pitch] = 0.5 * leg.hip_pitch_bend_sign * goal;
+      b.objectives->privileged_acceleration[leg.ankle_pitch] =
+          0.5 * leg.ankle_pitch_bend_sign * goal;
+    }
+    NullspaceQp controller(atlas());
+    ASSERT_EQ(b.process(controller), GAITD_OK);
+    const GaitdLeg& leg = atlas().legs[GAITD_LEFT];
+    const double knee = leg.knee_bend_sign * b.out->info.joint_acceleration[leg.knee];
+    EXPECT_GT(knee * goal, 0.0) << "a knee told to bend by " << goal << " got " << knee;
+  }
 }
 
 }  // namespace

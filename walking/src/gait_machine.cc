@@ -140,7 +140,12 @@ bool GaitMachine::icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& pl
       middle_pose(state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose)
           .orientation);
   const Eigen::Vector3d local = heading.conjugate() * Eigen::Vector3d(error.x(), error.y(), 0.0);
-  return std::abs(local.x()) <= parameters_[Gait::kIcpErrorForward] &&
+  // Waiting helps an ICP that is behind; one that runs ahead only gets away.
+  const Eigen::Vector3d next =
+      heading.conjugate() * (sdk::view(state_.adjusted[0].pose.position) -
+                             sdk::view(state_.footholds[other_side(state_.next_side)].pose.position));
+  const bool ahead = local.x() * next.x() > 0.0;
+  return (ahead || std::abs(local.x()) <= parameters_[Gait::kIcpErrorForward]) &&
          std::abs(local.y()) <= parameters_[Gait::kIcpErrorSideways];
 }
 

@@ -104,10 +104,10 @@ TEST_F(Live, ValuesAreCheckedAgainstTypeRangeAndUnit) {
   EXPECT_EQ(accepted("gait.swing_height", 0.12), 0.12);
   EXPECT_EQ(accepted("gait.swing_height", 0.01), 0.01);
   EXPECT_EQ(accepted("gait.swing_height", 0.5), 0.5);
-  for (const json& value : {json(0.51), json(0.0), json(-1), json(1e300), json("0.1 m"),
-                            json("nan"), json(true), json(), json::array({0.1}),
-                            json::object(), json(std::numeric_limits<double>::quiet_NaN()),
-                            json(std::numeric_limits<double>::infinity())}) {
+  for (const json& value :
+       {json(0.51), json(0.0), json(-1), json(1e300), json("0.1 m"), json("nan"), json(true),
+        json(), json::array({0.1}), json::object(), json(std::numeric_limits<double>::quiet_NaN()),
+        json(std::numeric_limits<double>::infinity())}) {
     const std::string error = error_of("gait.swing_height", value);
     EXPECT_HAS(error, "gait.swing_height: expected a number in 0.01..0.5 m, got");
     EXPECT_HAS(error, "nothing was changed");
@@ -141,17 +141,16 @@ TEST_F(Live, GlobsAndScopesSelect) {
 }
 
 TEST_F(Live, ARowIsDescribedWithItsPresentValue) {
-  EXPECT_EQ(parameters_.describe(0),
-            (json{{"name", "icp_planner.entry_x"},
-                  {"variant", "heel_to_toe"},
-                  {"type", "real"},
-                  {"unit", "m"},
-                  {"min", -1.0},
-                  {"max", 1.0},
-                  {"default", -0.08},
-                  {"value", 0.25},
-                  {"effect", "at once"},
-                  {"description", "of the first CMP"}}));
+  EXPECT_EQ(parameters_.describe(0), (json{{"name", "icp_planner.entry_x"},
+                                           {"variant", "heel_to_toe"},
+                                           {"type", "real"},
+                                           {"unit", "m"},
+                                           {"min", -1.0},
+                                           {"max", 1.0},
+                                           {"default", -0.08},
+                                           {"value", 0.25},
+                                           {"effect", "at once"},
+                                           {"description", "of the first CMP"}}));
   parameters_.store(0, 0.5);
   EXPECT_EQ(parameters_.describe(0)["value"], 0.5);
   EXPECT_EQ(parameters_.describe(1)["value"].dump(), "4");

@@ -69,7 +69,8 @@ TEST_F(Server, AnswersQueriesAndCommands) {
   EXPECT_EQ(server_->socket_path(), directory_.file());
   RawClient client(directory_.file());
   EXPECT_EQ(client.ask(kStatus)["result"]["state"], "standing");
-  EXPECT_EQ(client.ask(kArm)["result"], (json{{"accepted", true}, {"tick", 42}}));
+  EXPECT_EQ(client.ask(kArm)["result"],
+            (json{{"accepted", true}, {"tick", 42}, {"note", nullptr}}));
 }
 
 TEST_F(Server, ServesSeveralClientsEachItsOwnAnswers) {
