@@ -104,6 +104,7 @@ schema: gaitd.scenario/1
 name: refused
 robot: atlas
 duration: 0.6
+mode: walk-bent
 commands: [{at: 0.5, walk: {steps: 1, length: 1.9}}]
 expect: {no_fall: true$1}
 SCENARIO

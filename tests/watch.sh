@@ -12,7 +12,7 @@ gaitctl watch --interval 0.02 | head -n 3 >"$scratch/lines"
 (($(wc -l <"$scratch/lines") == 3)) || fail "no three lines: $(cat "$scratch/lines")"
 grep -q 'standing.*ICP error' "$scratch/lines" || fail "the lines do not say much"
 if grep -q $'\e' "$scratch/lines"; then fail "escape sequences in a file"; fi
-expect 0 gaitctl watch --once >"$scratch/once"
+gaitctl watch --once >"$scratch/once"
 (($(wc -l <"$scratch/once") == 1)) || fail "--once printed $(wc -l <"$scratch/once") lines"
 gaitctl --json watch --interval 0.02 | head -n 2 >"$scratch/json"
 (($(grep -c '^{.*"state":"standing".*}$' "$scratch/json") == 2)) || fail "not one object per line"
@@ -55,8 +55,9 @@ for signal in INT TERM; do
 done
 # Redrawn in place: cleared once, then only overwritten; no line is longer than the window.
 (($(grep -aoF $'\e[2J' "$scratch/INT" | wc -l) == 1)) || fail "the screen is cleared again and again"
-sed 's/\x1b\[[?0-9;]*[a-zA-Z]//g' "$scratch/INT" | tr -d '\r' | grep -v '^Script ' |
-  LC_ALL=C.UTF-8 awk 'length($0) > 60 { exit 1 }' || fail "a line is longer than the window"
+widest=$(sed 's/\x1b\[[0-9;]*H/\n/g; s/\x1b\[[?0-9;]*[a-zA-Z]//g' "$scratch/INT" | tr -d '\r' |
+  grep -v '^Script ' | LC_ALL=C.UTF-8 wc -L)
+((widest <= 60)) || fail "a line is longer than the window"
 
 # When gaitd ends.
 start_watch gone

@@ -58,7 +58,8 @@ Eigen::Vector3d SampleWalk::sole(int side) {
   if (g.footholds[side].contact != GAITD_CONTACT_NONE) return view(g.footholds[side].pose.position);
   if (swing_step_ != g.step_index) {
     swing_step_ = g.step_index;
-    swing_.begin(gait_.lift_off(), g.adjusted[0], g.phase_duration,
+    swing_.begin(gait_.lift_off(), sdk::Vector6d::Zero(), g.footholds[side].pose.position[2],
+                 g.adjusted[0], g.phase_duration,
                  walking::SwingParameters(walking::kSwingParameters));
   }
   return swing_.evaluate(std::min(g.time_in_phase, g.phase_duration)).position;

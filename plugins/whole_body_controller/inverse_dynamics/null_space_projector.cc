@@ -18,7 +18,8 @@ void NullSpaceProjector::clear() {
   std::fill(claimed_.begin(), claimed_.end(), false);
 }
 
-void NullSpaceProjector::add(const Eigen::Ref<const Eigen::RowVectorXd>& row) {
+void NullSpaceProjector::add(
+    const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& row) {
   if (rows_ < J_.rows()) J_.row(rows_++) = row;
 }
 

@@ -19,7 +19,7 @@ class NullSpaceProjector {
   // A task of a single unknown: the column is taken.
   void claim(int column) { claimed_[column] = true; }
   // A task row; rows of no length claim nothing.
-  void add(const Eigen::Ref<const Eigen::RowVectorXd>& row);
+  void add(const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& row);
   // Computes N for damping `alpha`.
   void compute(double alpha);
 
