@@ -116,9 +116,11 @@ TEST_F(Gaitctl, SendsModesAndPushes) {
 }
 
 TEST_F(Gaitctl, SendsFootstepsFromYamlJsonAndStandardInput) {
-  const json expected = json::parse(R"([{"side": "left", "x": 0.3}, {"side": "right", "x": 0.6}])");
+  const json expected = json::parse(R"([{"side": "left", "x": 0.3, "y": 0.1},
+                                        {"side": "right", "x": 0.6, "y": -0.1}])");
   workspace_.write("steps.yaml",
-                   "footsteps:\n  - {side: left, x: 0.3}\n  - side: right\n    x: 0.6\n");
+                   "footsteps:\n  - {side: left, x: 0.3, y: 0.1}\n"
+                   "  - side: right\n    x: 0.6\n    y: -0.1\n");
   workspace_.write("steps.json", expected.dump());
   EXPECT_EQ(sent("steps " + workspace_.file("steps.yaml"))["params"],
             (json{{"footsteps", expected}, {"replace", false}}));

@@ -49,7 +49,7 @@ Place walk(const CLI::App& app, const std::vector<std::string>& words) {
     } else if (is_option(word)) {
       const std::string name = word.substr(0, word.find('='));
       const CLI::Option* option = find_option(place.app, name);
-      const bool takes_value = option != nullptr && option->get_type_size() > 0;
+      const bool takes_value = option != nullptr && option->get_items_expected_max() > 0;
       if (takes_value && name == word) place.waiting = option;
     } else if (const CLI::App* command = find_command(*place.app, word)) {
       place = {command};

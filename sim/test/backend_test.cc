@@ -25,7 +25,10 @@ class Backend {
     if (library_ == nullptr) throw std::runtime_error(dlerror());
     const auto create =
         reinterpret_cast<GaitdCreateBackendFunction>(dlsym(library_, GAITD_CREATE_BACKEND_SYMBOL));
-    if (create(nullptr, &instance_) != GAITD_OK) throw std::runtime_error("not created");
+    GaitdHost host{};
+    host.size = sizeof(host);
+    host.abi_major = GAITD_ABI_MAJOR;
+    if (create(&host, &instance_) != GAITD_OK) throw std::runtime_error("not created");
   }
   ~Backend() {
     instance_.vtable->destroy(instance_.self);

@@ -142,8 +142,9 @@ bool GaitMachine::icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& pl
   const Eigen::Vector3d local = heading.conjugate() * Eigen::Vector3d(error.x(), error.y(), 0.0);
   // Waiting helps an ICP that is behind; one that runs ahead only gets away.
   const Eigen::Vector3d next =
-      heading.conjugate() * (sdk::view(state_.adjusted[0].pose.position) -
-                             sdk::view(state_.footholds[other_side(state_.next_side)].pose.position));
+      heading.conjugate() *
+      (sdk::view(state_.adjusted[0].pose.position) -
+       sdk::view(state_.footholds[other_side(state_.next_side)].pose.position));
   const bool ahead = local.x() * next.x() > 0.0;
   return (ahead || std::abs(local.x()) <= parameters_[Gait::kIcpErrorForward]) &&
          std::abs(local.y()) <= parameters_[Gait::kIcpErrorSideways];
@@ -157,7 +158,8 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     GaitdFoothold& foothold = state_.footholds[side];
     if (foothold.contact == GAITD_CONTACT_NONE) continue;
-    const bool toe = toe_off.active != 0 && toe_off.side == side;
+    const bool may_roll = state_.phase != GAITD_PHASE_TRANSFER || side == state_.trailing_side;
+    const bool toe = toe_off.active != 0 && toe_off.side == side && may_roll;
     foothold.contact = toe ? GAITD_CONTACT_TOE : GAITD_CONTACT_FULL;
   }
   switch (state_.phase) {

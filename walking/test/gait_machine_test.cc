@@ -195,7 +195,7 @@ TEST(GaitMachine, ATransferWaitsForTheIcpButNotForEver) {
   const double patience = SyntheticWalk().machine.parameters()[Gait::kTransferPatience];
   double seconds[2];
   int i = 0;
-  for (double error : {0.0, 0.9}) {
+  for (double error : {0.0, -0.9}) {
     SyntheticWalk w;
     w.icp_error = error;
     ASSERT_FALSE(w.machine.walk({.steps = 2, .length = 0.3}).refused());
@@ -205,6 +205,17 @@ TEST(GaitMachine, ATransferWaitsForTheIcpButNotForEver) {
     seconds[i++] = (w.ticks - begin) * w.dt;
   }
   EXPECT_NEAR(seconds[1] - seconds[0], patience, 2e-3);
+}
+
+TEST(GaitMachine, ATransferDoesNotWaitForAnIcpThatRunsAhead) {
+  SyntheticWalk w;
+  w.icp_error = 0.3;
+  ASSERT_FALSE(w.machine.walk({.steps = 2, .length = 0.3}).refused());
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 2));
+  const double planned = w.gait().phase_duration;
+  const int begin = w.ticks;
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 2));
+  EXPECT_NEAR((w.ticks - begin) * w.dt, planned, 2e-3);
 }
 
 TEST(GaitMachine, AShiftMovesTheCurrentFootholdOnlyAndEndsWithItsStep) {

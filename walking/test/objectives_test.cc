@@ -21,6 +21,7 @@ class WalkWithObjectives : public SyntheticWalk {
  public:
   explicit WalkWithObjectives(int mode = GAITD_MODE_WALK_BENT) : builder(atlas()) {
     EXPECT_FALSE(machine.set_mode(mode).refused());
+    builder.set_objective_parameter(static_cast<int>(Objective::kToeRamp), 0.0);  // at once
     tick();
     builder.reset(robot, gait());
     on_update = [this] { update(); };

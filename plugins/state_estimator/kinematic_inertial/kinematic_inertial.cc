@@ -52,6 +52,7 @@ void KinematicInertial::reset() {
   specific_force_.setZero();
   last_cop_.setZero();
   joints_seen_ = false;
+  lag_begun_ = false;
   orientation_.setIdentity();
   position_.setZero();
   velocity_W_.setZero();
@@ -353,8 +354,9 @@ void KinematicInertial::level_attitude(double dt, bool standing) {
 void KinematicInertial::update_lagged_twist(double dt) {
   sdk::Vector6d twist;
   twist << rate_, orientation_.conjugate() * velocity_W_;
-  if (p_[P::kLegPole] <= 0.0 || time_since_start_ < kAveragingTime) {
+  if (p_[P::kLegPole] <= 0.0 || time_since_start_ < kAveragingTime || !lag_begun_) {
     half_lagged_ = lagged_ = twist;
+    lag_begun_ = true;
     return;
   }
   const double share = 1.0 - std::exp(-p_[P::kLegPole] * dt);

@@ -127,6 +127,7 @@ class KinematicInertial {
   // the velocity of the CoM or of a foot, would otherwise see every quick turn of the pelvis twice.
   sdk::Vector6d half_lagged_ = sdk::Vector6d::Zero();
   sdk::Vector6d lagged_ = sdk::Vector6d::Zero();
+  bool lag_begun_ = false;
   std::array<Foot, GAITD_MAX_FEET> feet_;
   Eigen::Vector2d last_cop_ = Eigen::Vector2d::Zero();
 };

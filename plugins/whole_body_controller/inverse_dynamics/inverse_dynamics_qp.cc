@@ -182,8 +182,9 @@ void InverseDynamicsQp::add_joint(int joint, double acceleration, double weight)
 }
 
 void InverseDynamicsQp::add_row(const Eigen::VectorXd& row, double target, double weight) {
-  H_.topLeftCorner(nv_, nv_).triangularView<Eigen::Lower>() +=
-      (weight * row).lazyProduct(row.transpose());
+  for (int c = 0; c < nv_; ++c) {
+    H_.col(c).segment(c, nv_ - c) += (weight * row[c]) * row.segment(c, nv_ - c);
+  }
   g_.head(nv_) -= weight * target * row;
 }
 

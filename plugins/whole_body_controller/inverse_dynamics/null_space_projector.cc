@@ -39,7 +39,9 @@ void NullSpaceProjector::compute(double alpha) {
   rows_ = kept;
   auto X = X_.topLeftCorner(rows_, free_);
   auto L = gram_.topLeftCorner(rows_, rows_);
-  L.triangularView<Eigen::Lower>() = X.lazyProduct(X.transpose());
+  for (int i = 0; i < rows_; ++i) {
+    for (int j = 0; j <= i; ++j) L(i, j) = X.row(i).dot(X.row(j));
+  }
   L.diagonal().array() += alpha * alpha;
   // Cholesky factor row by row, L^-1 J on the way.
   for (int i = 0; i < rows_; ++i) {
