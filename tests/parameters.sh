@@ -36,7 +36,7 @@ refused 1 'needs a restart' gaitctl param set period 0.002
 refused 1 'not in use' gaitctl param set icp_planner/single_cmp.inwards 0.2
 refused 1 'while the robot stands' gaitctl param set gait.omega 3.5
 refused 2 '' gaitctl param set gait.swing_height
-[[ $(value gait.swing_height) == 0.1 ]] || fail "a refused value was taken"
+[[ $(value gait.swing_height) == 0.13 ]] || fail "a refused value was taken"
 
 # Two clients change two parameters each, at the same time, while it walks.
 change() {
@@ -70,14 +70,14 @@ wait_for state standing 20
 [[ $(value gait.swing_height) == 0.15 ]] || fail "a reset took a parameter back"
 stop_daemon
 gaitctl log info "$scratch/walk.mcap" >"$scratch/info"
-grep -qE '^ +[0-9.]+ s  tick [0-9]+ +gait.swing_height  0.1 -> 0.15$' "$scratch/info" ||
+grep -qE '^ +[0-9.]+ s  tick [0-9]+ +gait.swing_height  0.13 -> 0.15$' "$scratch/info" ||
   fail "log info does not show the change: $(cat "$scratch/info")"
 changes=$(grep -cE '^ +[0-9.]+ s  tick ' "$scratch/info")
 ((changes == 19)) || fail "$changes changes in the log, expected 19"
 
 # A second start knows nothing of them.
 start_daemon --clock realtime --log "$scratch/again.mcap"
-[[ $(value gait.swing_height) == 0.1 ]] || fail "a change outlived gaitd"
+[[ $(value gait.swing_height) == 0.13 ]] || fail "a change outlived gaitd"
 stop_daemon
 
 # In lockstep the same changes at the same time give the same bits.
@@ -89,7 +89,7 @@ for log in a b; do
 done
 cmp "$scratch/a.csv" "$scratch/b.csv" || fail "two runs of the scenario differ"
 gaitctl log info "$scratch/a.mcap" >"$scratch/info"
-grep -q '3.000 s  tick 3000 .*gait.swing_height  0.1 -> 0.16' "$scratch/info" ||
+grep -q '3.000 s  tick 3000 .*gait.swing_height  0.13 -> 0.16' "$scratch/info" ||
   fail "the scenario's change is not in the log at its tick"
 
 # A mistake in a scenario is an error before the first tick.
