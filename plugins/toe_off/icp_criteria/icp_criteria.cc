@@ -147,7 +147,6 @@ GaitdStatus IcpCriteria::process(const GaitdToeOffInput& in, GaitdToeOff& out) {
   }
   state_.active = out.active;
   state_.side = out.active != 0 ? side : GAITD_BOTH;
-  if (out.active == 0 && goes_on) state_.time_satisfied = 0.0;
   out.side = state_.side;
   if (side != GAITD_BOTH) view(out.toe_point) = toe_point(gait.footholds[side], side);
   return GAITD_OK;
