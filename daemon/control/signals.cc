@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/control/signals.h"
 
+#include <cmath>
 #include <initializer_list>
 #include <string>
 
@@ -185,6 +186,26 @@ void visit_joints(V& v, const GaitdModel& model, const TickData& d) {
   }
 }
 
+// Estimate minus truth.
+template <class V>
+void visit_estimate_error(V& v, const GaitdRobotState& estimate, const GaitdTruth& t) {
+  const Eigen::Quaterniond orientation = sdk::quaternion(estimate.pelvis_orientation);
+  const Eigen::Quaterniond true_orientation = sdk::quaternion(t.pelvis_orientation);
+  const Eigen::Vector3d position =
+      sdk::view(estimate.pelvis_position) - sdk::view(t.pelvis_position);
+  const Eigen::Vector3d velocity = orientation * sdk::view(estimate.pelvis_twist).tail<3>() -
+                                   true_orientation * sdk::view(t.pelvis_twist).tail<3>();
+  const Eigen::Vector3d turn =
+      sdk::roll_pitch_yaw(orientation) - sdk::roll_pitch_yaw(true_orientation);
+  constexpr const char* kPrefix = "truth/estimate_error/";
+  v.real(position.head<2>().norm(), "m", kPrefix, "horizontal");
+  v.real(position.z(), "m", kPrefix, "height");
+  v.real(velocity.norm(), "m/s", kPrefix, "velocity");
+  v.real(turn.x(), "rad", kPrefix, "roll");
+  v.real(turn.y(), "rad", kPrefix, "pitch");
+  v.real(std::remainder(turn.z(), 2.0 * M_PI), "rad", kPrefix, "yaw");
+}
+
 template <class V>
 void visit_truth(V& v, const GaitdTruth& t) {
   pose(v, t.pelvis_position, t.pelvis_orientation, "truth/pelvis/");
@@ -208,7 +229,10 @@ void visit(V&& v, const GaitdModel& model, const TickData& d, bool truth) {
   for (int side = 0; side < GAITD_MAX_FEET; ++side) visit_foot(v, d, side);
   visit_layers(v, d);
   visit_joints(v, model, d);
-  if (truth) visit_truth(v, d.truth);
+  if (truth) {
+    visit_truth(v, d.truth);
+    visit_estimate_error(v, d.robot, d.truth);
+  }
 }
 
 }  // namespace

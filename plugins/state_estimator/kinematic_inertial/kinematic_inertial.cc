@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gaitd/sdk/sensors.h"
+
 namespace gaitd::plugins {
 namespace {
 
+using sdk::usable;
 using sdk::view;
 
 // The first attitude comes from one noisy sample. For this long (s) the mean over all samples so
@@ -15,18 +18,6 @@ constexpr double kAveragingTime = 0.2;
 
 // Anchors are at their best while standing: the attitude is levelled this many times faster then.
 constexpr double kStandingFactor = 3.0;
-
-// A number that is none must not get into the state, whatever the sensor says of itself.
-bool usable(const GaitdJointSensor& joint) {
-  return joint.info.valid != 0 && std::isfinite(joint.position) && std::isfinite(joint.velocity);
-}
-bool usable(const GaitdImuSensor& imu) {
-  return imu.info.valid != 0 && view(imu.angular_rate).allFinite() &&
-         view(imu.specific_force).allFinite();
-}
-bool usable(const GaitdFootForceSensor& foot) {
-  return foot.info.valid != 0 && view(foot.force).allFinite() && view(foot.moment).allFinite();
-}
 
 double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * hertz * dt); }
 
@@ -92,13 +83,10 @@ void KinematicInertial::set_state(const GaitdStateEstimatorState& s) {
 }
 
 const GaitdImuSensor* KinematicInertial::imu(const GaitdSensors& sensors, int& index) const {
-  for (int i = 0; i < sensors.imu_count && i < model_.imu_count; ++i) {
-    if (usable(sensors.imus[i])) {
-      index = i;
-      return &sensors.imus[i];
-    }
-  }
-  return nullptr;
+  const int first = sdk::first_usable_imu(model_, sensors);
+  if (first < 0) return nullptr;
+  index = first;
+  return &sensors.imus[first];
 }
 
 void KinematicInertial::read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
@@ -226,20 +214,10 @@ void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobot
     const GaitdFootForceSensor& sensor = in.sensors->feet[side];
     GaitdFootState& state = out.feet[side];
     Foot& f = feet_[side];
-    // From the sensor frame to the sole frame, both fixed to the foot.
-    const Eigen::Quaterniond sole = sdk::quaternion(foot.sole.orientation);
-    const Eigen::Quaterniond turn =
-        sole.conjugate() * sdk::quaternion(foot.force_sensor.orientation);
-    const Eigen::Vector3d lever =
-        sole.conjugate() * (view(foot.force_sensor.origin) - view(foot.sole.origin));
-    Eigen::Vector3d force = Eigen::Vector3d::Zero();
-    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-    if (usable(sensor)) {
-      force = turn * view(sensor.force);
-      moment = turn * view(sensor.moment) + lever.cross(force);
-    }
-    view(state.wrench).head<3>() = moment;
-    view(state.wrench).tail<3>() = force;
+    const sdk::Vector6d wrench = sdk::sole_wrench(foot, sensor);
+    view(state.wrench) = wrench;
+    const Eigen::Vector3d moment = wrench.head<3>();
+    const Eigen::Vector3d force = wrench.tail<3>();
     f.normal_force += blend * (std::max(0.0, force.z()) - f.normal_force);
     state.normal_force = f.normal_force;
     const double threshold =

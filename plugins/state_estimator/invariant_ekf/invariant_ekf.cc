@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "invariant_ekf.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/sensors.h"
+
+namespace gaitd::plugins {
+namespace {
+
+using sdk::view;
+
+// Standard deviations at the start.
+constexpr double kStartAcceleration = 0.2;        // m/s^2, of a robot that should stand still
+constexpr double kStartVelocity = 0.02;           // m/s
+constexpr double kStartTilt = 0.005;              // rad, of a state that was handed over
+constexpr double kStartGyroBias = 0.005;          // rad/s
+constexpr double kStartAccelerometerBias = 0.05;  // m/s^2
+
+double low_pass(double pole, double dt) { return 1.0 - std::exp(-pole * dt); }
+
+// Standard deviation of one sample, from a density.
+double per_sample(double density, double dt) { return density / std::sqrt(dt); }
+
+}  // namespace
+
+void InvariantEkf::LaggedRate::update(double rate, double acceleration, double share, double dt) {
+  first += dt * acceleration;
+  first += share * (rate - first);
+  second += dt * acceleration;
+  second += share * (first - second);
+}
+
+InvariantEkf::InvariantEkf(const GaitdModel& model)
+    : model_(model),
+      weight_(model.total_mass * model.gravity),
+      kinematics_(model),
+      filter_(model.gravity) {
+  for (const GaitdLeg& leg : model_.legs) {
+    for (int i = 0; i < leg.joint_count; ++i) is_leg_joint_[leg.joints[i]] = true;
+  }
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const GaitdFoot& foot = model_.feet[side];
+    double back = 0.0;
+    for (int i = 0; i < foot.point_count; ++i) back = std::min(back, foot.points[i][0]);
+    feet_[side].points[kToe] = view(foot.toe_point);
+    feet_[side].points[kHeel] = {back, foot.toe_point[1], 0.0};
+  }
+}
+
+void InvariantEkf::reset() {
+  initialised_ = false;
+  joints_seen_ = false;
+  twist_begun_ = false;
+  imu_ = 0;
+  filter_.reset();
+  rate_.setZero();
+  specific_force_.setZero();
+  last_cop_.setZero();
+  for (Foot& foot : feet_) {
+    foot.trusted = false;
+    foot.time_above = 0.0;
+    foot.time_trusted = 0.0;
+    foot.contact = GAITD_CONTACT_NONE;
+    foot.normal_force = 0.0;
+    foot.anchor.setZero();
+    foot.anchor_yaw = 0.0;
+  }
+}
+
+Eigen::Vector3d InvariantEkf::lever() const { return view(model_.imus[imu_].origin); }
+
+Eigen::Vector3d InvariantEkf::pelvis_position() const {
+  return filter_.position - filter_.orientation * lever();
+}
+
+Eigen::Vector3d InvariantEkf::pelvis_velocity() const {
+  return filter_.velocity - filter_.orientation * (rate_ - filter_.gyro_bias).cross(lever());
+}
+
+void InvariantEkf::get_state(GaitdStateEstimatorState& s) const {
+  s.initialised = initialised_ ? 1 : 0;
+  view(s.pelvis_position) = pelvis_position();
+  sdk::store(filter_.orientation, s.pelvis_orientation);
+  view(s.pelvis_velocity) = pelvis_velocity();
+  view(s.gyro_bias) = filter_.gyro_bias;
+  view(s.accelerometer_bias) = filter_.accelerometer_bias;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    s.contact[side] = feet_[side].contact;
+    view(s.anchor[side]) = feet_[side].anchor;
+    s.anchor_yaw[side] = feet_[side].anchor_yaw;
+  }
+}
+
+void InvariantEkf::set_state(const GaitdStateEstimatorState& s) {
+  initialised_ = s.initialised != 0;
+  imu_ = 0;
+  filter_.reset();
+  filter_.orientation = sdk::quaternion(s.pelvis_orientation);
+  filter_.gyro_bias = view(s.gyro_bias);
+  filter_.accelerometer_bias = view(s.accelerometer_bias);
+  filter_.position = view(s.pelvis_position) + filter_.orientation * lever();
+  filter_.velocity =
+      view(s.pelvis_velocity) + filter_.orientation * (rate_ - filter_.gyro_bias).cross(lever());
+  set_covariance(filter_.position, false);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    feet_[side].contact = s.contact[side];
+    feet_[side].anchor = view(s.anchor[side]);
+    feet_[side].anchor_yaw = s.anchor_yaw[side];
+    feet_[side].trusted = false;
+    feet_[side].time_above = 0.0;
+    feet_[side].time_trusted = 0.0;
+  }
+}
+
+bool InvariantEkf::read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
+  const double dt = in.time.period;
+  const double shares[] = {low_pass(p_[P::kUpperBodyPole], dt), low_pass(p_[P::kLegPole], dt)};
+  bool complete = true;
+  for (int i = 0; i < model_.joint_count; ++i) {
+    const GaitdJointSensor& joint = in.sensors->joints[i];
+    LaggedRate& rate = joint_rate_[i];
+    if (!sdk::usable(joint)) {
+      // Keeps its last position; the host decides what the fault means.
+      rate = {};
+      complete = false;
+    } else if (!joints_seen_) {
+      joint_[i] = joint.position;
+      rate = {joint.velocity, joint.velocity};
+    } else {
+      // What a command makes of a leg is decided by the contacts: nothing is expected there.
+      const double expected = is_leg_joint_[i] ? 0.0 : in.commands->joints[i].acceleration;
+      const double measured = (joint.position - joint_[i]) / dt;
+      rate.update(measured, expected, shares[is_leg_joint_[i] ? 1 : 0], dt);
+      joint_[i] = joint.position;
+    }
+    out.joint_position[i] = joint_[i];
+    out.joint_velocity[i] = rate.second;
+  }
+  joints_seen_ = true;
+  return complete;
+}
+
+void InvariantEkf::update_joint_kinematics(const GaitdRobotState& joints) {
+  kinematics_.update(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(), sdk::Vector6d::Zero(),
+                     sdk::head(joints.joint_position, model_.joint_count),
+                     sdk::head(joints.joint_velocity, model_.joint_count));
+}
+
+Eigen::Vector3d InvariantEkf::sole_point(int side, const Eigen::Vector3d& in_sole) const {
+  const GaitdFoot& foot = model_.feet[side];
+  return kinematics_.frame_position(
+      foot.body, view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole);
+}
+
+Eigen::Quaterniond InvariantEkf::sole_orientation(int side) const {
+  const GaitdFoot& foot = model_.feet[side];
+  return Eigen::Quaterniond(kinematics_.R_WB(foot.body)) * sdk::quaternion(foot.sole.orientation);
+}
+
+void InvariantEkf::read_forces(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
+  const double share = low_pass(2.0 * M_PI * p_[P::kForceFilter], in.time.period);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    Foot& f = feet_[side];
+    GaitdFootState& state = out.feet[side];
+    const sdk::Vector6d wrench = sdk::sole_wrench(model_.feet[side], in.sensors->feet[side]);
+    view(state.wrench) = wrench;
+    f.normal_force += share * (std::max(0.0, wrench[5]) - f.normal_force);
+    const P threshold = f.contact == GAITD_CONTACT_NONE ? P::kContactOn : P::kContactOff;
+    f.contact = f.normal_force > p_[threshold] * weight_ ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
+    state.contact = f.contact;
+    state.normal_force = f.normal_force;
+    state.cop_valid = f.contact != GAITD_CONTACT_NONE && wrench[5] > 0.01 * weight_ ? 1 : 0;
+    if (state.cop_valid != 0) {
+      state.cop[0] = -wrench[1] / wrench[5];
+      state.cop[1] = wrench[0] / wrench[5];
+    }
+  }
+}
+
+// What the operator says of the heading and the place, and what gravity says of the tilt.
+void InvariantEkf::initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints) {
+  choose_imu(sdk::first_usable_imu(model_, *in.sensors));
+  const Eigen::Quaterniond mount = sdk::quaternion(model_.imus[imu_].orientation);
+  const Eigen::Vector3d up = mount * view(in.sensors->imus[imu_].specific_force);
+  const Eigen::Quaterniond level = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
+  update_joint_kinematics(joints);
+  const double left = sdk::yaw_of(level * sole_orientation(GAITD_LEFT));
+  const double right = sdk::yaw_of(level * sole_orientation(GAITD_RIGHT));
+  const double yaw = left + 0.5 * std::remainder(right - left, 2.0 * M_PI);
+  filter_.orientation = (sdk::from_yaw(in.start.yaw - yaw) * level).normalized();
+  const Eigen::Vector3d middle = 0.5 * (sole_point(GAITD_LEFT, Eigen::Vector3d::Zero()) +
+                                        sole_point(GAITD_RIGHT, Eigen::Vector3d::Zero()));
+  filter_.position = view(in.start.position) + filter_.orientation * (lever() - middle);
+  filter_.velocity.setZero();
+  set_covariance(view(in.start.position), true);
+  for (Foot& foot : feet_) {
+    foot.time_above = p_[P::kTrustDelay];
+    foot.time_trusted = p_[P::kRestDelay];
+  }
+  initialised_ = true;
+}
+
+// The robot may have turned about `centre`, which is known. If gravity has levelled it, the error
+// of the tilt is mostly that of the accelerometer.
+void InvariantEkf::set_covariance(const Eigen::Vector3d& centre, bool levelled) {
+  using F = RightInvariantFilter;
+  Eigen::Matrix<double, 9, 3> turn;
+  turn << Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero();
+  for (int k = 0; k < 3; ++k) turn.block<3, 1>(6, k) = centre.cross(Eigen::Vector3d::Unit(k));
+  const double tilt = levelled ? kStartAcceleration / model_.gravity : kStartTilt;
+  const Eigen::Vector3d variance(tilt * tilt, tilt * tilt, 0.0);
+  filter_.covariance.setZero();
+  filter_.covariance.topLeftCorner<9, 9>() = turn * variance.asDiagonal() * turn.transpose();
+  const auto add = [&](int row, double sigma) {
+    filter_.covariance.diagonal().segment<3>(row).array() += sigma * sigma;
+  };
+  add(F::kVelocity, kStartVelocity);
+  add(F::kGyroBias, kStartGyroBias);
+  add(F::kAccelerometerBias, kStartAccelerometerBias);
+  if (!levelled) return;
+  Eigen::Matrix3d by_bias;  // the tilt that an error of the accelerometer makes
+  by_bias << 0, -1, 0, 1, 0, 0, 0, 0, 0;
+  by_bias = by_bias * filter_.orientation.toRotationMatrix() / model_.gravity;
+  const double bias_variance = kStartAccelerometerBias * kStartAccelerometerBias;
+  const Eigen::Matrix<double, 9, 3> joint = bias_variance * turn * by_bias;
+  filter_.covariance.topLeftCorner<9, 9>() += joint * by_bias.transpose() * turn.transpose();
+  filter_.covariance.block<9, 3>(0, F::kAccelerometerBias) = joint;
+  filter_.covariance.block<3, 9>(F::kAccelerometerBias, 0) = joint.transpose();
+}
+
+// Another IMU sits elsewhere on the pelvis.
+void InvariantEkf::choose_imu(int imu) {
+  if (imu < 0 || imu == imu_) return;
+  const Eigen::Vector3d shift = view(model_.imus[imu].origin) - lever();
+  filter_.position += filter_.orientation * shift;
+  filter_.velocity += filter_.orientation * (rate_ - filter_.gyro_bias).cross(shift);
+  imu_ = imu;
+}
+
+void InvariantEkf::predict(const GaitdStateEstimatorInput& in) {
+  const int imu = sdk::first_usable_imu(model_, *in.sensors);
+  choose_imu(imu);
+  if (imu >= 0) {  // else coast on the last values
+    const Eigen::Quaterniond mount = sdk::quaternion(model_.imus[imu].orientation);
+    rate_ = mount * view(in.sensors->imus[imu].angular_rate);
+    specific_force_ = mount * view(in.sensors->imus[imu].specific_force);
+  }
+  RightInvariantFilter::Noise noise;
+  noise.gyro = p_[P::kGyroNoise];
+  noise.accelerometer = p_[P::kAccelerometerNoise];
+  noise.gyro_bias = p_[P::kGyroBiasNoise];
+  noise.accelerometer_bias = p_[P::kAccelerometerBiasNoise];
+  // In a walk every foot turns and settles a little under its load.
+  const double share = in.gait->phase == GAITD_PHASE_STAND ? p_[P::kStandingShare] : 1.0;
+  noise.point_horizontal = share * p_[P::kHorizontalNoise];
+  noise.point_vertical = share * p_[P::kVerticalNoise];
+  filter_.predict(rate_, specific_force_, in.time.period, noise);
+  if (imu >= 0 && in.sensors->imus[imu].has_orientation != 0) {
+    const Eigen::Quaterniond mount = sdk::quaternion(model_.imus[imu].orientation);
+    filter_.correct_tilt(sdk::quaternion(in.sensors->imus[imu].orientation) * mount.conjugate(),
+                         per_sample(p_[P::kTiltNoise], in.time.period));
+  }
+}
+
+void InvariantEkf::update_trust(const GaitdStateEstimatorInput& in) {
+  const double total = feet_[0].normal_force + feet_[1].normal_force;
+  const double least = 0.2 * weight_;  // in flight no share means anything
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    Foot& f = feet_[side];
+    const double share = f.normal_force / std::max(total, least);
+    const bool swings = in.gait->phase == GAITD_PHASE_SWING && in.gait->next_side == side;
+    f.time_above = share > p_[P::kTrustOn] && !swings ? f.time_above + in.time.period : 0.0;
+    f.trusted =
+        f.time_above >= p_[P::kTrustDelay] || (f.trusted && share >= p_[P::kTrustOff] && !swings);
+    f.time_trusted = f.trusted ? f.time_trusted + in.time.period : 0.0;
+  }
+}
+
+void InvariantEkf::correct(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints) {
+  update_joint_kinematics(joints);
+  const double sigma = per_sample(p_[P::kKinematicNoise], in.time.period);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const bool only_toe = in.gait->footholds[side].contact == GAITD_CONTACT_TOE ||
+                          feet_[side].time_trusted < p_[P::kRestDelay];
+    for (const Point point : {kToe, kHeel}) {
+      const int i = index(side, point);
+      const Eigen::Vector3d place = sole_point(side, feet_[side].points[point]) - lever();
+      if (!feet_[side].trusted || (only_toe && point == kHeel)) {
+        filter_.remove_point(i);
+      } else if (!filter_.has_point(i)) {
+        filter_.add_point(i, place, sigma);
+      } else {
+        filter_.correct_point(i, place, sigma);
+      }
+    }
+  }
+}
+
+void InvariantEkf::write(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
+  sdk::Vector6d twist;
+  twist << rate_ - filter_.gyro_bias, filter_.orientation.conjugate() * pelvis_velocity();
+  const double share = low_pass(p_[P::kLegPole], in.time.period);
+  for (int k = 0; k < 6; ++k) {
+    if (!twist_begun_) twist_[k] = {twist[k], twist[k]};
+    twist_[k].update(twist[k], 0.0, share, in.time.period);
+    out.pelvis_twist[k] = twist_[k].second;
+  }
+  twist_begun_ = true;
+  kinematics_.update(pelvis_position(), filter_.orientation, view(out.pelvis_twist),
+                     sdk::head(out.joint_position, model_.joint_count),
+                     sdk::head(out.joint_velocity, model_.joint_count));
+  out.joint_count = model_.joint_count;
+  out.valid = 1;
+  view(out.pelvis_position) = pelvis_position();
+  sdk::store(filter_.orientation, out.pelvis_orientation);
+  view(out.com) = kinematics_.com();
+  view(out.com_velocity) = kinematics_.com_velocity();
+  view(out.icp) = kinematics_.com().head<2>() + kinematics_.com_velocity().head<2>() / in.omega;
+  write_feet(out);
+  const Eigen::Matrix3d covariance = filter_.velocity_covariance();
+  std::copy_n(covariance.data(), 9, out.pelvis_velocity_covariance);  // symmetric
+  std::fill_n(out.external_wrench, 6, 0.0);
+}
+
+void InvariantEkf::write_feet(GaitdRobotState& out) {
+  Eigen::Vector2d weighted = Eigen::Vector2d::Zero();
+  double total = 0.0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    GaitdFootState& state = out.feet[side];
+    const GaitdFoot& foot = model_.feet[side];
+    view(state.position) = sole_point(side, Eigen::Vector3d::Zero());
+    sdk::store(sole_orientation(side), state.orientation);
+    view(state.twist) = kinematics_.frame_velocity(foot.body, view(foot.sole.origin));
+    view(state.cop_world) = sole_point(side, {state.cop[0], state.cop[1], 0.0});
+    if (feet_[side].trusted) {
+      feet_[side].anchor = view(state.position);
+      feet_[side].anchor_yaw = sdk::yaw_of(sdk::quaternion(state.orientation));
+    }
+    if (state.cop_valid == 0) continue;
+    weighted += state.normal_force * view(state.cop_world).head<2>();
+    total += state.normal_force;
+  }
+  if (total > 0.0) last_cop_ = weighted / total;
+  view(out.cop) = last_cop_;
+}
+
+GaitdStatus InvariantEkf::process(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
+  if (in.sensors->joint_count != model_.joint_count) return GAITD_INVALID_ARGUMENT;
+  const bool complete = read_joints(in, out);
+  const bool ready = complete && sdk::first_usable_imu(model_, *in.sensors) >= 0;
+  if (!initialised_ && !ready) {
+    reset();
+    out.valid = 0;  // nothing to begin with
+    return GAITD_OK;
+  }
+  read_forces(in, out);
+  if (!initialised_) {
+    initialise(in, out);
+  } else {
+    predict(in);
+  }
+  update_trust(in);
+  correct(in, out);
+  write(in, out);
+  return GAITD_OK;
+}
+
+}  // namespace gaitd::plugins

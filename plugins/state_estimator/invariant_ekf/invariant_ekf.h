@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "gaitd/dynamics/kinematics.h"
+#include "gaitd/sdk/layer.h"
+#include "gaitd/sdk/views.h"
+#include "right_invariant_filter.h"
+
+namespace gaitd::plugins {
+
+// Contact-aided invariant EKF from IMU, encoders and foot forces.
+//
+// The filter follows the first usable IMU, so that no acceleration has to be moved to the pelvis by
+// differentiating the gyroscope. A loaded foot gives it two points, the middles of the front and of
+// the back edge of its sole: together they hold the heading too. They may move more freely up and
+// down than sideways, so that a foot that gives way under its load does not pitch the robot. A foot
+// that has just landed or is on its toe has the front point only.
+class InvariantEkf {
+ public:
+  enum class P {
+    kTrustOn,
+    kTrustOff,
+    kTrustDelay,
+    kRestDelay,
+    kContactOn,
+    kContactOff,
+    kForceFilter,
+    kLegPole,
+    kUpperBodyPole,
+    kGyroNoise,
+    kAccelerometerNoise,
+    kGyroBiasNoise,
+    kAccelerometerBiasNoise,
+    kHorizontalNoise,
+    kVerticalNoise,
+    kStandingShare,
+    kKinematicNoise,
+    kTiltNoise,
+    kCount
+  };
+  static constexpr std::array<GaitdParameter, 18> kParameters = {
+      sdk::real_parameter("trust_on", "load", 0, 1, 0.35, "share that makes a foot a contact"),
+      sdk::real_parameter("trust_off", "load", 0, 1, 0.30, "share below which it is none"),
+      sdk::real_parameter("trust_delay", "s", 0, 0.5, 0.02, "that the share must last"),
+      sdk::real_parameter("rest_delay", "s", 0, 1, 0.1,
+                          "after which a foot has come to rest and holds the heading too"),
+      sdk::real_parameter("contact_on", "weight", 0, 1, 0.05, "normal force of a reported contact"),
+      sdk::real_parameter("contact_off", "weight", 0, 1, 0.03, "normal force of no contact"),
+      sdk::real_parameter("force_filter", "Hz", 1, 500, 80, "low-pass of the normal force"),
+      sdk::real_parameter("leg_pole", "1/s", 1, 2000, 300,
+                          "two low-passes of the rates of leg joints and of the pelvis twist"),
+      sdk::real_parameter("upper_body_pole", "1/s", 1, 2000, 300,
+                          "the same for all other joints, which follow their commands closely"),
+      sdk::real_parameter("gyro_noise", "rad/s/sqrtHz", 0, 1, 3e-4, "density"),
+      sdk::real_parameter("accelerometer_noise", "m/s^2/sqrtHz", 0, 10, 0.01, "density"),
+      sdk::real_parameter("gyro_bias_noise", "rad/s^2/sqrtHz", 0, 1, 2e-5, "random walk"),
+      sdk::real_parameter("accelerometer_bias_noise", "m/s^3/sqrtHz", 0, 1, 5e-4, "random walk"),
+      sdk::real_parameter("horizontal_noise", "m/s/sqrtHz", 0, 10, 0.004,
+                          "random walk of a contact"),
+      sdk::real_parameter("vertical_noise", "m/s/sqrtHz", 0, 10, 0.01, "random walk of a contact"),
+      sdk::real_parameter("standing_share", "", 0, 1, 0.1,
+                          "of these two while the robot stands and its feet are at rest"),
+      sdk::real_parameter("kinematic_noise", "m/sqrtHz", 1e-6, 1, 5e-5,
+                          "density, of a contact seen through the encoders"),
+      sdk::real_parameter("tilt_noise", "rad/sqrtHz", 1e-5, 1, 3e-3,
+                          "density, of an IMU that measures its orientation"),
+  };
+
+  explicit InvariantEkf(const GaitdModel& model);
+  void set_parameter(int index, double value) { p_.set(index, value); }
+  GaitdStatus process(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
+  void reset();
+  void get_state(GaitdStateEstimatorState& s) const;
+  // The filters of the joint rates go on: they belong to the sensors, not to the pose.
+  void set_state(const GaitdStateEstimatorState& s);
+
+ private:
+  enum Point { kToe, kHeel };
+  struct Foot {
+    bool trusted = false;
+    double time_above = 0.0;    // s, load share above the threshold
+    double time_trusted = 0.0;  // s
+    int contact = GAITD_CONTACT_NONE;
+    double normal_force = 0.0;                         // N, filtered
+    std::array<Eigen::Vector3d, 2> points;             // m, sole frame, by Point
+    Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  // m, W: sole origin when last trusted
+    double anchor_yaw = 0.0;
+  };
+  // Two low-passes in a row, and what is known of the acceleration between them.
+  struct LaggedRate {
+    double first = 0.0, second = 0.0;
+    void update(double rate, double acceleration, double share, double dt);
+  };
+
+  static constexpr int index(int side, Point point) { return 2 * side + point; }
+
+  bool read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
+  void read_forces(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
+  void initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
+  void set_covariance(const Eigen::Vector3d& centre, bool levelled);
+  void choose_imu(int imu);
+  void predict(const GaitdStateEstimatorInput& in);
+  void update_trust(const GaitdStateEstimatorInput& in);
+  void correct(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
+  void write(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
+  void write_feet(GaitdRobotState& out);
+  // The joints of a robot whose pelvis stands still at the origin.
+  void update_joint_kinematics(const GaitdRobotState& joints);
+  Eigen::Vector3d sole_point(int side, const Eigen::Vector3d& in_sole) const;
+  Eigen::Quaterniond sole_orientation(int side) const;
+  Eigen::Vector3d lever() const;  // m, of the IMU in the pelvis frame
+  Eigen::Vector3d pelvis_position() const;
+  Eigen::Vector3d pelvis_velocity() const;
+
+  const GaitdModel model_;
+  double weight_;  // N
+  sdk::Parameters<P> p_{kParameters};
+  dynamics::Kinematics kinematics_;
+  RightInvariantFilter filter_;  // axes of the pelvis, origin of the IMU in use
+  int imu_ = 0;
+
+  bool initialised_ = false;
+  std::array<bool, GAITD_MAX_JOINTS> is_leg_joint_{};
+  bool joints_seen_ = false;
+  std::array<double, GAITD_MAX_JOINTS> joint_{};  // rad
+  std::array<LaggedRate, GAITD_MAX_JOINTS> joint_rate_{};
+  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();            // rad/s, measured, pelvis frame
+  Eigen::Vector3d specific_force_ = Eigen::Vector3d::Zero();  // m/s^2, at the IMU, pelvis axes
+  // The pelvis twist as late as the rates of the leg joints, for what is built from both.
+  std::array<LaggedRate, 6> twist_{};
+  bool twist_begun_ = false;
+  std::array<Foot, GAITD_MAX_FEET> feet_;
+  Eigen::Vector2d last_cop_ = Eigen::Vector2d::Zero();
+};
+
+}  // namespace gaitd::plugins
