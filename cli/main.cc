@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "cli/campaign_command.h"
 #include "cli/completion_command.h"
 #include "cli/context.h"
 #include "cli/daemon_commands.h"
@@ -45,6 +46,7 @@ int run(int argc, char** argv) {
   add_param_commands(&app, &context);
   add_watch_command(&app, &context);
   add_run_command(&app, &context);
+  add_campaign_command(&app, &context);
   add_log_commands(&app, &context);
   add_completion_command(&app, &context);
   const auto man = [&app] { return gaitd::usage::man_page(app, man_text()); };

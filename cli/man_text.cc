@@ -11,7 +11,7 @@ usage::ManText man_text() {
       .summary = "command the walking daemon gaitd",
       .description =
           "gaitctl sends commands to a running gaitd over its Unix socket and shows what "
-          "it answers. It also plays scenarios on a gaitd of its own (run) and reads "
+          "it answers. It also plays scenarios on a gaitd of its own (run, campaign) and reads "
           "logs (log); these need no daemon.\n\n"
           "Commands return when the daemon has taken them, not when the robot is done. "
           "A status that is asked for afterwards shows their effect.\n",

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/private_daemon.h"
 
-#include <fcntl.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,6 +12,7 @@
 #include <system_error>
 #include <thread>
 
+#include "cli/child.h"
 #include "cli/stop_signals.h"
 
 namespace gaitd::cli {
@@ -43,40 +42,6 @@ class PrivateDirectory {
  private:
   std::string path_;
 };
-
-// After fork: system calls only.
-[[noreturn]] void become_daemon(char** argv, const char* output, pid_t parent, int failure_fd) {
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != parent) _exit(127);
-  const int out = open(output, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  const int in = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  if (out >= 0 && in >= 0 && dup2(in, STDIN_FILENO) >= 0 && dup2(out, STDOUT_FILENO) >= 0 &&
-      dup2(out, STDERR_FILENO) >= 0) {
-    execv(argv[0], argv);
-  }
-  const int error = errno;
-  [[maybe_unused]] const ssize_t written = write(failure_fd, &error, sizeof(error));
-  _exit(127);
-}
-
-// The child, or -1 with errno if it could not be started, exec included.
-pid_t start(std::vector<std::string> arguments, const std::string& output) {
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  int failure[2];
-  if (pipe2(failure, O_CLOEXEC) != 0) return -1;
-  const pid_t parent = getpid();
-  const pid_t pid = fork();
-  if (pid == 0) become_daemon(argv.data(), output.c_str(), parent, failure[1]);
-  int error = pid < 0 ? errno : 0;
-  close(failure[1]);
-  const bool failed = pid > 0 && read(failure[0], &error, sizeof(error)) == sizeof(error);
-  close(failure[0]);
-  if (failed) waitpid(pid, nullptr, 0);
-  errno = error;
-  return failed ? -1 : pid;
-}
 
 // Waits for the end of the child; asked to stop, ends it politely, then by force.
 DaemonEnd wait_for(pid_t pid, const std::string& socket, const Watch& watch) {
@@ -127,7 +92,8 @@ std::optional<DaemonEnd> run_daemon(const DaemonRun& run, const Watch& watch, st
     arguments.push_back(setting);
   }
   const StopSignals signals;
-  const pid_t pid = start(std::move(arguments), run.output.string());
+  const std::string output = run.output.string();
+  const pid_t pid = start_child(std::move(arguments), output, output);
   if (pid < 0) {
     *error = "cannot start " + run.program.string() + " (output to " + run.output.string() +
              "): " + std::strerror(errno);

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/campaign.h"
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "daemon/config/node.h"
+#include "daemon/config/paths.h"
+#include "daemon/config/settings.h"
+#include "daemon/config/yaml_reader.h"
+
+namespace gaitd::cli {
+namespace {
+
+using daemon::Issues;
+using daemon::MapReader;
+using daemon::Node;
+using daemon::NodeKind;
+using daemon::NodePtr;
+
+constexpr std::size_t kMaxRuns = 1000000;
+
+// As YAML takes it behind KEY=.
+std::string value_text(const Node& node) {
+  return node.kind == NodeKind::kScalar && !node.quoted ? node.text : daemon::to_json(node).dump();
+}
+
+void read_scenarios(MapReader* root, Campaign* campaign) {
+  const daemon::Paths paths = daemon::Paths::detect();
+  int i = 0;
+  for (const NodePtr& node : root->list("scenarios", 1, 1000)) {
+    const std::string path = "scenarios[" + std::to_string(i++) + "]";
+    if (node->kind != NodeKind::kScalar || !paths.scenario(node->text)) {
+      root->issues()->add(node->where, path, "the name of a scenario or the path of its file",
+                          daemon::describe(*node),
+                          daemon::suggestion(node->text, paths.scenarios()));
+      continue;
+    }
+    campaign->scenarios.push_back(node->text);
+  }
+}
+
+void read_settings(MapReader map, Campaign* campaign) {
+  for (const Node::Entry& entry : map.entries()) {
+    CampaignSetting setting{entry.key, {}};
+    if (entry.value->kind == NodeKind::kList) {
+      for (const NodePtr& item : entry.value->items) setting.values.push_back(value_text(*item));
+    }
+    if (setting.values.empty()) {
+      map.fail(entry.key, "a list of values", daemon::describe(*entry.value),
+               "write [a, b]; one value is a list too");
+      continue;
+    }
+    campaign->settings.push_back(std::move(setting));
+  }
+}
+
+void read_draws(MapReader map, Campaign* campaign) {
+  for (const Node::Entry& entry : map.entries()) {
+    CampaignDraw draw{entry.key, {}, {}, false};
+    std::vector<double>* ends[] = {&draw.low, &draw.high};
+    bool fits = entry.value->kind == NodeKind::kList && entry.value->items.size() == 2;
+    for (std::size_t end = 0; fits && end < 2; ++end) {
+      const Node& node = *entry.value->items[end];
+      draw.is_list = node.kind == NodeKind::kList;
+      const std::vector<NodePtr> one{entry.value->items[end]};
+      for (const NodePtr& item : draw.is_list ? node.items : one) {
+        const auto number = daemon::as_number(*item);
+        fits = fits && number.has_value();
+        ends[end]->push_back(number.value_or(0.0));
+      }
+    }
+    fits = fits && !draw.low.empty() && draw.low.size() == draw.high.size();
+    for (std::size_t i = 0; fits && i < draw.low.size(); ++i) fits = draw.low[i] <= draw.high[i];
+    if (!fits) {
+      map.fail(entry.key, "[lowest, highest], two numbers or two lists of as many",
+               daemon::describe(*entry.value), "for example [0.9, 1.1]");
+      continue;
+    }
+    campaign->draws.push_back(std::move(draw));
+  }
+}
+
+void read_seeds(MapReader* root, Campaign* campaign) {
+  const NodePtr node = root->node("seeds");
+  if (node != nullptr && node->kind == NodeKind::kList) {
+    for (const NodePtr& item : node->items) {
+      const auto seed = daemon::as_integer(*item);
+      if (seed && *seed >= 0) {
+        campaign->seeds.push_back(static_cast<std::uint64_t>(*seed));
+      } else {
+        root->issues()->add(item->where, "seeds", "whole numbers of at least 0",
+                            daemon::describe(*item), "");
+      }
+    }
+    return;
+  }
+  const long long count = root->integer("seeds", 1, 1000000).value_or(1);
+  for (long long i = 1; i <= count; ++i) campaign->seeds.push_back(static_cast<std::uint64_t>(i));
+}
+
+// A key twice, or one that the campaign itself sets, would hide one of its values.
+void check_keys(MapReader* root, const Campaign& campaign) {
+  std::set<std::string> seen{"seed"};
+  const auto check = [&](const char* section, const std::string& key) {
+    if (seen.insert(key).second) return;
+    root->fail(std::string(section) + "." + key,
+               "each key once, and seeds under seeds:", "'" + key + "' again",
+               "leave one of them out");
+  };
+  for (const CampaignSetting& setting : campaign.settings) check("set", setting.key);
+  for (const CampaignDraw& draw : campaign.draws) check("draw", draw.key);
+}
+
+// 0..1, from the seed and the place of the number: the same on every machine.
+double uniform(std::uint64_t seed, const std::string& key, std::size_t i) {
+  std::uint64_t h = 14695981039346656037ULL;  // FNV-1a
+  for (const char c : key) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  std::uint64_t z = h + (seed + 1) * 0x9e3779b97f4a7c15ULL + i * 0xd1342543de82ef95ULL;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;  // splitmix64
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+std::string draw_value(const CampaignDraw& draw, std::uint64_t seed) {
+  std::string text;
+  for (std::size_t i = 0; i < draw.low.size(); ++i) {
+    const double value = draw.low[i] + (draw.high[i] - draw.low[i]) * uniform(seed, draw.key, i);
+    char number[32];
+    std::snprintf(number, sizeof(number), "%.6g", value);
+    text += (i > 0 ? ", " : "") + std::string(number);
+  }
+  return draw.is_list ? "[" + text + "]" : text;
+}
+
+}  // namespace
+
+std::optional<Campaign> load_campaign(const std::string& file, Issues* issues) {
+  const std::size_t errors = issues->error_count();
+  const NodePtr node = daemon::load_yaml_file(file, issues);
+  if (node == nullptr) return std::nullopt;
+  Campaign campaign;
+  campaign.file = file;
+  std::ifstream in(file);
+  campaign.text.assign(std::istreambuf_iterator<char>(in), {});
+  MapReader root(node, "", issues);
+  root.require({"schema", "name", "scenarios"});
+  constexpr std::array<std::string_view, 1> kSchemas = {"gaitd.campaign/1"};
+  constexpr std::array<std::string_view, 2> kSuccess = {"expectations", "no_fall"};
+  root.choice("schema", kSchemas);
+  campaign.name = root.text("name").value_or("");
+  read_scenarios(&root, &campaign);
+  read_settings(root.map("set"), &campaign);
+  read_draws(root.map("draw"), &campaign);
+  read_seeds(&root, &campaign);
+  campaign.only_falls = root.choice("success", kSuccess).value_or(0) == 1;
+  campaign.success_min = root.number("success_min", {0.0, 1.0, ""}).value_or(1.0);
+  campaign.keep_logs = static_cast<int>(root.integer("keep_logs", 0, 1000000).value_or(10));
+  check_keys(&root, campaign);
+  root.finish();
+  std::size_t runs = campaign.scenarios.size() * campaign.seeds.size();
+  for (const CampaignSetting& setting : campaign.settings) {
+    runs = std::min(runs * setting.values.size(), kMaxRuns + 1);
+  }
+  if (runs > kMaxRuns) {
+    root.fail("", "at most " + std::to_string(kMaxRuns) + " runs", "more", "make it smaller");
+  }
+  if (issues->error_count() != errors) return std::nullopt;
+  return campaign;
+}
+
+std::vector<CampaignRun> expand(const Campaign& campaign) {
+  std::vector<CampaignRun> runs;
+  std::size_t combinations = 1;
+  for (const CampaignSetting& setting : campaign.settings) combinations *= setting.values.size();
+  for (const std::uint64_t seed : campaign.seeds) {
+    int cell = 0;
+    for (const std::string& scenario : campaign.scenarios) {
+      for (std::size_t combination = 0; combination < combinations; ++combination) {
+        CampaignRun run{static_cast<int>(runs.size()) + 1, cell++, scenario, seed, {}, {}};
+        std::size_t rest = combination;
+        for (const CampaignSetting& setting : campaign.settings) {
+          run.values.push_back(setting.values[rest % setting.values.size()]);
+          rest /= setting.values.size();
+        }
+        for (const CampaignDraw& draw : campaign.draws) {
+          run.drawn.push_back(draw_value(draw, seed));
+        }
+        runs.push_back(std::move(run));
+      }
+    }
+  }
+  return runs;
+}
+
+std::vector<std::string> assignments(const Campaign& campaign, const CampaignRun& run) {
+  std::vector<std::string> out{"seed=" + std::to_string(run.seed)};
+  for (std::size_t i = 0; i < run.values.size(); ++i) {
+    out.push_back(campaign.settings[i].key + "=" + run.values[i]);
+  }
+  for (std::size_t i = 0; i < run.drawn.size(); ++i) {
+    out.push_back(campaign.draws[i].key + "=" + run.drawn[i]);
+  }
+  return out;
+}
+
+}  // namespace gaitd::cli

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/config/issues.h"
+
+namespace gaitd::cli {
+
+/// A key of the configuration or a scenario, and values as --set takes them.
+struct CampaignSetting {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+/// A key whose value is drawn anew for each seed, evenly between two numbers, or two lists of them.
+struct CampaignDraw {
+  std::string key;
+  std::vector<double> low, high;
+  bool is_list = false;
+};
+
+/// One file of schema gaitd.campaign/1, checked; see docs/campaigns.md.
+struct Campaign {
+  std::string file;
+  std::string text;  ///< of the file
+  std::string name;
+  std::vector<std::string> scenarios;     ///< names, or paths of files
+  std::vector<CampaignSetting> settings;  ///< every combination is tried
+  std::vector<CampaignDraw> draws;
+  std::vector<std::uint64_t> seeds;
+  bool only_falls = false;   ///< success is not to fall; else every expectation of the scenario
+  double success_min = 1.0;  ///< share of runs of each cell that must succeed
+  int keep_logs = 10;        ///< of the worst runs
+};
+
+/// One run of a campaign. Runs with the same cell differ in nothing but the seed.
+struct CampaignRun {
+  int number = 0;  ///< from 1
+  int cell = 0;
+  std::string scenario;
+  std::uint64_t seed = 0;
+  std::vector<std::string> values;  ///< of the settings, in their order
+  std::vector<std::string> drawn;   ///< of the draws, in their order
+};
+
+/// Nothing when there is any error; all of them go to `issues`.
+std::optional<Campaign> load_campaign(const std::string& file, daemon::Issues* issues);
+
+/// All runs; the seed changes last, so that half a campaign says something of every cell.
+std::vector<CampaignRun> expand(const Campaign& campaign);
+
+/// KEY=VALUE of everything that makes this run, the seed included.
+std::vector<std::string> assignments(const Campaign& campaign, const CampaignRun& run);
+
+}  // namespace gaitd::cli

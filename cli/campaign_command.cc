@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/campaign_command.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <system_error>
+#include <thread>
+
+#include "cli/campaign.h"
+#include "cli/campaign_results.h"
+#include "cli/campaign_runner.h"
+#include "cli/failure.h"
+#include "cli/print.h"
+
+namespace gaitd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kInterrupted = 130;  // as a shell reports a program that SIGINT ended
+
+struct Arguments {
+  std::string file;
+  std::string folder;
+  std::vector<std::string> settings;
+  int jobs = 0;
+};
+
+std::string duration_text(double seconds) {
+  char text[32];
+  const auto whole = static_cast<long>(seconds + 0.5);
+  std::snprintf(text, sizeof(text), "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+  return text;
+}
+
+// A bar that stays in its line on a terminal, else a line now and then.
+class ProgressBar {
+ public:
+  ProgressBar(const ResultFile& results, std::size_t runs, std::size_t before)
+      : results_(results), runs_(runs), before_(before) {}
+
+  void show(int finished) {
+    const std::size_t done = results_.results().size();
+    if (!terminal_ && (finished == shown_ || (done * 20 / runs_ == last_step_ && done < runs_))) {
+      return;
+    }
+    last_step_ = done * 20 / runs_;
+    shown_ = finished;
+    int failed = 0;
+    for (const auto& [number, result] : results_.results()) failed += result.success ? 0 : 1;
+    constexpr std::size_t kWidth = 30;
+    const std::size_t filled = done * kWidth / runs_;
+    const double passed = std::chrono::duration<double>(Clock::now() - start_).count();
+    const std::string left =
+        finished > 0
+            ? duration_text(passed / finished * static_cast<double>(runs_ - done)) + " left"
+            : "";
+    std::fprintf(stderr, "%s[%s%s] %zu/%zu, %d failed, %s%s", terminal_ ? "\r" : "",
+                 std::string(filled, '#').c_str(), std::string(kWidth - filled, '.').c_str(), done,
+                 runs_, failed, left.c_str(), terminal_ ? "\033[K" : "\n");
+    std::fflush(stderr);
+  }
+  void end() const {
+    if (terminal_) std::fputs("\r\033[K", stderr);
+  }
+  std::size_t before() const { return before_; }
+
+ private:
+  const ResultFile& results_;
+  std::size_t runs_;
+  std::size_t before_;  // done by earlier starts
+  bool terminal_ = isatty(STDERR_FILENO) != 0;
+  Clock::time_point start_ = Clock::now();
+  int shown_ = 0;
+  std::size_t last_step_ = 0;
+};
+
+// Makes the folder and takes it for this process, or says why not. A descriptor, or -1.
+int take_folder(const fs::path& folder, const std::string& text, std::string* error) {
+  std::error_code code;
+  fs::create_directories(folder / "logs", code);
+  if (code) {
+    *error = "cannot make the folder " + folder.string() + ": " + code.message() +
+             "; give another one with -o";
+    return -1;
+  }
+  const int lock = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (lock < 0 || flock(lock, LOCK_EX | LOCK_NB) != 0) {
+    *error = folder.string() + ": another campaign is running in this folder";
+    if (lock >= 0) close(lock);
+    return -1;
+  }
+  const fs::path copy = folder / "campaign.yaml";
+  if (fs::exists(copy, code)) {
+    std::ifstream in(copy);
+    if (std::string(std::istreambuf_iterator<char>(in), {}) != text) {
+      *error = folder.string() + ": holds results of another campaign, or of this one before its " +
+               "file or --set was changed; give another folder with -o, or delete this one";
+      close(lock);
+      return -1;
+    }
+  } else {
+    std::ofstream(copy) << text;
+  }
+  return lock;
+}
+
+int run(const Context& context, const Arguments& arguments) {
+  daemon::Issues issues;
+  const std::optional<Campaign> campaign = load_campaign(arguments.file, &issues);
+  if (!campaign) return fail(context, kFailed, "campaign", issues.error_text());
+  const fs::path folder =
+      fs::absolute(arguments.folder.empty() ? fs::path(arguments.file).stem().string() + "-results"
+                                            : arguments.folder);
+  // What --set says makes another campaign of it.
+  std::string text = campaign->text;
+  for (const std::string& setting : arguments.settings) text += "# --set " + setting + "\n";
+  std::string error;
+  const int lock = take_folder(folder, text, &error);
+  if (lock < 0) return fail(context, kFailed, "campaign", error);
+
+  const std::vector<CampaignRun> runs = expand(*campaign);
+  ResultFile results(*campaign, runs);
+  if (!results.open(folder / "results.csv", &error)) {
+    return fail(context, kFailed, "campaign", error);
+  }
+  std::error_code ignored;
+  RunnerOptions options;
+  options.gaitctl = fs::read_symlink("/proc/self/exe", ignored);
+  options.folder = folder;
+  options.settings = arguments.settings;
+  options.jobs = arguments.jobs > 0
+                     ? arguments.jobs
+                     : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  ProgressBar bar(results, runs.size(), results.results().size());
+  if (bar.before() > 0) {
+    std::cerr << "goes on: " << bar.before() << " of " << runs.size() << " runs are done\n";
+  }
+  const RunnerEnd end = play_runs(
+      *campaign, runs, options, &results, [&bar](int finished) { bar.show(finished); }, &error);
+  bar.end();
+  close(lock);
+  if (end == RunnerEnd::kFailed) return fail(context, kFailed, "campaign", error);
+  const nlohmann::json summary = summary_json(*campaign, runs, results.results(), folder);
+  std::ofstream(folder / "summary.txt") << summary_text(summary);
+  std::cout << (context.json ? json_text(summary) : summary_text(summary));
+  if (end == RunnerEnd::kInterrupted) {
+    std::cerr << "interrupted; the same command goes on\n";
+    return kInterrupted;
+  }
+  return summary["pass"].get<bool>() ? kDone : kFailed;
+}
+
+}  // namespace
+
+void add_campaign_command(CLI::App* app, Context* context) {
+  auto* command = app->add_subcommand(
+      "campaign", "Play scenarios with many settings and seeds on all processors");
+  command->footer(
+      "Started again after an end of any kind it goes on where it was. Exit code 0 only if every "
+      "combination succeeds as often as the file asks for.");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("FILE", arguments->file, "A campaign (schema gaitd.campaign/1)")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("-o,--output", arguments->folder,
+                   "Folder for results, summary and the logs of the worst runs; by default the "
+                   "name of the file and -results")
+      ->type_name("FOLDER");
+  command
+      ->add_option("--set", arguments->settings,
+                   "Any key of the configuration or the scenario, for every run; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->expected(1);
+  command
+      ->add_option("--jobs", arguments->jobs,
+                   "Runs at once; by default as many as there are processors")
+      ->check(CLI::Range(1, 1024));
+  command->callback([context, arguments] {
+    context->action = [context, arguments] { return run(*context, *arguments); };
+  });
+}
+
+}  // namespace gaitd::cli

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/campaign_results.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <sstream>
+
+#include "cli/print.h"
+
+namespace gaitd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kWorstRuns = 10;
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+std::string joined(const std::vector<std::string>& fields) {
+  std::string line;
+  for (const std::string& field : fields) line += (line.empty() ? "" : ",") + quoted(field);
+  return line + "\n";
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool inside = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"' && inside && i + 1 < line.size() && line[i + 1] == '"') {
+      fields.back() += line[i++];
+    } else if (line[i] == '"') {
+      inside = !inside;
+    } else if (line[i] == ',' && !inside) {
+      fields.emplace_back();
+    } else {
+      fields.back() += line[i];
+    }
+  }
+  return fields;
+}
+
+std::string number_text(double value) {
+  if (std::isnan(value)) return "";
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string describe_run(const Campaign& campaign, const CampaignRun& run) {
+  std::string text = run.scenario;
+  for (const std::string& assignment : assignments(campaign, run)) text += " " + assignment;
+  return text;
+}
+
+}  // namespace
+
+const std::vector<std::string>& campaign_figures() {
+  static const std::vector<std::string> kNames = {
+      "duration",      "fall_time",     "steps_taken",       "icp_error_rms",
+      "icp_error_max", "foot_slip_max", "torque_saturation", "stance_knee_mean"};
+  return kNames;
+}
+
+CampaignResult read_result(const Campaign& campaign, int number, const std::string& run_json) {
+  CampaignResult result;
+  result.number = number;
+  result.figures.assign(campaign_figures().size(), kNaN);
+  const json document = json::parse(run_json, nullptr, false);
+  const json report = document.is_object() && document.contains("scenarios")
+                          ? document["scenarios"].at(0)
+                          : json::object();
+  if (!report.contains("verdict")) {
+    result.problem = "gaitctl run gave no result";
+    return result;
+  }
+  for (const json& problem : report["problems"]) {
+    result.problem += (result.problem.empty() ? "" : "; ") + problem.get<std::string>();
+  }
+  result.problem = one_line(result.problem);
+  const json& verdict = report["verdict"];
+  if (!verdict.is_object()) return result;
+  const json& figures = verdict["figures"];
+  for (std::size_t i = 0; i < campaign_figures().size(); ++i) {
+    const json value = figures.value(campaign_figures()[i], json());
+    if (value.is_number()) result.figures[i] = value.get<double>();
+  }
+  for (const json& judgement : verdict["expectations"]) {
+    if (judgement.value("pass", false)) continue;
+    result.failed += (result.failed.empty() ? "" : " ") + judgement.value("name", "");
+  }
+  if (!report["refusals"].empty()) result.failed += result.failed.empty() ? "refused" : " refused";
+  const json falls = figures.value("falls", json());
+  result.fell = falls.is_number() && falls.get<double>() > 0.0;
+  const bool judged = result.problem.empty() && falls.is_number();
+  result.success = judged && (campaign.only_falls ? !result.fell : report.value("pass", false));
+  return result;
+}
+
+double badness(const CampaignResult& result) {
+  const auto& names = campaign_figures();
+  const auto icp = std::find(names.begin(), names.end(), "icp_error_max") - names.begin();
+  const double error = result.figures[static_cast<std::size_t>(icp)];
+  return (result.success ? 0.0 : 1e6) + (std::isnan(error) ? 1e3 : std::min(error, 1e3));
+}
+
+SuccessInterval wilson_interval(int successes, int runs) {
+  if (runs <= 0) return {};
+  constexpr double kZ = 1.959964;  // 95 %, both sides
+  const double n = runs;
+  const double share = successes / n;
+  const double middle = share + kZ * kZ / (2.0 * n);
+  const double half = kZ * std::sqrt(share * (1.0 - share) / n + kZ * kZ / (4.0 * n * n));
+  const double scale = 1.0 + kZ * kZ / n;
+  return {std::max(0.0, (middle - half) / scale), std::min(1.0, (middle + half) / scale)};
+}
+
+std::string ResultFile::header() const {
+  std::vector<std::string> fields{"run", "scenario", "seed"};
+  for (const CampaignSetting& setting : campaign_.settings) fields.push_back(setting.key);
+  for (const CampaignDraw& draw : campaign_.draws) fields.push_back(draw.key);
+  fields.insert(fields.end(), {"success", "fell", "failed", "problem"});
+  fields.insert(fields.end(), campaign_figures().begin(), campaign_figures().end());
+  return joined(fields);
+}
+
+bool ResultFile::open(const fs::path& path, std::string* error) {
+  path_ = path;
+  const std::size_t figures = campaign_figures().size();
+  std::ifstream in(path, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  std::string good = header();
+  if (text.starts_with(good)) {
+    const std::size_t columns = split(good).size();
+    std::istringstream lines(text.substr(good.size(), text.rfind('\n') + 1 - good.size()));
+    for (std::string line; std::getline(lines, line);) {
+      const std::vector<std::string> fields = split(line);
+      const int number = std::atoi(fields[0].c_str());
+      if (fields.size() != columns || number < 1 || number > static_cast<int>(runs_.size())) {
+        continue;
+      }
+      const std::size_t first = columns - figures - 4;
+      CampaignResult result{number,
+                            fields[first] == "1",
+                            fields[first + 1] == "1",
+                            fields[first + 2],
+                            fields[first + 3],
+                            {}};
+      for (std::size_t i = columns - figures; i < columns; ++i) {
+        result.figures.push_back(fields[i].empty() ? kNaN : std::atof(fields[i].c_str()));
+      }
+      // What could not be judged is tried again.
+      if (result.problem.empty() && results_.emplace(number, result).second) good += line + "\n";
+    }
+  } else if (!text.empty() && text.find('\n') != std::string::npos) {
+    *error = path.string() + ": not the results of this campaign; give another folder with -o";
+    return false;
+  }
+  const fs::path fresh = path.string() + ".new";
+  std::ofstream out(fresh, std::ios::binary | std::ios::trunc);
+  out << good << std::flush;
+  std::error_code code;
+  if (out) fs::rename(fresh, path, code);
+  if (out && !code) return true;
+  *error = path.string() + ": cannot write: " + std::strerror(errno);
+  return false;
+}
+
+bool ResultFile::append(const CampaignResult& result, std::string* error) {
+  const CampaignRun& run = runs_[static_cast<std::size_t>(result.number) - 1];
+  std::vector<std::string> fields{std::to_string(run.number), run.scenario,
+                                  std::to_string(run.seed)};
+  fields.insert(fields.end(), run.values.begin(), run.values.end());
+  fields.insert(fields.end(), run.drawn.begin(), run.drawn.end());
+  fields.insert(fields.end(), {result.success ? "1" : "0", result.fell ? "1" : "0", result.failed,
+                               result.problem});
+  for (const double figure : result.figures) fields.push_back(number_text(figure));
+  const std::string line = joined(fields);
+  results_[result.number] = result;
+  const int file = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  const bool written =
+      file >= 0 && ::write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
+      fsync(file) == 0;
+  const int code = errno;
+  if (file >= 0) close(file);
+  if (!written) *error = path_.string() + ": cannot write: " + std::strerror(code);
+  return written;
+}
+
+fs::path campaign_log(const fs::path& folder, int number) {
+  char name[32];
+  std::snprintf(name, sizeof(name), "%06d.mcap", number);
+  return folder / "logs" / name;
+}
+
+json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                  const std::map<int, CampaignResult>& results, const fs::path& folder) {
+  json cells = json::array();
+  int total = 0;
+  bool pass = results.size() == runs.size();
+  std::map<int, std::pair<int, int>> counts;  // successes and runs by cell
+  std::map<int, int> falls;
+  for (const auto& [number, result] : results) {
+    const int cell = runs[static_cast<std::size_t>(number) - 1].cell;
+    counts[cell].first += result.success ? 1 : 0;
+    counts[cell].second += 1;
+    falls[cell] += result.fell ? 1 : 0;
+    total += result.success ? 1 : 0;
+  }
+  for (const auto& [cell, count] : counts) {
+    const CampaignRun& run = runs[static_cast<std::size_t>(cell)];  // of the first seed
+    json settings = json::object();
+    for (std::size_t i = 0; i < run.values.size(); ++i) {
+      settings[campaign.settings[i].key] = run.values[i];
+    }
+    const SuccessInterval interval = wilson_interval(count.first, count.second);
+    const double rate = static_cast<double>(count.first) / count.second;
+    pass = pass && rate >= campaign.success_min;
+    cells.push_back({{"scenario", run.scenario},
+                     {"set", settings},
+                     {"runs", count.second},
+                     {"successes", count.first},
+                     {"falls", falls[cell]},
+                     {"success_rate", rate},
+                     {"low", interval.low},
+                     {"high", interval.high}});
+  }
+  std::vector<const CampaignResult*> worst;
+  for (const auto& [number, result] : results) worst.push_back(&result);
+  std::stable_sort(worst.begin(), worst.end(),
+                   [](const auto* a, const auto* b) { return badness(*a) > badness(*b); });
+  worst.resize(std::min(worst.size(), kWorstRuns));
+  json worst_runs = json::array();
+  for (const CampaignResult* result : worst) {
+    const CampaignRun& run = runs[static_cast<std::size_t>(result->number) - 1];
+    const fs::path log = campaign_log(folder, result->number);
+    std::error_code ignored;
+    json entry = {{"run", result->number},
+                  {"what", describe_run(campaign, run)},
+                  {"success", result->success},
+                  {"fell", result->fell},
+                  {"failed", result->failed},
+                  {"problem", result->problem},
+                  {"log", fs::exists(log, ignored) ? json(log.string()) : json()}};
+    for (std::size_t i = 0; i < campaign_figures().size(); ++i) {
+      const double figure = result->figures[i];
+      entry["figures"][campaign_figures()[i]] = std::isnan(figure) ? json() : json(figure);
+    }
+    worst_runs.push_back(entry);
+  }
+  return {{"campaign", campaign.name},
+          {"pass", pass},
+          {"runs", runs.size()},
+          {"finished", results.size()},
+          {"successes", total},
+          {"success_min", campaign.success_min},
+          {"cells", cells},
+          {"worst", worst_runs},
+          {"results", (folder / "results.csv").string()}};
+}
+
+std::string summary_text(const json& summary) {
+  const auto percent = [](const json& share) {
+    char text[16];
+    std::snprintf(text, sizeof(text), "%.1f %%", 100.0 * share.get<double>());
+    return std::string(text);
+  };
+  std::vector<std::vector<std::string>> rows;
+  for (const json& cell : summary["cells"]) {
+    std::string settings;
+    for (const auto& [key, value] : cell["set"].items()) {
+      settings += (settings.empty() ? "" : " ") + key + "=" + value.get<std::string>();
+    }
+    rows.push_back({cell["scenario"], cell["successes"].dump() + "/" + cell["runs"].dump(),
+                    percent(cell["success_rate"]),
+                    percent(cell["low"]) + " .. " + percent(cell["high"]), cell["falls"].dump(),
+                    settings});
+  }
+  std::string text = summary["campaign"].get<std::string>() + ": " + summary["finished"].dump() +
+                     " of " + summary["runs"].dump() + " runs, " + summary["successes"].dump() +
+                     " succeeded\n\n";
+  text += table({"SCENARIO", "SUCCESS", "RATE", "95 % INTERVAL", "FALLS", "SETTINGS"}, rows);
+  text += "\nworst runs\n";
+  for (const json& run : summary["worst"]) {
+    const std::string failed = run["failed"].get<std::string>();
+    const std::string problem = run["problem"].get<std::string>();
+    const json& icp = run["figures"]["icp_error_max"];
+    text += "  " + std::string(run["success"].get<bool>() ? "ok    " : "FAIL  ") +
+            run["what"].get<std::string>() +
+            (icp.is_null() ? "" : "  icp_error_max " + number_text(icp.get<double>()) + " m") +
+            (run["fell"].get<bool>() ? "  fell" : "") +
+            (failed.empty() ? "" : "  not held: " + failed) +
+            (problem.empty() ? "" : "  " + problem) + "\n" +
+            (run["log"].is_null() ? "" : "        " + run["log"].get<std::string>() + "\n");
+  }
+  text += "\nresults: " + summary["results"].get<std::string>() + "\n";
+  text += summary["pass"].get<bool>() ? "campaign: passed\n" : "campaign: FAILED\n";
+  return text;
+}
+
+}  // namespace gaitd::cli

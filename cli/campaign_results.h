@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/campaign.h"
+
+namespace gaitd::cli {
+
+/// What came of one run.
+struct CampaignResult {
+  int number = 0;  ///< of the run, from 1
+  bool success = false;
+  bool fell = false;
+  std::string failed;           ///< expectations that do not hold, separated by spaces
+  std::string problem;          ///< what kept it from being judged, one line; empty if nothing
+  std::vector<double> figures;  ///< in the order of campaign_figures(); NaN: not measured
+};
+
+/// Names of the figures that are kept of each run, as in the verdict.
+const std::vector<std::string>& campaign_figures();
+
+/// From what `gaitctl --json run` printed for that run; what is no such text becomes a problem.
+CampaignResult read_result(const Campaign& campaign, int number, const std::string& run_json);
+
+/// How bad a run was: those that failed first, then by the largest error of the ICP.
+double badness(const CampaignResult& result);
+
+/// Interval that holds the true share of successes with 95 %, after Wilson.
+struct SuccessInterval {
+  double low = 0.0, high = 1.0;
+};
+SuccessInterval wilson_interval(int successes, int runs);
+
+/// results.csv of a campaign: one row per finished run, in the order in which they finished.
+class ResultFile {
+ public:
+  ResultFile(const Campaign& campaign, const std::vector<CampaignRun>& runs)
+      : campaign_(campaign), runs_(runs) {}
+
+  /// Reads the rows of an earlier start, if there are any, drops a last row that was cut off, and
+  /// opens the file for more. Problems with a reason in `error`.
+  bool open(const std::filesystem::path& path, std::string* error);
+  bool append(const CampaignResult& result, std::string* error);
+
+  const std::map<int, CampaignResult>& results() const { return results_; }  ///< by number
+
+ private:
+  std::string header() const;
+
+  const Campaign& campaign_;
+  const std::vector<CampaignRun>& runs_;
+  std::filesystem::path path_;
+  std::map<int, CampaignResult> results_;
+};
+
+/// Success rates by cell, the worst runs with their logs, and whether the campaign is passed.
+nlohmann::json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                            const std::map<int, CampaignResult>& results,
+                            const std::filesystem::path& folder);
+std::string summary_text(const nlohmann::json& summary);
+
+/// The log of a run in the folder of its campaign.
+std::filesystem::path campaign_log(const std::filesystem::path& folder, int number);
+
+}  // namespace gaitd::cli

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// `gaitctl campaign` with a program of the test in the place of gaitd, and its arithmetic.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "cli/campaign.h"
+#include "cli/campaign_results.h"
+#include "cli/test/cli_process.h"
+#include "cli/test/sample_log.h"
+
+namespace gaitd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+class CampaignTest : public ::testing::Test {
+ protected:
+  CampaignTest() {
+    fs::copy_file(GAITCTL, workspace_.file("gaitctl"));
+    write_sample_log(workspace_.file("sample.mcap"));
+    scenario("good", "2.0");
+    scenario("bad", "0.5");
+    gaitd("");
+  }
+  void scenario(const std::string& name, const std::string& highest) {
+    workspace_.write(name + ".yaml", "schema: gaitd.scenario/1\nname: " + name +
+                                         "\nrobot: atlas\nduration: 5.0\nexpect:\n  checks: "
+                                         "[{signal: com/z, stat: max, max: " +
+                                         highest + "}]\n");
+  }
+  // Writes the log that it was asked for, and its arguments into a file of its own.
+  void gaitd(const std::string& before) {
+    workspace_.write("gaitd", "#!/bin/sh\necho \"$@\" >> " + workspace_.file("calls") + "\n" +
+                                  before + "\nwhile [ $# -gt 0 ]; do [ \"$1\" = --log ] && cp " +
+                                  workspace_.file("sample.mcap") + " \"$2\"; shift; done\n");
+    fs::permissions(workspace_.file("gaitd"), fs::perms::owner_all);
+  }
+  void campaign(const std::string& rest) {
+    workspace_.write("c.yaml", "schema: gaitd.campaign/1\nname: trial\n" + rest);
+  }
+  std::string command(const std::string& arguments) const {
+    return workspace_.file("gaitctl") + " campaign " + workspace_.file("c.yaml") + " -o " +
+           workspace_.file("results") + " " + arguments;
+  }
+  Outcome run(const std::string& arguments = "") {
+    return run_shell(workspace_, command(arguments));
+  }
+  int lines(const std::string& file) const {
+    std::istringstream in(workspace_.read(file));
+    int count = 0;
+    for (std::string line; std::getline(in, line);) ++count;
+    return count;
+  }
+  int logs() const {
+    int count = 0;
+    for (const auto& entry : fs::directory_iterator(workspace_.file("results/logs"))) {
+      count += entry.path().extension() == ".mcap" ? 1 : 0;
+    }
+    return count;
+  }
+  std::string file(const std::string& name) const { return workspace_.file(name); }
+
+  Workspace workspace_;
+};
+
+TEST(Wilson, GivesTheKnownIntervals) {
+  const SuccessInterval most = wilson_interval(49, 50);
+  EXPECT_NEAR(most.low, 0.895, 1e-3);
+  EXPECT_NEAR(most.high, 0.9965, 1e-3);
+  const SuccessInterval none = wilson_interval(0, 10);
+  EXPECT_NEAR(none.low, 0.0, 1e-12);
+  EXPECT_NEAR(none.high, 0.2775, 1e-3);
+  EXPECT_EQ(wilson_interval(0, 0).high, 1.0);
+}
+
+TEST_F(CampaignTest, TriesEveryCombinationWithEverySeed) {
+  campaign("scenarios: [" + file("good.yaml") + ", " + file("bad.yaml") +
+           "]\nset: {gait.swing_height: [0.1, 0.2], toe_off.variant: [never]}\nseeds: [3, 7]\n");
+  daemon::Issues issues;
+  const auto loaded = load_campaign(file("c.yaml"), &issues);
+  ASSERT_TRUE(loaded) << issues.error_text();
+  const std::vector<CampaignRun> runs = expand(*loaded);
+  ASSERT_EQ(runs.size(), 8u);
+  std::set<std::string> different;
+  for (const CampaignRun& run : runs) {
+    std::string all = run.scenario;
+    for (const std::string& assignment : assignments(*loaded, run)) all += " " + assignment;
+    different.insert(all);
+  }
+  EXPECT_EQ(different.size(), 8u);
+  EXPECT_TRUE(
+      different.contains(file("bad.yaml") + " seed=7 gait.swing_height=0.2 toe_off.variant=never"));
+  EXPECT_EQ(runs[0].seed, 3u);  // the first half has every cell
+  EXPECT_EQ(runs[3].cell, 3);
+  EXPECT_EQ(runs[4].cell, 0);
+}
+
+TEST_F(CampaignTest, DrawsFromTheSeedAloneAndWithinTheBounds) {
+  campaign("scenarios: [" + file("good.yaml") +
+           "]\ndraw: {model_error.friction: [0.5, 1.0], a.b: [[-1, 2], [1, 4]]}\nseeds: 200\n");
+  daemon::Issues issues;
+  const auto loaded = load_campaign(file("c.yaml"), &issues);
+  ASSERT_TRUE(loaded) << issues.error_text();
+  double sum = 0.0;
+  std::set<std::string> different;
+  for (const CampaignRun& run : expand(*loaded)) {
+    const double friction = std::stod(run.drawn[0]);
+    EXPECT_GE(friction, 0.5);
+    EXPECT_LE(friction, 1.0);
+    sum += friction;
+    different.insert(run.drawn[1]);
+    const json list = json::parse(run.drawn[1]);
+    EXPECT_GE(list[1].get<double>(), 2.0);
+    EXPECT_LE(list[1].get<double>(), 4.0);
+  }
+  EXPECT_NEAR(sum / 200, 0.75, 0.05);
+  EXPECT_EQ(different.size(), 200u);
+  EXPECT_EQ(expand(*loaded)[7].drawn, expand(*loaded)[7].drawn);
+}
+
+TEST_F(CampaignTest, PlaysAllAndSumsUp) {
+  campaign("scenarios: [" + file("good.yaml") + ", " + file("bad.yaml") +
+           "]\nset: {gait.swing_height: [0.1, 0.2]}\nseeds: 3\nkeep_logs: 2\n");
+  const Outcome outcome = run("--json --jobs 3 --set duration=3.0");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  json summary = json::parse(outcome.out);
+  EXPECT_EQ(summary["finished"], 12);
+  EXPECT_EQ(summary["successes"], 6);
+  EXPECT_EQ(summary["pass"], false);
+  ASSERT_EQ(summary["cells"].size(), 4u);
+  EXPECT_EQ(summary["cells"][0]["success_rate"], 1.0);
+  EXPECT_NEAR(summary["cells"][0]["low"].get<double>(), 0.4385, 1e-3);
+  EXPECT_EQ(summary["cells"][2]["success_rate"], 0.0);
+  EXPECT_HAS(summary["worst"][0]["failed"].get<std::string>(), "com/z");
+  EXPECT_TRUE(fs::exists(summary["worst"][0]["log"].get<std::string>()));
+  EXPECT_EQ(logs(), 2);
+  EXPECT_EQ(lines("results/results.csv"), 13);
+  EXPECT_HAS(workspace_.read("results/summary.txt"), "campaign: FAILED");
+  EXPECT_HAS(workspace_.read("calls"), "--set seed=3 --set gait.swing_height=0.2");
+  EXPECT_HAS(workspace_.read("calls"), "--set duration=3.0");
+  EXPECT_HAS(outcome.err, "12/12, 6 failed");
+}
+
+TEST_F(CampaignTest, SucceedsAsOftenAsAsked) {
+  campaign("scenarios: [" + file("bad.yaml") + "]\nseeds: 2\nsuccess: no_fall\n");
+  EXPECT_EQ(run().exit_code, 0);  // the sample does not fall, and nothing else is asked for
+}
+
+TEST_F(CampaignTest, GoesOnAfterAKill) {
+  campaign("scenarios: [" + file("good.yaml") + "]\nseeds: 12\n");
+  gaitd("sleep 0.2");
+  const pid_t pid = fork();
+  if (pid == 0) {
+    const std::string line = "exec " + command("--jobs 2") + " >/dev/null 2>&1";
+    execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+    _exit(127);
+  }
+  while (lines("results/results.csv") < 4)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  kill(pid, SIGKILL);
+  waitpid(pid, nullptr, 0);
+  // As if it had died in the middle of a row.
+  workspace_.write("results/results.csv", workspace_.read("results/results.csv") + "11,good");
+  const int done = lines("results/results.csv") - 2;
+  ASSERT_LT(done, 12);
+  gaitd("");
+  workspace_.write("calls", "");
+  const Outcome outcome = run("--json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_HAS(outcome.err, "goes on: " + std::to_string(done) + " of 12 runs");
+  EXPECT_EQ(json::parse(outcome.out)["finished"], 12);
+  EXPECT_EQ(lines("calls"), 12 - done);
+  EXPECT_EQ(lines("results/results.csv"), 13);
+  // All is done: nothing is played again.
+  workspace_.write("calls", "");
+  EXPECT_EQ(run().exit_code, 0);
+  EXPECT_EQ(lines("calls"), 0);
+}
+
+TEST_F(CampaignTest, WhatCouldNotBeJudgedIsNoSuccessAndTriedAgain) {
+  campaign("scenarios: [" + file("good.yaml") + "]\nseeds: 2\n");
+  gaitd("kill -SEGV $$");
+  const Outcome crashed = run("--json");
+  EXPECT_EQ(crashed.exit_code, 1);
+  EXPECT_HAS(json::parse(crashed.out)["worst"][0]["problem"].get<std::string>(), "SIGSEGV");
+  gaitd("");
+  EXPECT_EQ(run().exit_code, 0);
+}
+
+TEST_F(CampaignTest, AnotherCampaignDoesNotGetIntoTheSameFolder) {
+  campaign("scenarios: [" + file("good.yaml") + "]\nseeds: 2\n");
+  EXPECT_EQ(run().exit_code, 0);
+  campaign("scenarios: [" + file("good.yaml") + "]\nseeds: 3\n");
+  const Outcome outcome = run();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_HAS(outcome.err, "holds results of another campaign");
+  EXPECT_EQ(lines("results/results.csv"), 3);
+}
+
+TEST_F(CampaignTest, ReportsEveryMistakeAtOnce) {
+  campaign(
+      "scenarios: [flat-0.36]\nset: {gait.swing_height: 0.1, seed: [1]}\n"
+      "draw: {x: [2, 1]}\nseeds: -1\nsuccess: maybe\nsuccess_min: 2\nmore: 1\n");
+  const Outcome outcome = run();
+  EXPECT_EQ(outcome.exit_code, 1);
+  for (const char* part : {"scenarios[0]", "set.gait.swing_height", "set.seed", "draw.x", "seeds",
+                           "success:", "success_min", "more"}) {
+    EXPECT_HAS(outcome.err, part);
+  }
+  EXPECT_FALSE(fs::exists(file("results")));
+}
+
+}  // namespace
+}  // namespace gaitd::cli
