@@ -44,12 +44,13 @@ start_daemon() {
   fail "gaitd does not answer after 10 s"
 }
 
+# stop_daemon [CODE]: on SIGTERM; CODE is the exit code expected.
 stop_daemon() {
   local code=0
   kill -TERM "$daemon"
   wait "$daemon" || code=$?
   daemon=
-  ((code == 0)) || fail "gaitd ended with exit code $code on SIGTERM"
+  ((code == ${1:-0})) || fail "gaitd ended with exit code $code on SIGTERM, expected ${1:-0}"
 }
 
 # The client that every helper uses; a script may add --socket.

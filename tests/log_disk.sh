@@ -26,7 +26,8 @@ wait_for state standing 120
 expect 0 gaitctl walk --steps 2 --length 0.1
 wait_for state walking 60
 wait_for state standing 120
-stop_daemon
+stop_daemon 1
+grep -q 'the log is not complete' gaitd.txt || fail "gaitd ends without a word about the log"
 [[ $(grep -c 'the log ends here, the robot goes on' gaitd.txt) == 1 ]] ||
   { cat gaitd.txt; fail "not one message about the end of the log"; }
 expect 0 gaitctl log info log.mcap >info.txt

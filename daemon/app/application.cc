@@ -442,11 +442,12 @@ int Application::run() {
                                          {"wall_seconds", std::to_string(report.wall_seconds)},
                                          {"end", kEnds[static_cast<int>(report.end)]}},
                                         &error);
-  if (!logged && config_.log.enabled) spdlog::error("{}", error);
+  const bool log_lost = !logged && config_.log.enabled;
+  if (log_lost) spdlog::error("the log is not complete: {}", error);
   spdlog::info("{:.3f} s in {} ticks, {:.2f} times real time; overruns {}, late sensors {}; {}",
                simulated, report.ticks, factor, report.overruns, report.late_backend,
                kEnds[static_cast<int>(report.end)]);
-  return degraded && config_.realtime.require ? 1 : 0;
+  return log_lost || (degraded && config_.realtime.require) ? 1 : 0;
 }
 
 void Application::request_stop() {

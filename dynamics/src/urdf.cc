@@ -74,7 +74,8 @@ class TreeBuilder {
     for (const UrdfLinkElement& link : elements_.links) {
       if (link.name.empty()) continue;
       if (!links_.emplace(link.name, &link).second) {
-        xml_.add_error(link.line, "link " + quoted(link.name) + " is there twice (first in line " +
+        xml_.add_error(link.line, "link " + in_quotes(link.name) +
+                                      " is there twice (first in line " +
                                       std::to_string(links_[link.name]->line) + "); rename one");
       }
     }
@@ -83,7 +84,7 @@ class TreeBuilder {
   void index_joints() {
     std::map<std::string, int> first_line;
     for (const UrdfJointElement& joint : elements_.joints) {
-      const std::string owner = "joint " + quoted(joint.name);
+      const std::string owner = "joint " + in_quotes(joint.name);
       const auto [at, is_new] = first_line.emplace(joint.name, joint.line);
       if (!is_new && !joint.name.empty()) {
         xml_.add_error(joint.line, owner + " is there twice (first in line " +
@@ -94,9 +95,10 @@ class TreeBuilder {
       }
       const auto [parent, is_first] = parent_joint_.emplace(joint.child, &joint);
       if (!is_first) {
-        xml_.add_error(joint.line, "link " + quoted(joint.child) + " has two parents, by joints " +
-                                       quoted(parent->second->name) + " and " + quoted(joint.name) +
-                                       ", expected a tree; open the loop by removing one of them");
+        xml_.add_error(joint.line,
+                       "link " + in_quotes(joint.child) + " has two parents, by joints " +
+                           in_quotes(parent->second->name) + " and " + in_quotes(joint.name) +
+                           ", expected a tree; open the loop by removing one of them");
         continue;
       }
       children_[joint.parent].push_back(&joint);
@@ -111,8 +113,8 @@ class TreeBuilder {
     if (links_.contains(name)) return true;
     unresolved_ = true;
     if (!name.empty()) {
-      xml_.add_error(joint.line, "joint " + quoted(joint.name) + ": its " + role + " link " +
-                                     quoted(name) + " does not exist; correct the name");
+      xml_.add_error(joint.line, "joint " + in_quotes(joint.name) + ": its " + role + " link " +
+                                     in_quotes(name) + " does not exist; correct the name");
     }
     return false;
   }
@@ -130,7 +132,7 @@ class TreeBuilder {
       std::string names;
       int line = 0;  // of the last one in the file: the first is the robot most of the time
       for (const std::string& root : roots) {
-        names += (names.empty() ? "" : ", ") + quoted(root);
+        names += (names.empty() ? "" : ", ") + in_quotes(root);
         line = std::max(line, links_[root]->line);
       }
       xml_.add_error(line, "has " + std::to_string(roots.size()) + " roots (" + names +
@@ -154,8 +156,8 @@ class TreeBuilder {
       }
       const auto first = std::find(path.begin(), path.end(), at);
       if (first == path.end() || !parent_joint_.contains(at)) continue;
-      std::string names = quoted(at);
-      for (auto it = path.end(); it != first;) names += " -> " + quoted(*--it);
+      std::string names = in_quotes(at);
+      for (auto it = path.end(); it != first;) names += " -> " + in_quotes(*--it);
       xml_.add_error(links_[at]->line,
                      "links form a loop: " + names + ", expected a tree; remove one of its joints");
     }
@@ -164,15 +166,16 @@ class TreeBuilder {
   // Pose of the root in the frame of `name`, which becomes body 0.
   bool place_root(const std::string& name, const std::string& root, Isometry3d* X_BR) {
     if (!links_.contains(name)) {
-      xml_.add_error(0, "root link " + quoted(name) + " does not exist; name a link of the file");
+      xml_.add_error(0,
+                     "root link " + in_quotes(name) + " does not exist; name a link of the file");
       return false;
     }
     Isometry3d X_RB = Isometry3d::Identity();
     for (std::string at = name; at != root;) {
       const UrdfJointElement& joint = *parent_joint_.at(at);
       if (joint.kind != UrdfJointKind::kFixed) {
-        xml_.add_error(joint.line, "root link " + quoted(name) + " moves against the root " +
-                                       quoted(root) + " by joint " + quoted(joint.name) +
+        xml_.add_error(joint.line, "root link " + in_quotes(name) + " moves against the root " +
+                                       in_quotes(root) + " by joint " + in_quotes(joint.name) +
                                        ", expected the root or a link fixed to it");
         return false;
       }
@@ -264,7 +267,7 @@ class TreeBuilder {
   void finish_body(int i) {
     const MergedMass& merged = merged_[i];
     GaitdBody& body = result_.model.bodies[i];
-    const std::string owner = "link " + quoted(body_names_[i]);
+    const std::string owner = "link " + in_quotes(body_names_[i]);
     body.mass = merged.mass;
     Vector3d::Map(body.com) = merged.com;
     const Matrix3d& m = merged.inertia;

@@ -65,7 +65,7 @@ class ElementReader {
   std::string name_of(const TiXmlElement& element, const std::string& owner) {
     std::string name = xml_.text(element, "name", owner);
     if (name.size() >= GAITD_NAME_SIZE) {
-      xml_.add_error(element.Row(), owner + ": name " + quoted(name) + " has " +
+      xml_.add_error(element.Row(), owner + ": name " + in_quotes(name) + " has " +
                                         std::to_string(name.size()) + " characters, expected " +
                                         std::to_string(GAITD_NAME_SIZE - 1) +
                                         " at most; shorten it");
@@ -77,7 +77,7 @@ class ElementReader {
     UrdfLinkElement link;
     link.line = element.Row();
     link.name = name_of(element, "link");
-    const std::string owner = "link " + quoted(link.name);
+    const std::string owner = "link " + in_quotes(link.name);
     if (const TiXmlElement* inertial = element.FirstChildElement("inertial")) {
       read_inertial(*inertial, owner, &link);
     }
@@ -126,7 +126,7 @@ class ElementReader {
     UrdfJointElement joint;
     joint.line = element.Row();
     joint.name = name_of(element, "joint");
-    const std::string owner = "joint " + quoted(joint.name);
+    const std::string owner = "joint " + in_quotes(joint.name);
     joint.parent = link_of(element, "parent", owner);
     joint.child = link_of(element, "child", owner);
     const urdf::Joint from = parse_joint(element, owner, &xml_);

@@ -8,7 +8,7 @@
 
 namespace gaitd::dynamics {
 
-std::string quoted(const std::string& name) {
+std::string in_quotes(const std::string& name) {
   std::string text = "'";
   text += name;
   text += '\'';

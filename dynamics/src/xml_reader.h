@@ -10,7 +10,7 @@
 
 namespace gaitd::dynamics {
 
-std::string quoted(const std::string& name);  // 'name'
+std::string in_quotes(const std::string& name);  // 'name'
 std::string to_text(double value);            // short
 
 // TinyXML calls itself for each level, so that a deep file would end the process.
