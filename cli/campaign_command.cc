@@ -18,6 +18,7 @@
 #include "cli/campaign.h"
 #include "cli/campaign_results.h"
 #include "cli/campaign_runner.h"
+#include "cli/campaign_summary.h"
 #include "cli/failure.h"
 #include "cli/print.h"
 

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -30,12 +29,6 @@ CampaignResult read_result(const Campaign& campaign, int number, const std::stri
 /// How bad a run was: those that failed first, then by the largest error of the ICP.
 double badness(const CampaignResult& result);
 
-/// Interval that holds the true share of successes with 95 %, after Wilson.
-struct SuccessInterval {
-  double low = 0.0, high = 1.0;
-};
-SuccessInterval wilson_interval(int successes, int runs);
-
 /// results.csv of a campaign: one row per finished run, in the order in which they finished.
 class ResultFile {
  public:
@@ -57,12 +50,6 @@ class ResultFile {
   std::filesystem::path path_;
   std::map<int, CampaignResult> results_;
 };
-
-/// Success rates by cell, the worst runs with their logs, and whether the campaign is passed.
-nlohmann::json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                            const std::map<int, CampaignResult>& results,
-                            const std::filesystem::path& folder);
-std::string summary_text(const nlohmann::json& summary);
 
 /// The log of a run in the folder of its campaign.
 std::filesystem::path campaign_log(const std::filesystem::path& folder, int number);

@@ -13,6 +13,7 @@
 
 #include "cli/campaign.h"
 #include "cli/campaign_results.h"
+#include "cli/campaign_summary.h"
 #include "cli/test/cli_process.h"
 #include "cli/test/sample_log.h"
 

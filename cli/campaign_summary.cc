@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/campaign_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <system_error>
+
+#include "cli/print.h"
+#include "daemon/verdict/number_text.h"
+
+namespace gaitd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t kWorstRuns = 10;
+
+std::string describe_run(const Campaign& campaign, const CampaignRun& run) {
+  std::string text = run.scenario;
+  for (const std::string& assignment : assignments(campaign, run)) text += " " + assignment;
+  return text;
+}
+
+}  // namespace
+
+SuccessInterval wilson_interval(int successes, int runs) {
+  if (runs <= 0) return {};
+  constexpr double kZ = 1.959964;  // 95 %, both sides
+  const double n = runs;
+  const double share = successes / n;
+  const double middle = share + kZ * kZ / (2.0 * n);
+  const double half = kZ * std::sqrt(share * (1.0 - share) / n + kZ * kZ / (4.0 * n * n));
+  const double scale = 1.0 + kZ * kZ / n;
+  return {std::max(0.0, (middle - half) / scale), std::min(1.0, (middle + half) / scale)};
+}
+
+json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                  const std::map<int, CampaignResult>& results, const fs::path& folder) {
+  json cells = json::array();
+  int total = 0;
+  bool pass = results.size() == runs.size();
+  std::map<int, std::pair<int, int>> counts;  // successes and runs by cell
+  std::map<int, int> falls;
+  for (const auto& [number, result] : results) {
+    const int cell = runs[static_cast<std::size_t>(number) - 1].cell;
+    counts[cell].first += result.success ? 1 : 0;
+    counts[cell].second += 1;
+    falls[cell] += result.fell ? 1 : 0;
+    total += result.success ? 1 : 0;
+  }
+  for (const auto& [cell, count] : counts) {
+    const CampaignRun& run = runs[static_cast<std::size_t>(cell)];  // of the first seed
+    json settings = json::object();
+    for (std::size_t i = 0; i < run.values.size(); ++i) {
+      settings[campaign.settings[i].key] = run.values[i];
+    }
+    const SuccessInterval interval = wilson_interval(count.first, count.second);
+    const double rate = static_cast<double>(count.first) / count.second;
+    pass = pass && rate >= campaign.success_min;
+    cells.push_back({{"scenario", run.scenario},
+                     {"set", settings},
+                     {"runs", count.second},
+                     {"successes", count.first},
+                     {"falls", falls[cell]},
+                     {"success_rate", rate},
+                     {"low", interval.low},
+                     {"high", interval.high}});
+  }
+  std::vector<const CampaignResult*> worst;
+  for (const auto& [number, result] : results) worst.push_back(&result);
+  std::stable_sort(worst.begin(), worst.end(),
+                   [](const auto* a, const auto* b) { return badness(*a) > badness(*b); });
+  worst.resize(std::min(worst.size(), kWorstRuns));
+  json worst_runs = json::array();
+  for (const CampaignResult* result : worst) {
+    const CampaignRun& run = runs[static_cast<std::size_t>(result->number) - 1];
+    const fs::path log = campaign_log(folder, result->number);
+    std::error_code ignored;
+    json entry = {{"run", result->number},
+                  {"what", describe_run(campaign, run)},
+                  {"success", result->success},
+                  {"fell", result->fell},
+                  {"failed", result->failed},
+                  {"problem", result->problem},
+                  {"log", fs::exists(log, ignored) ? json(log.string()) : json()}};
+    for (std::size_t i = 0; i < campaign_figures().size(); ++i) {
+      const double figure = result->figures[i];
+      entry["figures"][campaign_figures()[i]] = std::isnan(figure) ? json() : json(figure);
+    }
+    worst_runs.push_back(entry);
+  }
+  return {{"campaign", campaign.name},
+          {"pass", pass},
+          {"runs", runs.size()},
+          {"finished", results.size()},
+          {"successes", total},
+          {"success_min", campaign.success_min},
+          {"cells", cells},
+          {"worst", worst_runs},
+          {"results", (folder / "results.csv").string()}};
+}
+
+std::string summary_text(const json& summary) {
+  const auto percent = [](const json& share) {
+    char text[16];
+    std::snprintf(text, sizeof(text), "%.1f %%", 100.0 * share.get<double>());
+    return std::string(text);
+  };
+  std::vector<std::vector<std::string>> rows;
+  for (const json& cell : summary["cells"]) {
+    std::string settings;
+    for (const auto& [key, value] : cell["set"].items()) {
+      settings += (settings.empty() ? "" : " ") + key + "=" + value.get<std::string>();
+    }
+    rows.push_back({cell["scenario"], cell["successes"].dump() + "/" + cell["runs"].dump(),
+                    percent(cell["success_rate"]),
+                    percent(cell["low"]) + " .. " + percent(cell["high"]), cell["falls"].dump(),
+                    settings});
+  }
+  std::string text = summary["campaign"].get<std::string>() + ": " + summary["finished"].dump() +
+                     " of " + summary["runs"].dump() + " runs, " + summary["successes"].dump() +
+                     " succeeded\n\n";
+  text += table({"SCENARIO", "SUCCESS", "RATE", "95 % INTERVAL", "FALLS", "SETTINGS"}, rows);
+  text += "\nworst runs\n";
+  for (const json& run : summary["worst"]) {
+    const std::string failed = run["failed"].get<std::string>();
+    const std::string problem = run["problem"].get<std::string>();
+    const json& icp = run["figures"]["icp_error_max"];
+    text +=
+        "  " + std::string(run["success"].get<bool>() ? "ok    " : "FAIL  ") +
+        run["what"].get<std::string>() +
+        (icp.is_null() ? "" : "  icp_error_max " + daemon::number_text(icp.get<double>(), "m")) +
+        (run["fell"].get<bool>() ? "  fell" : "") +
+        (failed.empty() ? "" : "  not held: " + failed) + (problem.empty() ? "" : "  " + problem) +
+        "\n" + (run["log"].is_null() ? "" : "        " + run["log"].get<std::string>() + "\n");
+  }
+  text += "\nresults: " + summary["results"].get<std::string>() + "\n";
+  text += summary["pass"].get<bool>() ? "campaign: passed\n" : "campaign: FAILED\n";
+  return text;
+}
+
+}  // namespace gaitd::cli

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/campaign.h"
+#include "cli/campaign_results.h"
+
+namespace gaitd::cli {
+
+/// Interval that holds the true share of successes with 95 %, after Wilson.
+struct SuccessInterval {
+  double low = 0.0, high = 1.0;
+};
+SuccessInterval wilson_interval(int successes, int runs);
+
+/// Success rates by cell, the worst runs with their logs, and whether the campaign is passed.
+nlohmann::json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                            const std::map<int, CampaignResult>& results,
+                            const std::filesystem::path& folder);
+std::string summary_text(const nlohmann::json& summary);
+
+}  // namespace gaitd::cli
