@@ -16,6 +16,7 @@
 #include "cli/man_text.h"
 #include "cli/param_commands.h"
 #include "cli/plugin_commands.h"
+#include "cli/report/report_command.h"
 #include "cli/run_command.h"
 #include "cli/usage_error.h"
 #include "cli/watch_command.h"
@@ -48,6 +49,7 @@ int run(int argc, char** argv) {
   add_run_command(&app, &context);
   add_campaign_command(&app, &context);
   add_log_commands(&app, &context);
+  add_report_command(&app, &context);
   add_completion_command(&app, &context);
   const auto man = [&app] { return gaitd::usage::man_page(app, man_text()); };
   if (gaitd::usage::answer_hidden_request(argc, argv, app, context.values, man)) return kDone;

@@ -13,6 +13,8 @@ missing_packages() {
   local package
   while read -r package; do
     [[ -z $package || $package == \#* ]] && continue
+    # node.org's nodejs brings its own npm, and Debian's does not go beside it.
+    [[ $package == npm ]] && command -v npm >/dev/null && continue
     dpkg-query -W -f '${db:Status-Abbrev}\n' "$package" 2>/dev/null | grep -q '^ii' ||
       echo "$package"
   done <"$PACKAGE_LIST"

@@ -45,7 +45,7 @@ source <(gaitctl completion bash)
 offers() {
   local wanted=$1
   shift
-  complete_words "$@" | grep -qxF -- "$wanted" || fail "'$*' does not offer $wanted"
+  complete_words "$@" | grep -xF -- "$wanted" >/dev/null || fail "'$*' does not offer $wanted"
 }
 offers walk gaitctl w
 offers --steps gaitctl walk --

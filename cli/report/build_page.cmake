@@ -1,0 +1,32 @@
+# Builds the report page: cmake -DNPM= -DSOURCE= -DWORK= -DPAGE= -P build_page.cmake
+# Without the registry everything but `gaitctl report` works: that is a warning, not an error.
+file(MAKE_DIRECTORY ${WORK})
+file(COPY ${SOURCE}/ DESTINATION ${WORK})
+
+function(run what)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env CI=true ${NPM} --prefix ${WORK} ${ARGN}
+                  RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  if(NOT result EQUAL 0)
+    message(WARNING "the report page was not built, gaitctl report will not work: ${what} failed. "
+                    "Build again when the npm registry can be reached.\n${text}")
+    set(failed TRUE PARENT_SCOPE)
+  endif()
+endfunction()
+
+# Exact versions stand in package.json. Nothing that a package wants to run is run.
+file(SHA256 ${SOURCE}/package.json wanted)
+set(installed "")
+if(EXISTS ${WORK}/installed)
+  file(READ ${WORK}/installed installed)
+endif()
+if(NOT installed STREQUAL wanted)
+  run("npm install" install --no-package-lock --ignore-scripts --no-audit --no-fund --loglevel=error)
+  if(failed)
+    return()
+  endif()
+  file(WRITE ${WORK}/installed ${wanted})
+endif()
+run("vite build" run --silent build -- --logLevel warn)
+if(NOT failed)
+  file(COPY_FILE ${WORK}/dist/index.html ${PAGE})
+endif()

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// What gaitctl put into the page: everything of a log that is shown.
+
+export class Log {
+  constructor(document_) {
+    Object.assign(this, document_);  // title, metadata, verdict, events, signals, rows, urdf, robot
+    const bytes = Uint8Array.from(atob(document_.values), (c) => c.charCodeAt(0));
+    this.values = new Float32Array(bytes.buffer);
+    this.index = new Map(this.signals.map((signal, i) => [signal.name, i]));
+    this.time = this.column('time');
+  }
+
+  has(name) { return this.index.has(name); }
+
+  // One value per row; undefined if the log does not have it.
+  column(name) {
+    const i = this.index.get(name);
+    return i === undefined ? undefined : this.values.subarray(i * this.rows, (i + 1) * this.rows);
+  }
+
+  value(name, row) {
+    const column = this.column(name);
+    return column === undefined ? NaN : column[row];
+  }
+
+  // An enumeration as its word.
+  word(name, row) {
+    const i = this.index.get(name);
+    return i === undefined ? '' : this.signals[i].words?.[this.value(name, row)] ?? '';
+  }
+
+  point(prefix, row) {
+    return ['x', 'y', 'z'].map((axis) => this.value(`${prefix}/${axis}`, row));
+  }
+
+  // The last row that is not later.
+  row(time) {
+    let low = 0, high = this.rows - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (this.time[middle] <= time) low = middle; else high = middle - 1;
+    }
+    return low;
+  }
+
+  // [from, to] in s of every stretch in which an enumeration has that word or a boolean is true.
+  spans(name, word) {
+    const column = this.column(name);
+    if (column === undefined) return [];
+    const wanted = word === undefined ? 1 : this.signals[this.index.get(name)].words.indexOf(word);
+    const spans = [];
+    for (let row = 0; row < this.rows; ++row) {
+      if (column[row] !== wanted) continue;
+      if (row > 0 && column[row - 1] === wanted) spans.at(-1)[1] = this.time[row];
+      else spans.push([this.time[row], this.time[row]]);
+    }
+    return spans;
+  }
+}

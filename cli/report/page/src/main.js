@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+import './style.css';
+import {Log} from './log.js';
+import {addPlots} from './plots.js';
+import {kMarkers, Scene} from './scene.js';
+
+const $ = (id) => document.getElementById(id);
+const log = new Log(JSON.parse($('gaitd-data').textContent));
+const [start, end] = [log.time[0], log.time[log.rows - 1]];
+
+const player = {time: start, playing: false, frames: 0, go};
+
+function go(time) {
+  player.time = Math.min(end, Math.max(start, time));
+  $('slider').value = player.time;
+  $('clock').value = `${player.time.toFixed(2)} s of ${end.toFixed(2)} s`;
+  player.changed = true;
+}
+
+function row(table, cells, kind = '') {
+  const line = $(table).insertRow();
+  line.className = kind;
+  for (const cell of cells) line.insertCell().textContent = cell;
+}
+
+function fillTexts() {
+  document.title = $('title').textContent = log.title;
+  const {verdict} = log;
+  if (verdict) {
+    $('verdict').textContent = verdict.pass ? 'passed' : 'FAILED';
+    $('verdict').className = verdict.pass ? 'pass' : 'fail';
+    for (const {name, figure, bound, note, pass} of verdict.expectations) {
+      row('judgements', [pass ? 'ok' : 'FAIL', name, figure, bound, note ?? ''], pass ? '' : 'fail');
+    }
+    for (const [name, value] of Object.entries(verdict.figures)) {
+      row('judgements', ['', name, `${value === null ? '-' : Number(value.toPrecision(4))} ${verdict.units[name] ?? ''}`]);
+    }
+  }
+  for (const {time, kind, text} of log.events) {
+    row('events', [`${time.toFixed(3)} s`, kind, JSON.stringify(text)]);
+  }
+  for (const [key, value] of Object.entries(log.metadata)) row('configuration', [key, value]);
+  $('legend').innerHTML = kMarkers.map(({name, color}) =>
+      `<span><i style="background:${color}"></i>${name}</span>`).join('');
+}
+
+const only = new URLSearchParams(location.hash.slice(1)).get('plot');
+document.body.classList.toggle('single', Boolean(only));
+fillTexts();
+$('slider').min = start;
+$('slider').max = end;
+go(start);
+const scene = only ? null : new Scene($('scene'), log);
+const plots = addPlots(log, player, $('plots'), only);
+
+$('slider').addEventListener('input', () => go(Number($('slider').value)));
+$('play').addEventListener('click', () => {
+  player.playing = !player.playing;
+  if (player.playing && player.time >= end) go(start);
+  $('play').textContent = player.playing ? 'Pause' : 'Play';
+});
+
+let last = performance.now();
+let plotsDrawn = 0;
+function frame(now) {
+  if (player.playing) {
+    go(player.time + (now - last) / 1000 * Number($('speed').value));
+    if (player.time >= end) $('play').click();
+  }
+  last = now;
+  scene?.update(log.row(player.time));
+  // Plots are slower to draw than the robot, and the line in them need not be smooth.
+  if (player.changed && now - plotsDrawn > 100) {
+    plotsDrawn = now;
+    player.changed = false;
+    for (const {plot} of plots) plot.redraw(false, false);
+  }
+  ++player.frames;
+  requestAnimationFrame(frame);
+}
+requestAnimationFrame(frame);
+Object.assign(window, {gaitd: {log, player, plots, scene}});  // for the console of the browser

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+import * as THREE from 'three';
+import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
+import URDFLoader from 'urdf-loader';
+import {hull} from './hull.js';
+
+export const kMarkers = [
+  {name: 'ICP', prefix: 'icp', color: '#d62728'},
+  {name: 'planned ICP', prefix: 'icp/desired', color: '#ff9896'},
+  {name: 'CMP', prefix: 'cmp/desired', color: '#9467bd'},
+  {name: 'CoP', prefix: 'cop', color: '#1f77b4'},
+];
+
+function material(color, opacity = 1) {
+  return new THREE.MeshLambertMaterial({color, opacity, transparent: opacity < 1});
+}
+
+// Half a metre apart. In short pieces: software renderers drop lines that begin behind the camera.
+function gridPoints() {
+  const points = [], range = Array.from({length: 81}, (_, i) => -20 + 0.5 * i);
+  for (const x of range) {
+    for (const y of range) {
+      if (x < 20) points.push(new THREE.Vector3(x, y, 0), new THREE.Vector3(x + 0.5, y, 0));
+      if (y < 20) points.push(new THREE.Vector3(x, y, 0), new THREE.Vector3(x, y + 0.5, 0));
+    }
+  }
+  return points;
+}
+
+function terrain(world) {
+  const group = new THREE.Group();
+  const {boxes = [], ground_z: ground = boxes.length ? undefined : 0} = world?.terrain ?? {};
+  if (ground !== undefined) {
+    const plane = new THREE.Mesh(new THREE.PlaneGeometry(40, 40),
+                                 new THREE.MeshBasicMaterial({color: '#e9e7e1'}));
+    plane.position.z = ground - 0.004;  // below the lines on it
+    group.add(plane);
+    const grid = new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(gridPoints()),
+                                        new THREE.LineBasicMaterial({color: '#b5b2aa'}));
+    grid.position.z = ground;
+    group.add(grid);
+  }
+  for (const {center, size, rpy = [0, 0, 0]} of boxes) {
+    const box = new THREE.Mesh(new THREE.BoxGeometry(...size), material('#b8b0a0'));
+    box.position.set(...center);
+    box.rotation.set(...rpy, 'ZYX');
+    group.add(box);
+  }
+  return group;
+}
+
+export class Scene {
+  constructor(element, log) {
+    this.log = log;
+    this.element = element;
+    this.renderer = new THREE.WebGLRenderer({antialias: true});
+    element.append(this.renderer.domElement);
+    this.scene = new THREE.Scene();
+    this.scene.background = new THREE.Color('#f4f6f8');
+    this.camera = new THREE.PerspectiveCamera(40, 1, 0.05, 100);
+    this.camera.up.set(0, 0, 1);
+    this.camera.position.set(2.2, -3.2, 1.6);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener('change', () => { this.stale = true; });
+    this.scene.add(new THREE.HemisphereLight('#ffffff', '#777766', 3));
+    this.scene.add(terrain(log.world));
+    this.addRobot();
+    this.addMarkers();
+    new ResizeObserver(() => this.resize()).observe(element);
+    this.resize();
+  }
+
+  addRobot() {
+    this.pelvis = new THREE.Group();
+    this.scene.add(this.pelvis);
+    if (!this.log.urdf) return;
+    this.robot = new URDFLoader().parse(this.log.urdf);
+    this.pelvis.add(this.robot);
+    this.joints = Object.values(this.robot.joints)
+        .map((joint) => ({joint, column: this.log.column(`joint/${joint.urdfName}/position`)}))
+        .filter(({column}) => column !== undefined);
+  }
+
+  addMarkers() {
+    this.markers = kMarkers.filter(({prefix}) => this.log.has(`${prefix}/x`))
+        .map(({prefix, color}) => {
+          const mesh = new THREE.Mesh(new THREE.SphereGeometry(0.018), material(color));
+          mesh.material.depthTest = false;  // a foot must not hide them
+          mesh.renderOrder = 1;
+          this.scene.add(mesh);
+          return {prefix, mesh};
+        });
+    this.footsteps = {};
+    for (const side of ['left', 'right']) {
+      const line = new THREE.LineLoop(new THREE.BufferGeometry(), new THREE.LineBasicMaterial(
+          {color: side === 'left' ? '#2ca02c' : '#ff7f0e'}));
+      this.footsteps[side] = line;
+      this.scene.add(line);
+    }
+    this.support = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial(
+        {color: '#1f77b4', opacity: 0.25, transparent: true, side: THREE.DoubleSide}));
+    this.scene.add(this.support);
+  }
+
+  // Only what has changed is drawn again.
+  update(row) {
+    if (row !== this.row) this.show(row);
+    else if (this.stale) this.draw();
+  }
+
+  draw() {
+    this.stale = false;
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  resize() {
+    const {clientWidth: width, clientHeight: height} = this.element;
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / Math.max(1, height);
+    this.camera.updateProjectionMatrix();
+    this.stale = true;
+  }
+
+  // Corners of a sole in the world. `pose`: the log's foot (with roll and pitch) or footstep.
+  outline(side, pose, row) {
+    const matrix = new THREE.Matrix4();
+    const angle = (name) => this.log.value(`${pose}/${side}/${name}`, row) || 0;
+    matrix.makeRotationFromEuler(
+        new THREE.Euler(angle('roll'), angle('pitch'), angle('yaw'), 'ZYX'));
+    matrix.setPosition(...this.log.point(`${pose}/${side}`, row));
+    const corners = this.log.robot?.feet?.[side]?.outline ??
+        [[0.12, -0.06], [0.12, 0.06], [-0.12, 0.06], [-0.12, -0.06]];
+    return corners.map(([x, y]) => new THREE.Vector3(x, y, 0).applyMatrix4(matrix));
+  }
+
+  show(row) {
+    const {log} = this;
+    this.pelvis.position.set(...log.point('pelvis', row));
+    this.pelvis.rotation.set(...['roll', 'pitch', 'yaw'].map((a) => log.value(`pelvis/${a}`, row)),
+                             'ZYX');
+    for (const {joint, column} of this.joints ?? []) joint.setJointValue(column[row]);
+    const loaded = [];
+    for (const side of ['left', 'right']) {
+      this.footsteps[side].geometry.setFromPoints(this.outline(side, 'footstep', row));
+      if (log.word(`foot/${side}/contact`, row) === 'none') continue;
+      const corners = this.outline(side, 'foot', row);
+      const front = Math.max(...(log.robot?.feet?.[side]?.outline ?? [[0]]).map(([x]) => x));
+      const toe = log.word(`foot/${side}/contact`, row) === 'toe';
+      loaded.push(...corners.filter(
+          (_, i) => !toe || log.robot.feet[side].outline[i][0] > front - 1e-3));
+    }
+    this.support.visible = loaded.length > 2;
+    if (this.support.visible) {
+      const corners = hull(loaded);
+      this.support.geometry.setFromPoints(
+          corners.slice(2).flatMap((corner, i) => [corners[0], corners[i + 1], corner]));
+    }
+    const ground = loaded.length ? Math.max(...loaded.map(({z}) => z)) : 0;
+    for (const {prefix, mesh} of this.markers) {
+      mesh.position.set(log.value(`${prefix}/x`, row), log.value(`${prefix}/y`, row), ground);
+    }
+    this.row = row;
+    this.follow();
+    this.draw();
+  }
+
+  // The camera keeps its place beside the robot.
+  follow() {
+    const target = this.pelvis.position.clone();
+    target.z -= 0.15;
+    this.camera.position.add(target).sub(this.controls.target);
+    this.controls.target.copy(target);
+    this.controls.update();
+  }
+}

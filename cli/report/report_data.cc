@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/report/report_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <vector>
+
+#include "daemon/config/node.h"
+#include "daemon/config/paths.h"
+#include "daemon/config/scenario.h"
+#include "daemon/config/settings.h"
+#include "daemon/verdict/verdict.h"
+
+namespace gaitd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using daemon::LogReader;
+using nlohmann::json;
+
+constexpr double kRowsPerSecond = 100.0;
+constexpr std::size_t kMostRows = 12000;
+constexpr char kPlaceholder[] = "\"GAITD_DATA\"";
+
+std::string read_file(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string base64(const std::vector<float>& values) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());  // little-endian
+  const std::size_t size = values.size() * sizeof(float);
+  std::string text;
+  text.reserve((size + 2) / 3 * 4);
+  for (std::size_t i = 0; i < size; i += 3) {
+    std::uint32_t three = 0;
+    for (std::size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < size ? bytes[i + k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += i + k <= size ? kDigits[three >> (18 - 6 * k) & 63u] : '=';
+    }
+  }
+  return text;
+}
+
+// Every n-th tick, so that neither bound is passed.
+std::size_t stride_of(const LogReader& log) {
+  const std::vector<double> time = log.column("time");
+  if (time.size() < 2) return 1;
+  const double period = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
+  const double by_rate = period > 0.0 ? std::round(1.0 / (kRowsPerSecond * period)) : 1.0;
+  const std::size_t by_rows = (time.size() + kMostRows - 1) / kMostRows;
+  return std::max({std::size_t{1}, static_cast<std::size_t>(by_rate), by_rows});
+}
+
+void add_signals(const LogReader& log, json* data) {
+  const daemon::SignalTable& table = log.signals();
+  const std::size_t stride = stride_of(log);
+  std::vector<bool> keeps_longest(table.size());
+  (*data)["signals"] = json::array();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    keeps_longest[i] = table[i].name.starts_with("tick/");
+    (*data)["signals"].push_back(
+        {{"name", table[i].name}, {"unit", table[i].unit}, {"words", table[i].words}});
+  }
+  std::vector<std::vector<float>> columns(table.size());
+  std::vector<double> values(table.size());
+  LogReader::TickCursor ticks = log.ticks();
+  for (std::size_t tick = 0; ticks.next(values); ++tick) {
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      const auto value = static_cast<float>(values[i]);
+      if (tick % stride == 0) {
+        columns[i].push_back(value);
+      } else if (keeps_longest[i]) {
+        columns[i].back() = std::max(columns[i].back(), value);
+      }
+    }
+  }
+  std::vector<float> all;
+  for (const std::vector<float>& column : columns) {
+    all.insert(all.end(), column.begin(), column.end());
+  }
+  (*data)["rows"] = columns.empty() ? 0 : columns.front().size();
+  (*data)["values"] = base64(all);
+}
+
+// What the scenario expects, if it is still to be found by its name.
+daemon::Expectations expectations(const LogReader& log) {
+  const auto file = daemon::Paths::detect().scenario(log.metadata_value("scenario").value_or(""));
+  if (!file) return {};
+  daemon::Settings settings;
+  daemon::Issues issues;
+  const auto scenario = daemon::load_scenario(file->string(), &settings, &issues);
+  return scenario ? scenario->expect : daemon::Expectations();
+}
+
+void add_robot(const LogReader& log, json* data) {
+  const auto file = daemon::Paths::detect().robot(log.metadata_value("robot").value_or(""));
+  if (!file) return;
+  daemon::Issues issues;
+  const daemon::NodePtr node = daemon::load_yaml_file(file->string(), &issues);
+  if (node == nullptr || !issues.ok()) return;
+  (*data)["robot"] = daemon::to_json(*node);
+  const auto* urdf = node->find("urdf");
+  if (urdf != nullptr) (*data)["urdf"] = read_file(file->parent_path() / urdf->value->text);
+}
+
+}  // namespace
+
+std::string report_data(const LogReader& log) {
+  json data;
+  data["title"] = log.metadata_value("scenario").value_or("");
+  if (data["title"] == "") data["title"] = fs::path(log.path()).stem().string();
+  json metadata = json::object();
+  for (const auto& [key, value] : log.metadata()) metadata[key] = value;
+  for (const auto& [key, value] : log.end_metadata()) metadata[key] = value;
+  data["metadata"] = metadata;
+  data["world"] = json::parse(log.metadata_value("world").value_or("null"), nullptr, false);
+  data["verdict"] = json::parse(
+      daemon::verdict_json(daemon::compute_verdict(log, expectations(log))), nullptr, false);
+  data["events"] = json::array();
+  for (const daemon::Event& event : log.events()) {
+    const json text = json::parse(event.text, nullptr, false);
+    data["events"].push_back({{"time", event.time},
+                              {"kind", event.kind},
+                              {"text", text.is_discarded() ? json(event.text) : text}});
+  }
+  add_robot(log, &data);
+  add_signals(log, &data);
+  std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return safe;
+}
+
+std::string report_page(const std::string& data, std::string* error) {
+  std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  const fs::path file = program.parent_path().parent_path() / "share/gaitd/report.html";
+  std::string page = read_file(file);
+  const std::size_t place = page.find(kPlaceholder);
+  if (place == std::string::npos) {
+    *error = file.string() + ": expected the report page, got " +
+             (page.empty() ? "no file" : "another file") +
+             "; gaitd was built without it: install npm and build again";
+    return "";
+  }
+  return page.replace(place, std::strlen(kPlaceholder), data);
+}
+
+}  // namespace gaitd::cli
