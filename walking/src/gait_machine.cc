@@ -13,6 +13,18 @@ namespace {
 // Of the distance of the feet in the nominal posture: closer the legs get in each other's way.
 constexpr double kNominalShare = 0.8;
 
+// Back into the landing region of the footstep, where it has one.
+void keep_in_region(GaitdFootstep& step) {
+  if (step.region_count < 3) return;
+  ConvexPolygon region;
+  for (int i = 0; i < step.region_count; ++i) {
+    region.add({step.landing_region[i][0], step.landing_region[i][1]});
+  }
+  region.make_hull();
+  sdk::view(step.pose.position).head<2>() =
+      region.closest_point(sdk::view(step.pose.position).head<2>());
+}
+
 }  // namespace
 
 GaitMachine::GaitMachine(const GaitdModel& model)
@@ -43,6 +55,7 @@ void GaitMachine::set_parameter(int index, double value) {
 void GaitMachine::reset(const GaitdRobotState& robot) {
   queue_.truncate(0);
   shift_.setZero();
+  path_offset_.setZero();
   time_shift_ = 0.0;
   height_offset_ = 0.0;
   state_.step_index = 0;
@@ -110,7 +123,7 @@ void GaitMachine::begin_swing(const GaitdRobotState& robot) {
   state_.early_contact = 0;
   state_.late_contact = 0;
   state_.footholds[side].contact = GAITD_CONTACT_NONE;
-  shift_.setZero();
+  shift_ = path_offset_;
   time_shift_ = 0.0;
   sdk::view(lift_off_.position) = sdk::view(robot.feet[side].position);
   sdk::store(sdk::quaternion(robot.feet[side].orientation), lift_off_.orientation);
@@ -128,7 +141,8 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   state_.footholds[side] = foothold_of(model_, landed);
   state_.early_contact = early ? 1 : 0;
   queue_.pop();
-  shift_.setZero();
+  path_offset_ = parameters_[Gait::kShiftKept] * shift_;
+  if (queue_.size() == 0) path_offset_.setZero();
   time_shift_ = 0.0;
   apply_pending_mode();
   begin_transfer(other_side(side));
@@ -148,6 +162,16 @@ bool GaitMachine::icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& pl
   const bool ahead = local.x() * next.x() > 0.0;
   return (ahead || std::abs(local.x()) <= parameters_[Gait::kIcpErrorForward]) &&
          std::abs(local.y()) <= parameters_[Gait::kIcpErrorSideways];
+}
+
+void GaitMachine::adjust(const GaitdStepAdjustment& adjustment) {
+  const Eigen::Vector3d shift = sdk::view(adjustment.shift);
+  if (shift == shift_ && adjustment.time_shift == time_shift_) return;
+  shift_ = shift;
+  state_.phase_duration += adjustment.time_shift - time_shift_;
+  time_shift_ = adjustment.time_shift;
+  changed();
+  publish_footsteps();
 }
 
 void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcpPlan& plan,
@@ -181,13 +205,7 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
       break;
     }
     case GAITD_PHASE_SWING: {
-      if (adjustment.active != 0) {
-        shift_ = sdk::view(adjustment.shift);
-        state_.phase_duration += adjustment.time_shift - time_shift_;
-        time_shift_ = adjustment.time_shift;
-        changed();
-        publish_footsteps();
-      }
+      if (adjustment.active != 0) adjust(adjustment);
       const double weight = model_.total_mass * model_.gravity;
       const bool loaded =
           robot.feet[state_.next_side].normal_force > parameters_[Gait::kTouchdownForce] * weight;
@@ -207,13 +225,16 @@ void GaitMachine::publish_footsteps() {
   // Paused on the way: the plan ends after the step that has begun.
   const int visible = state_.paused != 0 && walking() ? 1 : GAITD_MAX_FOOTSTEPS;
   state_.footstep_count = std::min<int>(queue_.size(), visible);
+  // The way goes on from where the last foot really landed and comes back to the commanded one.
+  Eigen::Vector3d offset = state_.phase == GAITD_PHASE_SWING ? shift_ : path_offset_;
   for (int i = 0; i < state_.footstep_count; ++i) {
     state_.commanded[i] = queue_[i];
     state_.adjusted[i] = queue_[i];
-    state_.adjusted[i].pose.position[2] += height_offset_;
-  }
-  if (state_.footstep_count > 0) {
-    for (int k = 0; k < 3; ++k) state_.adjusted[0].pose.position[k] += shift_[k];
+    auto position = sdk::view(state_.adjusted[i].pose.position);
+    position += offset;
+    if (i > 0) keep_in_region(state_.adjusted[i]);
+    position.z() += height_offset_;
+    offset *= parameters_[Gait::kShiftKept];
   }
 }
 

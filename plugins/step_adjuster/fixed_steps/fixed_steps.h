@@ -2,60 +2,24 @@
 #pragma once
 
 #include "gaitd/sdk/layer.h"
-#include "gaitd/sdk/views.h"
+#include "gaitd/walking/icp_feedback.h"
 
 namespace gaitd::plugins {
 
-// ICP feedback by moving the CMP only; footsteps and timing stay as commanded (theory section 3):
-//   r_eCMP = r_ref + (1 + k/w) (xi - xi_ref), k along and across the motion of the reference
-// The CMP that follows is kept inside the support polygon plus a bounded excursion.
+// ICP feedback by moving the CMP only; footsteps and timing stay as commanded.
 class FixedSteps {
  public:
-  enum class P {
-    kGainParallel,
-    kGainOrthogonal,
-    kGainStanding,
-    kIntegralStanding,
-    kIntegralLimit,
-    kDirectionSpeed,
-    kMargin,
-    kExcursion,
-    kKappaMin,
-    kKappaMax,
-    kKappaFilter,
-    kCount
-  };
-  static constexpr std::array<GaitdParameter, 11> kParameters = {
-      sdk::real_parameter("gain_parallel", "1/s", 0, 30, 4, "ICP feedback along its motion"),
-      sdk::real_parameter("gain_orthogonal", "1/s", 0, 30, 3, "ICP feedback across its motion"),
-      sdk::real_parameter("gain_standing", "1/s", 0, 30, 3, "ICP feedback when standing"),
-      sdk::real_parameter("integral_standing", "1/s", 0, 10, 0.5,
-                          "integral feedback when standing; fades as fast in a walk"),
-      sdk::real_parameter("integral_limit", "m", 0, 0.1, 0.03, "of the CMP by integral feedback"),
-      sdk::real_parameter("direction_speed", "m/s", 0, 1, 0.05,
-                          "slower references keep the last direction"),
-      sdk::real_parameter("margin", "m", 0, 0.1, 0.01, "of the CMP to the edge of the polygon"),
-      sdk::real_parameter("excursion", "m", 0, 0.3, 0.03,
-                          "of the CMP out of the polygon, paid with angular momentum"),
-      sdk::real_parameter("kappa_min", "", 0.3, 1, 0.8, "clamp of kappa (theory section 1)"),
-      sdk::real_parameter("kappa_max", "", 1, 3, 1.4, "clamp of kappa"),
-      sdk::real_parameter("kappa_filter", "Hz", 0.1, 500, 10, "low-pass of kappa"),
-  };
+  static constexpr auto kParameters = walking::kFeedbackParameters;
 
-  explicit FixedSteps(const GaitdModel& model) : model_(model) { reset(); }
-  void set_parameter(int index, double value) { p_.set(index, value); }
+  explicit FixedSteps(const GaitdModel& model) : feedback_(model) {}
+  void set_parameter(int index, double value) { feedback_.set_parameter(index, value); }
   GaitdStatus process(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out);
-  void reset();
-  void get_state(GaitdStepAdjusterState& s) const { s = state_; }
-  void set_state(const GaitdStepAdjusterState& s) { state_ = s; }
+  void reset() { feedback_.reset(); }
+  void get_state(GaitdStepAdjusterState& s) const { feedback_.get_state(s); }
+  void set_state(const GaitdStepAdjusterState& s) { feedback_.set_state(s); }
 
  private:
-  void update_kappa(const GaitdStepAdjusterInput& in);
-  Eigen::Vector2d feedback(const GaitdStepAdjusterInput& in);
-
-  const GaitdModel model_;
-  sdk::Parameters<P> p_{kParameters};
-  GaitdStepAdjusterState state_{};
+  walking::IcpFeedback feedback_;
 };
 
 }  // namespace gaitd::plugins

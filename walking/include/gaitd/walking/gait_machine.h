@@ -54,6 +54,7 @@ class GaitMachine {
   void begin_stand();
   void touch_down(const GaitdRobotState& robot, bool early);
   void apply_pending_mode();
+  void adjust(const GaitdStepAdjustment& adjustment);
   bool icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& plan) const;
   // Copies the queue into the state, with shifts and height offset.
   void publish_footsteps();
@@ -69,7 +70,8 @@ class GaitMachine {
   FootstepQueue queue_{kQueueCapacity};
   GaitdGaitState state_{};
   GaitdPose lift_off_{};
-  Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();  // of the current step
+  Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();        // m, of the current swing's foothold
+  Eigen::Vector3d path_offset_ = Eigen::Vector3d::Zero();  // m, of the next foothold after it
   double time_shift_ = 0.0;                            // s, of the current phase
   double height_offset_ = 0.0;  // m, measured minus commanded height of the ground so far
   int pending_mode_ = GAITD_MODE_WALK_BENT;

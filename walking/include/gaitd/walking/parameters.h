@@ -28,9 +28,10 @@ enum class Gait {
   kMaxStepHeight,
   kMaxStepTurn,
   kMaxStepTilt,
+  kShiftKept,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 18> kGaitParameters = {
+inline constexpr std::array<GaitdParameter, 19> kGaitParameters = {
     real_parameter("omega", "1/s", 0, 10, 0,
                    "natural frequency of the ICP; 0: sqrt(g / nominal CoM height)"),
     real_parameter("swing_duration", "s", 0.2, 10, 0.6, "of footsteps that give none"),
@@ -59,6 +60,8 @@ inline constexpr std::array<GaitdParameter, 18> kGaitParameters = {
     real_parameter("max_step_height", "m", 0, 2, 0.45, "from one foothold to the next"),
     real_parameter("max_step_turn", "rad", 0, 3, 0.8, "yaw from one foothold to the next"),
     real_parameter("max_step_tilt", "rad", 0, 1, 0.4, "roll or pitch of a foothold"),
+    real_parameter("shift_kept", "", 0, 1, 0.5,
+                   "part of the shift of an adjusted foothold that the next one keeps"),
 };
 
 enum class Swing {

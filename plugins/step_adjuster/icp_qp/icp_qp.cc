@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "icp_qp.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
+
+namespace gaitd::plugins {
+namespace {
+
+constexpr double kUnit = 0.1;         // m of shift that costs one unit in the choice of timing
+constexpr double kMissUnit = 0.01;    // m of ICP missed at touchdown, likewise
+constexpr double kTimeStep = 0.01;    // s, between the candidates of timing
+constexpr double kPeakOverMean = 1.9;  // speed of a swing from rest to rest, fifth order
+constexpr double kLeastGamma = 0.2;
+
+double square(double x) { return x * x; }
+
+}  // namespace
+
+using sdk::view;
+
+void IcpQp::set_parameter(int index, double value) {
+  p_.set(index, value);
+  if (index < kFeedbackCount) feedback_.set_parameter(index, value);
+}
+
+void IcpQp::reset() {
+  feedback_.reset();
+  step_index_ = -1;
+  start_shift_.setZero();
+  shift_.setZero();
+  time_shift_ = 0.0;
+}
+
+void IcpQp::get_state(GaitdStepAdjusterState& s) const {
+  feedback_.get_state(s);
+  s.step_index = step_index_;
+  view(s.shift) = Eigen::Vector3d(shift_.x(), shift_.y(), 0.0);
+  s.time_shift = time_shift_;
+}
+
+void IcpQp::set_state(const GaitdStepAdjusterState& s) {
+  feedback_.set_state(s);
+  step_index_ = s.step_index;
+  shift_ = view(s.shift).head<2>();
+  start_shift_ = shift_;
+  time_shift_ = s.time_shift;
+}
+
+void IcpQp::begin_swing(const GaitdGaitState& gait) {
+  step_index_ = gait.step_index;
+  // A step before this one may have left the commanded way.
+  shift_ = start_shift_ = (view(gait.adjusted[0].pose.position) -
+                           view(gait.commanded[0].pose.position))
+                              .head<2>();
+  time_shift_ = 0.0;
+}
+
+Capture IcpQp::capture(const GaitdStepAdjusterInput& in) const {
+  const GaitdGaitState& gait = *in.gait;
+  const GaitdFootstep& step = gait.commanded[0];
+  Capture c;
+  c.omega = gait.omega;
+  c.kappa = feedback_.kappa();
+  c.com = view(in.robot->com).head<2>();
+  c.icp = view(in.robot->icp);
+  const double growth = std::exp(c.omega * gait.time_remaining);
+  c.gamma_end = std::max(in.plan->gamma[0] * growth, kLeastGamma);
+  const Eigen::Vector2d made = (view(gait.adjusted[0].pose.position) -
+                                view(step.pose.position)).head<2>();
+  c.start_shift = start_shift_;
+  c.icp_end = view(in.plan->icp_end) + c.gamma_end * (start_shift_ - made);
+  const Eigen::Vector2d planned = view(in.plan->icp) - view(in.plan->offset);
+  const Eigen::Vector2d ecmp =
+      growth > 1.0 + 1e-6
+          ? Eigen::Vector2d((growth * planned - view(in.plan->icp_end)) / (growth - 1.0))
+          : Eigen::Vector2d(view(in.plan->ecmp));
+  c.cmp_region = feedback_.cmp_region(gait);
+  c.cmp = c.cmp_region.closest_point(c.cmp_of(ecmp));
+  c.commanded = view(step.pose.position).head<2>();
+
+  const GaitdPose& stance = gait.footholds[gait.support].pose;
+  const double yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
+  const Eigen::Rotation2Dd heading(yaw);
+  const double side = walking::side_sign(step.side);
+  const double height = model_.nominal_com_height;
+  const double separation = model_.nominal_foot_separation;
+  const double forward = p_[P::kReachForward] * height;
+  const double backward = -p_[P::kReachBackward] * height;
+  const double inward = p_[P::kReachInward] * separation;
+  const double outward = p_[P::kReachOutward] * height;
+  for (const auto& [x, y] : {std::pair{forward, inward}, {forward, separation}, {0.0, outward},
+                             {backward, separation}, {backward, inward}}) {
+    c.reach.add(Eigen::Vector2d(view(stance.position).head<2>()) +
+                heading * Eigen::Vector2d(x, side * y));
+  }
+  c.reach.add(c.commanded + start_shift_);
+  c.reach.make_hull();
+  for (int i = 0; i < step.region_count; ++i) {
+    c.landing.add({step.landing_region[i][0], step.landing_region[i][1]});
+  }
+  c.landing.make_hull();
+  return c;
+}
+
+double IcpQp::best_remaining(const Capture& c, const Eigen::Vector2d& foot, double remaining,
+                             double shortest, double now) const {
+  auto cost = [&](double candidate) {
+    const Eigen::Vector2d needed = c.needed_shift(candidate);
+    const Eigen::Vector2d possible = c.possible_shift(needed);
+    const double way = (c.commanded + possible - foot).norm();
+    const double speed = kPeakOverMean * way / std::max(candidate, kTimeStep);
+    return (possible - c.start_shift).squaredNorm() / square(kUnit) +
+           (needed - possible).squaredNorm() / square(kMissUnit) +
+           square((remaining - candidate) / p_[P::kTimeScale]) +
+           square(std::max(0.0, speed - p_[P::kFootSpeed]) / p_[P::kSpeedScale]);
+  };
+  double best = now;
+  double least = cost(now) - 0.05;  // a change has to be worth it
+  for (double candidate = remaining; candidate >= shortest; candidate -= kTimeStep) {
+    const double value = cost(candidate);
+    if (value < least) {
+      least = value;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+void IcpQp::adjust(const GaitdStepAdjusterInput& in) {
+  const GaitdGaitState& gait = *in.gait;
+  const Capture c = capture(in);
+  const double now = gait.time_remaining;
+  const Eigen::Vector2d wanted = c.needed_shift(now);
+  double remaining = now;
+  if ((wanted - shift_).norm() > p_[P::kDeadBand]) {
+    const double planned = now - time_shift_;
+    const double shortest =
+        std::max(p_[P::kShortestSwing] - gait.time_in_phase, p_[P::kHoldTime] + kTimeStep);
+    const Eigen::Vector2d foot = view(in.robot->feet[gait.next_side].position).head<2>();
+    remaining = best_remaining(c, foot, planned, shortest, now);
+    time_shift_ = remaining - planned;
+  }
+  const CaptureWeights weights{p_[P::kShiftWeight],  p_[P::kCmpWeight],   p_[P::kAngularWeight],
+                               p_[P::kChangeWeight], p_[P::kSlackWeight], p_[P::kAngularExcursion]};
+  Eigen::Vector2d shift = shift_;
+  if (qp_.solve(c, weights, remaining, shift_, shift) &&
+      (shift - shift_).norm() > p_[P::kDeadBand]) {
+    shift_ = shift;
+  }
+}
+
+GaitdStatus IcpQp::process(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out) {
+  feedback_.update(in, out);
+  const GaitdGaitState& gait = *in.gait;
+  if (gait.phase != GAITD_PHASE_SWING || gait.footstep_count == 0) return GAITD_OK;
+  if (gait.step_index != step_index_) begin_swing(gait);
+  if (gait.time_remaining > p_[P::kHoldTime]) adjust(in);
+  out.active = 1;
+  view(out.shift) = Eigen::Vector3d(shift_.x(), shift_.y(), 0.0);
+  out.time_shift = time_shift_;
+  return GAITD_OK;
+}
+
+}  // namespace gaitd::plugins

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "gaitd/abi/plugin.h"
+#include "gaitd/sdk/parameter.h"
+#include "gaitd/walking/polygon.h"
+
+namespace gaitd::walking {
+
+enum class Feedback {
+  kGainParallel,
+  kGainOrthogonal,
+  kGainStanding,
+  kIntegralStanding,
+  kIntegralLimit,
+  kDirectionSpeed,
+  kMargin,
+  kExcursion,
+  kKappaMin,
+  kKappaMax,
+  kKappaFilter,
+  kCount
+};
+inline constexpr std::array<GaitdParameter, 11> kFeedbackParameters = {
+    sdk::real_parameter("gain_parallel", "1/s", 0, 30, 4, "ICP feedback along its motion"),
+    sdk::real_parameter("gain_orthogonal", "1/s", 0, 30, 3, "ICP feedback across its motion"),
+    sdk::real_parameter("gain_standing", "1/s", 0, 30, 3, "ICP feedback when standing"),
+    sdk::real_parameter("integral_standing", "1/s", 0, 10, 0.5,
+                        "integral feedback when standing; fades as fast in a walk"),
+    sdk::real_parameter("integral_limit", "m", 0, 0.1, 0.03, "of the CMP by integral feedback"),
+    sdk::real_parameter("direction_speed", "m/s", 0, 1, 0.05,
+                        "slower references keep the last direction"),
+    sdk::real_parameter("margin", "m", 0, 0.1, 0.01, "of the CMP to the edge of the polygon"),
+    sdk::real_parameter("excursion", "m", 0, 0.3, 0.03,
+                        "of the CMP out of the polygon, paid with angular momentum"),
+    sdk::real_parameter("kappa_min", "", 0.3, 1, 0.8, "clamp of kappa (theory section 1)"),
+    sdk::real_parameter("kappa_max", "", 1, 3, 1.4, "clamp of kappa"),
+    sdk::real_parameter("kappa_filter", "Hz", 0.1, 500, 10, "low-pass of kappa"),
+};
+
+// Tracks the ICP reference by moving the CMP (theory section 3):
+//   r_eCMP = r_ref + (1 + k/w) (xi - xi_ref), k along and across the motion of the reference
+// The CMP that follows is kept inside the support polygon plus a bounded excursion.
+class IcpFeedback {
+ public:
+  explicit IcpFeedback(const GaitdModel& model) : model_(model) { reset(); }
+
+  void set_parameter(int index, double value) { p_.set(index, value); }
+  double operator[](Feedback p) const { return p_[p]; }
+  void reset();
+  void get_state(GaitdStepAdjusterState& s) const { s = state_; }
+  void set_state(const GaitdStepAdjusterState& s) { state_ = s; }
+
+  // One tick: kappa first, then the eCMP, CMP and momentum rate of `out`; `out` is overwritten.
+  void update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out);
+
+  double kappa() const { return state_.kappa; }
+  // CMP of an eCMP and back (W, m), with the CoM of `robot`.
+  Eigen::Vector2d cmp_of(const GaitdRobotState& robot, const Eigen::Vector2d& ecmp) const;
+  Eigen::Vector2d ecmp_of(const GaitdRobotState& robot, const Eigen::Vector2d& cmp) const;
+  // Where the CMP may be without angular momentum: the support polygon less the margin (W, m).
+  ConvexPolygon cmp_region(const GaitdGaitState& gait) const;
+
+ private:
+  void update_kappa(const GaitdStepAdjusterInput& in);
+  Eigen::Vector2d feedback(const GaitdStepAdjusterInput& in);
+
+  const GaitdModel model_;
+  sdk::Parameters<Feedback> p_{kFeedbackParameters};
+  GaitdStepAdjusterState state_{};
+};
+
+}  // namespace gaitd::walking

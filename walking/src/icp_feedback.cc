@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/walking/icp_feedback.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
+
+namespace gaitd::walking {
+
+using sdk::view;
+
+void IcpFeedback::reset() {
+  state_ = {};
+  state_.size = sizeof(state_);
+  state_.kappa = 1.0;
+  state_.direction[0] = 1.0;
+}
+
+void IcpFeedback::update_kappa(const GaitdStepAdjusterInput& in) {
+  // Ground height under the feet that carry the robot; the vertical acceleration as planned (0).
+  double ground = 0.0;
+  int feet = 0;
+  for (const GaitdFoothold& f : in.gait->footholds) {
+    if (f.contact == GAITD_CONTACT_NONE) continue;
+    ground += f.pose.position[2];
+    ++feet;
+  }
+  const double height = in.robot->com[2] - (feet > 0 ? ground / feet : 0.0);
+  const double omega = in.gait->omega;
+  const double kappa =
+      std::clamp(height * omega * omega / model_.gravity, p_[Feedback::kKappaMin], p_[Feedback::kKappaMax]);
+  const double blend = 1.0 - std::exp(-2.0 * M_PI * p_[Feedback::kKappaFilter] * in.time.period);
+  state_.kappa += blend * (kappa - state_.kappa);
+}
+
+Eigen::Vector2d IcpFeedback::feedback(const GaitdStepAdjusterInput& in) {
+  const Eigen::Vector2d error = view(in.robot->icp) - view(in.plan->icp);
+  const double omega = in.gait->omega;
+  auto integral = view(state_.integral);
+  const double step = p_[Feedback::kIntegralStanding] * in.time.period;
+  if (in.gait->phase == GAITD_PHASE_STAND) {
+    // A tilt that is not known (bias of the accelerometer) pushes like a constant force: without
+    // the integral the robot would lean against it.
+    const Eigen::Vector2d proportional = (1.0 + p_[Feedback::kGainStanding] / omega) * error;
+    integral += step * proportional;
+    const double limit = p_[Feedback::kIntegralLimit];
+    if (integral.norm() > limit) integral *= limit / integral.norm();
+    return proportional + integral;
+  }
+  integral *= std::max(0.0, 1.0 - step);
+  const Eigen::Vector2d velocity = view(in.plan->icp_velocity);
+  auto direction = view(state_.direction);
+  if (velocity.norm() >= p_[Feedback::kDirectionSpeed]) direction = velocity.normalized();
+  const double along = direction.dot(error);
+  const Eigen::Vector2d across = error - along * direction;
+  return (1.0 + p_[Feedback::kGainParallel] / omega) * along * direction +
+         (1.0 + p_[Feedback::kGainOrthogonal] / omega) * across + integral;
+}
+
+Eigen::Vector2d IcpFeedback::cmp_of(const GaitdRobotState& robot,
+                                    const Eigen::Vector2d& ecmp) const {
+  const Eigen::Vector2d com = view(robot.com).head<2>();
+  return com - state_.kappa * (com - ecmp);
+}
+
+Eigen::Vector2d IcpFeedback::ecmp_of(const GaitdRobotState& robot,
+                                     const Eigen::Vector2d& cmp) const {
+  const Eigen::Vector2d com = view(robot.com).head<2>();
+  return com - (com - cmp) / state_.kappa;
+}
+
+ConvexPolygon IcpFeedback::cmp_region(const GaitdGaitState& gait) const {
+  return support_polygon(model_, gait).inset(p_[Feedback::kMargin]);
+}
+
+void IcpFeedback::update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out) {
+  update_kappa(in);
+  Eigen::Vector2d cmp = cmp_of(*in.robot, view(in.plan->ecmp) + feedback(in));
+  const ConvexPolygon region = cmp_region(*in.gait);
+  if (!region.empty()) {
+    const Eigen::Vector2d inside = region.closest_point(cmp);
+    const Eigen::Vector2d beyond = cmp - inside;
+    const double length = beyond.norm();
+    const double allowed = p_[Feedback::kExcursion];
+    cmp = inside + (length > allowed ? Eigen::Vector2d(beyond * (allowed / length)) : beyond);
+  }
+  const Eigen::Vector2d ecmp = ecmp_of(*in.robot, cmp);
+
+  out = {};
+  out.size = sizeof(out);
+  out.kappa = state_.kappa;
+  view(out.cmp) = cmp;
+  view(out.ecmp) = ecmp;
+  const double omega = in.gait->omega;
+  const Eigen::Vector2d com = view(in.robot->com).head<2>();
+  view(out.linear_momentum_rate) = model_.total_mass * omega * omega * (com - ecmp);
+}
+
+}  // namespace gaitd::walking
