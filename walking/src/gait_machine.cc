@@ -94,6 +94,7 @@ void GaitMachine::begin_transfer(int trailing_side) {
   state_.trailing_side = trailing_side;
   state_.transfer_final = final ? 1 : 0;
   state_.time_in_phase = 0.0;
+  time_shift_ = 0.0;
   state_.final_transfer_duration = parameters_[Gait::kFinalTransferDuration];
   if (final) {
     state_.phase_duration = state_.final_transfer_duration;
@@ -148,24 +149,27 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   begin_transfer(other_side(side));
 }
 
+// Waiting helps an ICP that has not come far enough towards the leading foot; one that runs ahead
+// only gets away.
 bool GaitMachine::icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& plan) const {
-  const Eigen::Vector2d error = sdk::view(robot.icp) - sdk::view(plan.icp);
   const Eigen::Quaterniond heading = sdk::quaternion(
       middle_pose(state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose)
           .orientation);
+  const Eigen::Vector2d error = sdk::view(robot.icp) - sdk::view(plan.icp);
   const Eigen::Vector3d local = heading.conjugate() * Eigen::Vector3d(error.x(), error.y(), 0.0);
-  // Waiting helps an ICP that is behind; one that runs ahead only gets away.
+  const GaitdPose& leading = state_.footholds[other_side(state_.next_side)].pose;
   const Eigen::Vector3d next =
       heading.conjugate() *
-      (sdk::view(state_.adjusted[0].pose.position) -
-       sdk::view(state_.footholds[other_side(state_.next_side)].pose.position));
-  const bool ahead = local.x() * next.x() > 0.0;
-  return (ahead || std::abs(local.x()) <= parameters_[Gait::kIcpErrorForward]) &&
-         std::abs(local.y()) <= parameters_[Gait::kIcpErrorSideways];
+      (sdk::view(state_.adjusted[0].pose.position) - sdk::view(leading.position));
+  const double behind = next.x() < 0.0 ? local.x() : -local.x();
+  const double inside = side_sign(state_.next_side) * local.y();
+  return behind <= parameters_[Gait::kIcpErrorForward] &&
+         inside <= parameters_[Gait::kIcpErrorSideways];
 }
 
 void GaitMachine::adjust(const GaitdStepAdjustment& adjustment) {
-  const Eigen::Vector3d shift = sdk::view(adjustment.shift);
+  const bool swing = state_.phase == GAITD_PHASE_SWING;
+  const Eigen::Vector3d shift = swing ? Eigen::Vector3d(sdk::view(adjustment.shift)) : shift_;
   if (shift == shift_ && adjustment.time_shift == time_shift_) return;
   shift_ = shift;
   state_.phase_duration += adjustment.time_shift - time_shift_;
@@ -198,6 +202,8 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
         } else if (over) {
           begin_stand();
         }
+      } else if (adjustment.active != 0 && adjustment.time_shift != time_shift_) {
+        adjust(adjustment);
       } else if (over && (icp_ready(robot, plan) ||
                           state_.time_in_phase >= end + parameters_[Gait::kTransferPatience])) {
         begin_swing(robot);

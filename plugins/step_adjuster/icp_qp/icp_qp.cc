@@ -30,6 +30,7 @@ void IcpQp::set_parameter(int index, double value) {
 void IcpQp::reset() {
   feedback_.reset();
   step_index_ = -1;
+  phase_ = GAITD_PHASE_STAND;
   start_shift_.setZero();
   shift_.setZero();
   time_shift_ = 0.0;
@@ -50,7 +51,8 @@ void IcpQp::set_state(const GaitdStepAdjusterState& s) {
   time_shift_ = s.time_shift;
 }
 
-void IcpQp::begin_swing(const GaitdGaitState& gait) {
+void IcpQp::begin_phase(const GaitdGaitState& gait) {
+  phase_ = gait.phase;
   step_index_ = gait.step_index;
   // A step before this one may have left the commanded way.
   shift_ = start_shift_ = (view(gait.adjusted[0].pose.position) -
@@ -118,9 +120,10 @@ double IcpQp::best_remaining(const Capture& c, const Eigen::Vector2d& foot, doub
            square((remaining - candidate) / p_[P::kTimeScale]) +
            square(std::max(0.0, speed - p_[P::kFootSpeed]) / p_[P::kSpeedScale]);
   };
+  // Never longer again: a foot that hurries cannot wait.
   double best = now;
   double least = cost(now) - 0.05;  // a change has to be worth it
-  for (double candidate = remaining; candidate >= shortest; candidate -= kTimeStep) {
+  for (double candidate = now - kTimeStep; candidate >= shortest; candidate -= kTimeStep) {
     const double value = cost(candidate);
     if (value < least) {
       least = value;
@@ -153,12 +156,35 @@ void IcpQp::adjust(const GaitdStepAdjusterInput& in) {
   }
 }
 
+// A transfer whose ICP runs ahead ends as much earlier as the plan would need for the lead.
+void IcpQp::shorten_transfer(const GaitdStepAdjusterInput& in) {
+  const Eigen::Vector2d planned = view(in.plan->icp) - view(in.plan->offset);
+  const Eigen::Vector2d velocity = view(in.plan->icp_velocity);
+  const double speed = velocity.norm();
+  if (speed < 1e-3) return;
+  const double lead = velocity.dot(view(in.robot->icp) - planned) / speed;
+  if (lead <= p_[P::kLead]) return;
+  const GaitdGaitState& gait = *in.gait;
+  const double least = std::max(p_[P::kShortestTransfer] - gait.time_in_phase, 0.0);
+  const double left = std::max(gait.time_remaining - lead / speed, least);
+  time_shift_ += std::min(0.0, left - gait.time_remaining);
+}
+
 GaitdStatus IcpQp::process(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out) {
   feedback_.update(in, out);
   const GaitdGaitState& gait = *in.gait;
-  if (gait.phase != GAITD_PHASE_SWING || gait.footstep_count == 0) return GAITD_OK;
-  if (gait.step_index != step_index_) begin_swing(gait);
-  if (gait.time_remaining > p_[P::kHoldTime]) adjust(in);
+  const bool transfer = gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 &&
+                        gait.trailing_side != GAITD_BOTH;
+  if (gait.footstep_count == 0 || (gait.phase != GAITD_PHASE_SWING && !transfer)) {
+    phase_ = gait.phase;
+    return GAITD_OK;
+  }
+  if (gait.step_index != step_index_ || gait.phase != phase_) begin_phase(gait);
+  if (transfer) {
+    shorten_transfer(in);
+  } else if (gait.time_remaining > p_[P::kHoldTime]) {
+    adjust(in);
+  }
   out.active = 1;
   view(out.shift) = Eigen::Vector3d(shift_.x(), shift_.y(), 0.0);
   out.time_shift = time_shift_;

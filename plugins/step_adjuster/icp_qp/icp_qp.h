@@ -27,6 +27,8 @@ class IcpQp {
     kReachOutward,
     kShortestSwing,
     kFootSpeed,
+    kShortestTransfer,
+    kLead,
     kTimeScale,
     kSpeedScale,
     kCount
@@ -54,6 +56,9 @@ class IcpQp {
       sdk::real_parameter("shortest_swing", "s", 0.1, 2, 0.3, "that a swing is sped up to"),
       sdk::real_parameter("foot_speed", "m/s", 0.5, 20, 4,
                           "of the swing foot that a faster swing may ask for"),
+      sdk::real_parameter("shortest_transfer", "s", 0.05, 2, 0.1, "likewise a transfer"),
+      sdk::real_parameter("lead", "m", 0, 1, 0.05,
+                          "of the ICP along its motion that shortens a transfer"),
       sdk::real_parameter("time_scale", "s", 0.01, 100, 0.5,
                           "by which a shorter swing costs as much as 0.1 m of shift"),
       sdk::real_parameter("speed_scale", "m/s", 0.01, 100, 0.5,
@@ -74,9 +79,10 @@ class IcpQp {
   void set_state(const GaitdStepAdjusterState& s);
 
  private:
-  void begin_swing(const GaitdGaitState& gait);
+  void begin_phase(const GaitdGaitState& gait);
   Capture capture(const GaitdStepAdjusterInput& in) const;
   void adjust(const GaitdStepAdjusterInput& in);
+  void shorten_transfer(const GaitdStepAdjusterInput& in);
   // Seconds of the swing that should be left, at most `remaining`.
   double best_remaining(const Capture& capture, const Eigen::Vector2d& foot, double remaining,
                         double shortest, double now) const;
@@ -85,7 +91,8 @@ class IcpQp {
   walking::IcpFeedback feedback_;
   sdk::Parameters<P> p_{kParameters};
   CaptureQp qp_;
-  int step_index_ = -1;  // of the swing that the following belong to
+  int step_index_ = -1;  // of the phase that the following belong to
+  int phase_ = GAITD_PHASE_STAND;
   Eigen::Vector2d start_shift_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d shift_ = Eigen::Vector2d::Zero();  // m, W, against the commanded foothold
   double time_shift_ = 0.0;                          // s
