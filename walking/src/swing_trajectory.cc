@@ -11,8 +11,28 @@ namespace {
 
 constexpr double kShortest = 0.01;  // s, of one polynomial
 constexpr double kFastest = 0.7;    // m/s, gained at most by an overdue touchdown
+constexpr double kOnset = 0.05;     // s
 
 double blend(double a, double b, double share) { return a + share * (b - a); }
+
+struct Hurry {
+  double gain, way;  // m/s, m
+};
+
+// Speed and way that an overdue touchdown gains in `late` seconds: the acceleration sets in over
+// kOnset, so that a touchdown that is only a little late is not a hard one, and ends at kFastest.
+Hurry hurry(double late, double acceleration) {
+  if (acceleration <= 0.0) return {0.0, 0.0};
+  const double jerk = acceleration / kOnset;
+  const double onset = std::min(late, kOnset);
+  const Hurry early{0.5 * jerk * onset * onset, jerk * onset * onset * onset / 6.0};
+  const double rest = std::max(0.0, kFastest - early.gain) / acceleration;
+  const double t = std::min(late - onset, rest);
+  const double after = late - onset - t;
+  return {early.gain + acceleration * t,
+          early.way + early.gain * t + 0.5 * acceleration * t * t +
+              (early.gain + acceleration * t) * after};
+}
 
 bool same_goal(const GaitdFootstep& a, const GaitdFootstep& b) {
   return sdk::view(a.pose.position) == sdk::view(b.pose.position) &&
@@ -142,11 +162,8 @@ SwingTrajectory::Sample SwingTrajectory::evaluate(double t) const {
   s.angular_acceleration = acceleration + 0.5 * turn.cross(acceleration);
   if (t > duration_) {
     const double late = t - duration_;
-    const double gain = std::min(late_acceleration_ * late, kFastest);
-    const double full = late_acceleration_ > 0.0 ? kFastest / late_acceleration_ : 0.0;
-    const double way =
-        late < full ? 0.5 * gain * late : 0.5 * kFastest * full + kFastest * (late - full);
-    s.position.z() -= late_velocity_ * late + (late_acceleration_ > 0.0 ? way : 0.0);
+    const auto [gain, way] = hurry(late, late_acceleration_);
+    s.position.z() -= late_velocity_ * late + way;
     s.velocity = {0.0, 0.0, -late_velocity_ - gain};
     s.acceleration.setZero();
     s.angular_velocity.setZero();

@@ -15,6 +15,7 @@ constexpr double kMissUnit = 0.01;    // m of ICP missed at touchdown, likewise
 constexpr double kTimeStep = 0.01;    // s, between the candidates of timing
 constexpr double kPeakOverMean = 1.9;  // speed of a swing from rest to rest, fifth order
 constexpr double kLeastGamma = 0.2;
+constexpr double kRestMargin = 0.04;  // m, of an ICP that comes to rest, to the edge of the feet
 
 double square(double x) { return x * x; }
 
@@ -83,6 +84,19 @@ Capture IcpQp::capture(const GaitdStepAdjusterInput& in) const {
   c.cmp_region = feedback_.cmp_region(gait);
   c.cmp = c.cmp_region.closest_point(c.cmp_of(ecmp));
   c.commanded = view(step.pose.position).head<2>();
+  if (gait.footstep_count == 1) {
+    // The step ends in standing: the ICP may come to rest anywhere well between the feet.
+    walking::ConvexPolygon both;
+    for (const GaitdFoothold& f : {gait.footholds[gait.support],
+                                   walking::foothold_of(model_, gait.adjusted[0])}) {
+      walking::add_foothold(f, model_.feet[step.side].toe_point, both);
+    }
+    both.make_hull();
+    const Eigen::Vector2d stance_ecmp = c.ecmp_of(c.cmp);
+    const Eigen::Vector2d coming = stance_ecmp + growth * (c.icp - stance_ecmp);
+    c.icp_end = both.inset(kRestMargin).closest_point(coming) - (made - start_shift_);
+    c.gamma_end = 1.0;
+  }
 
   const GaitdPose& stance = gait.footholds[gait.support].pose;
   const double yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
