@@ -13,6 +13,9 @@ namespace {
 // Of the distance of the feet in the nominal posture: closer the legs get in each other's way.
 constexpr double kNominalShare = 0.8;
 
+// ICP closer than this to the edge of both feet is not held by them (m).
+constexpr double kHeldMargin = 0.01;
+
 // Back into the landing region of the footstep, where it has one.
 void keep_in_region(GaitdFootstep& step) {
   if (step.region_count < 3) return;
@@ -150,8 +153,11 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
 }
 
 // Waiting helps an ICP that has not come far enough towards the leading foot; one that runs ahead
-// only gets away.
+// or has left the feet only gets away.
 bool GaitMachine::icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& plan) const {
+  if (support_polygon(model_, state_).inside_distance(sdk::view(robot.icp)) < kHeldMargin) {
+    return true;
+  }
   const Eigen::Quaterniond heading = sdk::quaternion(
       middle_pose(state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose)
           .orientation);

@@ -176,9 +176,12 @@ void IcpQp::shorten_transfer(const GaitdStepAdjusterInput& in) {
   const Eigen::Vector2d velocity = view(in.plan->icp_velocity);
   const double speed = velocity.norm();
   if (speed < 1e-3) return;
-  const double lead = velocity.dot(view(in.robot->icp) - planned) / speed;
-  if (lead <= p_[P::kLead]) return;
   const GaitdGaitState& gait = *in.gait;
+  double lead = velocity.dot(view(in.robot->icp) - planned) / speed;
+  // Feet that cannot hold the ICP had better step.
+  const walking::ConvexPolygon feet = walking::support_polygon(model_, gait);
+  if (feet.inside_distance(view(in.robot->icp)) < 0.0) lead = speed * gait.time_remaining;
+  if (lead <= p_[P::kLead]) return;
   const double least = std::max(p_[P::kShortestTransfer] - gait.time_in_phase, 0.0);
   const double left = std::max(gait.time_remaining - lead / speed, least);
   time_shift_ += std::min(0.0, left - gait.time_remaining);
