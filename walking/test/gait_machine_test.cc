@@ -195,7 +195,7 @@ TEST(GaitMachine, ATransferWaitsForTheIcpButNotForEver) {
   const double patience = SyntheticWalk().machine.parameters()[Gait::kTransferPatience];
   double seconds[2];
   int i = 0;
-  for (double error : {0.0, -0.9}) {
+  for (double error : {0.0, -0.12}) {
     SyntheticWalk w;
     w.icp_error = error;
     ASSERT_FALSE(w.machine.walk({.steps = 2, .length = 0.3}).refused());
@@ -218,7 +218,18 @@ TEST(GaitMachine, ATransferDoesNotWaitForAnIcpThatRunsAhead) {
   EXPECT_NEAR((w.ticks - begin) * w.dt, planned, 2e-3);
 }
 
-TEST(GaitMachine, AShiftMovesTheCurrentFootholdOnlyAndEndsWithItsStep) {
+TEST(GaitMachine, ATransferDoesNotWaitForAnIcpThatTheFeetCannotHold) {
+  SyntheticWalk w;
+  w.icp_error = -0.9;
+  ASSERT_FALSE(w.machine.walk({.steps = 2, .length = 0.3}).refused());
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 2));
+  const double planned = w.gait().phase_duration;
+  const int begin = w.ticks;
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 2));
+  EXPECT_NEAR((w.ticks - begin) * w.dt, planned, 2e-3);
+}
+
+TEST(GaitMachine, AShiftFadesOverTheStepsThatFollow) {
   SyntheticWalk w;
   ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3}).refused());
   ASSERT_TRUE(w.run_until_fraction(2, 0.3));
@@ -233,12 +244,47 @@ TEST(GaitMachine, AShiftMovesTheCurrentFootholdOnlyAndEndsWithItsStep) {
   EXPECT_NE(g.plan_revision, revision);
   EXPECT_NEAR(g.adjusted[0].pose.position[0] - g.commanded[0].pose.position[0], 0.04, 1e-12);
   EXPECT_NEAR(g.adjusted[0].pose.position[1] - g.commanded[0].pose.position[1], -0.01, 1e-12);
-  EXPECT_EQ(g.adjusted[1].pose.position[0], g.commanded[1].pose.position[0]);
+  const double kept = w.machine.parameters()[Gait::kShiftKept];
+  EXPECT_NEAR(g.adjusted[1].pose.position[0] - g.commanded[1].pose.position[0], kept * 0.04, 1e-12);
+  EXPECT_NEAR(g.adjusted[2].pose.position[0] - g.commanded[2].pose.position[0], kept * kept * 0.04,
+              1e-12);
   const double landing = g.adjusted[0].pose.position[0];
   const int side = g.next_side;
   ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 3));
   EXPECT_NEAR(g.footholds[side].pose.position[0], landing, 1e-12);
-  EXPECT_EQ(g.adjusted[0].pose.position[0], g.commanded[0].pose.position[0]);
+  EXPECT_NEAR(g.adjusted[0].pose.position[0] - g.commanded[0].pose.position[0], kept * 0.04, 1e-12);
+}
+
+TEST(GaitMachine, FootstepsAheadStayInTheirLandingRegions) {
+  SyntheticWalk w;
+  ASSERT_FALSE(w.machine.walk({.steps = 3, .length = 0.3}).refused());
+  ASSERT_TRUE(w.run_until_fraction(1, 0.3));
+  GaitdFootstep ahead[2] = {w.gait().commanded[1], w.gait().commanded[2]};
+  const double x = ahead[0].pose.position[0], y = ahead[0].pose.position[1];
+  const double region[4][2] = {{x - 0.1, y - 0.1}, {x + 0.01, y - 0.1}, {x + 0.01, y + 0.1},
+                               {x - 0.1, y + 0.1}};
+  ahead[0].region_count = 4;
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 2; ++k) ahead[0].landing_region[i][k] = region[i][k];
+  }
+  ASSERT_FALSE(w.machine.footsteps(ahead, 2, true).refused());
+  w.adjustment.active = 1;
+  w.adjustment.shift[0] = 0.08;
+  w.tick();
+  EXPECT_NEAR(w.gait().adjusted[1].pose.position[0], x + 0.01, 1e-12);
+}
+
+TEST(GaitMachine, ATransferIsShortenedByTheAdjuster) {
+  SyntheticWalk w;
+  ASSERT_FALSE(w.machine.walk({.steps = 3, .length = 0.3}).refused());
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 2));
+  const double planned = w.gait().phase_duration;
+  const int begin = w.ticks;
+  w.tick();
+  w.adjustment.active = 1;
+  w.adjustment.time_shift = -0.1;
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 2));
+  EXPECT_NEAR((w.ticks - begin) * w.dt, planned - 0.1, 2e-3);
 }
 
 TEST(GaitMachine, RemembersWhereTheSwingFootLeftTheGround) {
