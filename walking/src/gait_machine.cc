@@ -61,6 +61,8 @@ void GaitMachine::reset(const GaitdRobotState& robot) {
   path_offset_.setZero();
   time_shift_ = 0.0;
   height_offset_ = 0.0;
+  time_unheld_ = 0.0;
+  recovering_ = false;
   state_.step_index = 0;
   state_.paused = 0;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
@@ -104,7 +106,7 @@ void GaitMachine::begin_transfer(int trailing_side) {
     state_.next_side = GAITD_BOTH;
   } else {
     state_.phase_duration = queue_[0].transfer_duration;
-    if (trailing_side == GAITD_BOTH) {
+    if (trailing_side == GAITD_BOTH && !recovering_) {
       state_.phase_duration =
           std::max(state_.phase_duration, parameters_[Gait::kInitialTransferDuration]);
     }
@@ -147,6 +149,7 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   queue_.pop();
   path_offset_ = parameters_[Gait::kShiftKept] * shift_;
   if (queue_.size() == 0) path_offset_.setZero();
+  if (recovering_) close_after_recovery();
   time_shift_ = 0.0;
   apply_pending_mode();
   begin_transfer(other_side(side));
@@ -199,13 +202,16 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
   switch (state_.phase) {
     case GAITD_PHASE_STAND:
       apply_pending_mode();
+      if (recover(dt, robot)) break;
       if (queue_.size() > 0 && state_.paused == 0) begin_transfer(GAITD_BOTH);
       break;
     case GAITD_PHASE_TRANSFER: {
       if (state_.transfer_final != 0) {
+        if (recover(dt, robot)) break;
         if (queue_.size() > 0 && state_.paused == 0) {
           begin_transfer(GAITD_BOTH);
         } else if (over) {
+          recovering_ = false;
           begin_stand();
         }
       } else if (adjustment.active != 0 && adjustment.time_shift != time_shift_) {

@@ -55,6 +55,12 @@ class GaitMachine {
   void touch_down(const GaitdRobotState& robot, bool early);
   void apply_pending_mode();
   void adjust(const GaitdStepAdjustment& adjustment);
+  // Standing, or on the way to it: whether only a step can catch the robot; begins that step.
+  bool recover(double dt, const GaitdRobotState& robot);
+  GaitdFootstep recovery_step(const GaitdRobotState& robot, int side) const;
+  int recovery_side(const GaitdRobotState& robot, const Eigen::Vector2d& away) const;
+  // After a recovery: the step that brings the feet side by side again, if they are not.
+  void close_after_recovery();
   bool icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& plan) const;
   // Copies the queue into the state, with shifts and height offset.
   void publish_footsteps();
@@ -73,6 +79,8 @@ class GaitMachine {
   Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();        // m, of the current swing's foothold
   Eigen::Vector3d path_offset_ = Eigen::Vector3d::Zero();  // m, of the next foothold after it
   double time_shift_ = 0.0;                            // s, of the current phase
+  double time_unheld_ = 0.0;  // s, since the feet cannot hold the ICP
+  bool recovering_ = false;   // the steps of now are the robot's own
   double height_offset_ = 0.0;  // m, measured minus commanded height of the ground so far
   int pending_mode_ = GAITD_MODE_WALK_BENT;
   std::uint32_t next_id_ = 1;

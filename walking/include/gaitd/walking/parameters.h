@@ -29,9 +29,13 @@ enum class Gait {
   kMaxStepTurn,
   kMaxStepTilt,
   kShiftKept,
+  kRecovery,
+  kRecoverySwing,
+  kRecoveryTransfer,
+  kRecoveryMargin,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 19> kGaitParameters = {
+inline constexpr std::array<GaitdParameter, 23> kGaitParameters = {
     real_parameter("omega", "1/s", 0, 10, 0,
                    "natural frequency of the ICP; 0: sqrt(g / nominal CoM height)"),
     real_parameter("swing_duration", "s", 0.2, 10, 0.6, "of footsteps that give none"),
@@ -62,6 +66,11 @@ inline constexpr std::array<GaitdParameter, 19> kGaitParameters = {
     real_parameter("max_step_tilt", "rad", 0, 1, 0.4, "roll or pitch of a foothold"),
     real_parameter("shift_kept", "", 0, 1, 0.5,
                    "part of the shift of an adjusted foothold that the next one keeps"),
+    boolean_parameter("recovery", true, "a standing robot steps by itself rather than fall"),
+    real_parameter("recovery_swing", "s", 0.2, 2, 0.4, "swing of a step that catches the robot"),
+    real_parameter("recovery_transfer", "s", 0.05, 1, 0.06, "transfer before it"),
+    real_parameter("recovery_margin", "m", -0.1, 0.1, 0.0,
+                   "ICP to the edge of the feet; closer to it than this the robot steps"),
 };
 
 enum class Swing {

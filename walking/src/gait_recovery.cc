@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Steps that a standing robot takes by itself when its feet cannot hold it any more.
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/gait_machine.h"
+#include "gaitd/walking/support.h"
+
+namespace gaitd::walking {
+namespace {
+
+constexpr double kPatience = 0.005;  // s, that the ICP has to be out of reach: no spike of a sensor
+constexpr double kLoaded = 0.5;      // of the weight on the feet: neither on a hoist nor in the air
+constexpr double kSideways = 1.7;    // away sideways by this much more than along: a side step
+constexpr double kClosedGap = 0.05;  // m, feet that are as good as side by side
+
+}  // namespace
+
+int GaitMachine::recovery_side(const GaitdRobotState& robot, const Eigen::Vector2d& away) const {
+  const Eigen::Quaterniond heading = sdk::quaternion(
+      middle_pose(state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose)
+          .orientation);
+  const Eigen::Vector3d local = heading.conjugate() * Eigen::Vector3d(away.x(), away.y(), 0.0);
+  if (std::abs(local.y()) > kSideways * std::abs(local.x())) {
+    return local.y() > 0.0 ? GAITD_LEFT : GAITD_RIGHT;
+  }
+  // The foot that is further back on the way; side by side, the one with less load.
+  const Eigen::Vector2d apart = (sdk::view(state_.footholds[GAITD_LEFT].pose.position) -
+                                 sdk::view(state_.footholds[GAITD_RIGHT].pose.position))
+                                    .head<2>();
+  const double left_ahead = apart.dot(away.normalized());
+  if (std::abs(left_ahead) > 0.5 * model_.nominal_foot_separation) {
+    return left_ahead > 0.0 ? GAITD_RIGHT : GAITD_LEFT;
+  }
+  return robot.feet[GAITD_LEFT].normal_force < robot.feet[GAITD_RIGHT].normal_force ? GAITD_LEFT
+                                                                                     : GAITD_RIGHT;
+}
+
+GaitdFootstep GaitMachine::recovery_step(const GaitdRobotState& robot, int side) const {
+  // Where the ICP will be when the foot comes down, with the CMP as far out as the stance foot
+  // allows; no further than a step reaches, and never across the other leg.
+  const GaitdFoothold& stance = state_.footholds[other_side(side)];
+  ConvexPolygon sole;
+  add_foothold(stance, model_.feet[other_side(side)].toe_point, sole);
+  sole.make_hull();
+  const Eigen::Vector2d icp = sdk::view(robot.icp);
+  const Eigen::Vector2d cmp = sole.closest_point(icp);
+  const double time =
+      parameters_[Gait::kRecoverySwing] + parameters_[Gait::kRecoveryTransfer];
+  const Eigen::Vector2d coming = cmp + std::exp(state_.omega * time) * (icp - cmp);
+
+  GaitdFootstep step{};
+  step.side = side;
+  step.closing = 1;
+  step.pose = state_.footholds[side].pose;
+  const Eigen::Quaterniond heading =
+      sdk::from_yaw(sdk::yaw_of(sdk::quaternion(stance.pose.orientation)));
+  const Eigen::Vector3d middle = sdk::view(stance.pose.position);
+  Eigen::Vector3d local =
+      heading.conjugate() * Eigen::Vector3d(coming.x() - middle.x(), coming.y() - middle.y(), 0.0);
+  local.x() = std::clamp(local.x(), -parameters_[Gait::kMaxStepBackward],
+                         parameters_[Gait::kMaxStepForward]);
+  local.y() = side_sign(side) * std::clamp(side_sign(side) * local.y(),
+                                           model_.nominal_foot_separation,
+                                           parameters_[Gait::kMaxFootSeparation]);
+  sdk::view(step.pose.position).head<2>() = (middle + heading * local).head<2>();
+  step.pose.position[2] -= height_offset_;
+  sdk::store(heading, step.pose.orientation);
+  step.swing_duration = parameters_[Gait::kRecoverySwing];
+  step.transfer_duration = parameters_[Gait::kRecoveryTransfer];
+  return step;
+}
+
+bool GaitMachine::recover(double dt, const GaitdRobotState& robot) {
+  const double load =
+      robot.feet[GAITD_LEFT].normal_force + robot.feet[GAITD_RIGHT].normal_force;
+  const ConvexPolygon feet = support_polygon(model_, state_);
+  const Eigen::Vector2d icp = sdk::view(robot.icp);
+  const bool held = feet.inside_distance(icp) >= parameters_[Gait::kRecoveryMargin];
+  if (held || load < kLoaded * model_.total_mass * model_.gravity) {
+    time_unheld_ = 0.0;
+    return false;
+  }
+  time_unheld_ += dt;
+  if (!parameters_.flag(Gait::kRecovery) || time_unheld_ < kPatience) return false;
+  time_unheld_ = 0.0;
+  const Eigen::Vector2d away = icp - feet.closest_point(icp);
+  const int side = recovery_side(robot, away);
+  GaitdFootstep step = recovery_step(robot, side);
+  complete(step);
+  // Footsteps that waited for a resume begin from a place where the robot no longer is.
+  queue_.truncate(0);
+  queue_.push(step);
+  state_.paused = 0;
+  path_offset_.setZero();
+  recovering_ = true;
+  begin_transfer(GAITD_BOTH);
+  return true;
+}
+
+void GaitMachine::close_after_recovery() {
+  if (queue_.size() > 0) return;  // the operator has sent others
+  const int landed = state_.next_side;
+  GaitdPose stance = state_.footholds[landed].pose;
+  GaitdFootstep step = closing_step(stance, other_side(landed));
+  const GaitdPose& standing = state_.footholds[other_side(landed)].pose;
+  const Eigen::Vector3d gap = sdk::view(standing.position) - sdk::view(step.pose.position);
+  if (gap.head<2>().norm() < kClosedGap) return;
+  step.pose.position[2] = stance.position[2] - height_offset_;
+  complete(step);
+  queue_.push(step);
+}
+
+}  // namespace gaitd::walking
