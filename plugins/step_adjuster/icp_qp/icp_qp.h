@@ -54,7 +54,7 @@ class IcpQp {
       sdk::real_parameter("reach_outward", "com heights", 0.1, 1.5, 0.65,
                           "largest sideways distance"),
       sdk::real_parameter("shortest_swing", "s", 0.1, 2, 0.3, "that a swing is sped up to"),
-      sdk::real_parameter("foot_speed", "m/s", 0.5, 20, 4,
+      sdk::real_parameter("foot_speed", "m/s", 0.5, 20, 3,
                           "of the swing foot that a faster swing may ask for"),
       sdk::real_parameter("shortest_transfer", "s", 0.05, 2, 0.1, "likewise a transfer"),
       sdk::real_parameter("lead", "m", 0, 1, 0.05,
