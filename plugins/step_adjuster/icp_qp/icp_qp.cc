@@ -46,20 +46,18 @@ void IcpQp::get_state(GaitdStepAdjusterState& s) const {
 
 void IcpQp::set_state(const GaitdStepAdjusterState& s) {
   feedback_.set_state(s);
-  step_index_ = s.step_index;
-  shift_ = view(s.shift).head<2>();
-  start_shift_ = shift_;
-  time_shift_ = s.time_shift;
+  step_index_ = -1;  // what was shifted before is in the gait state
 }
 
 void IcpQp::begin_phase(const GaitdGaitState& gait) {
   phase_ = gait.phase;
   step_index_ = gait.step_index;
-  // A step before this one may have left the commanded way.
-  shift_ = start_shift_ = (view(gait.adjusted[0].pose.position) -
-                           view(gait.commanded[0].pose.position))
-                              .head<2>();
-  time_shift_ = 0.0;
+  const GaitdFootstep& step = gait.commanded[0];
+  // A step before this one may have left the commanded way, another variant may have begun it.
+  shift_ = start_shift_ =
+      (view(gait.adjusted[0].pose.position) - view(step.pose.position)).head<2>();
+  time_shift_ = gait.phase_duration - (phase_ == GAITD_PHASE_SWING ? step.swing_duration
+                                                                    : step.transfer_duration);
 }
 
 Capture IcpQp::capture(const GaitdStepAdjusterInput& in) const {
