@@ -48,7 +48,7 @@ struct DaemonConfig {
   double period = 0.001;  // s
   Profile profile = Profile::kSimulation;
   std::array<std::string, GAITD_LAYER_COUNT> variants = {
-      "kinematic_inertial", "heel_to_toe", "fixed_steps", "icp_criteria", "nullspace_qp"};
+      "kinematic_inertial", "heel_to_toe", "icp_qp", "icp_criteria", "nullspace_qp"};
   RealtimeConfig realtime;
   LogConfig log;
   std::string socket;  // "": the default place for the user

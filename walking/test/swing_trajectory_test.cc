@@ -285,14 +285,14 @@ TEST(SwingTrajectory, GoesOnFromTheTwistOfTheFoot) {
 TEST(SwingTrajectory, AnOverdueTouchdownIsSoughtFasterAndFaster) {
   const SwingTrajectory s = swing(pose(0, 0, 0), landing(pose(0.3, 0, 0)));
   double last = -parameters()[Swing::kTouchdownVelocity] + 1e-9;
-  for (double late = 0.005; late < 0.07; late += 0.005) {
+  for (double late = 0.005; late < 0.05; late += 0.005) {
     const double now = s.evaluate(kDuration + late).velocity.z();
     EXPECT_LT(now, last);
     last = now;
   }
   // Position, speed and the onset belong together: before, in and after the acceleration.
   const double dt = 1e-6;
-  for (double late : {0.02, 0.06, 0.2}) {
+  for (double late : {0.02, 0.05, 0.2}) {
     const double before = s.evaluate(kDuration + late - dt).position.z();
     const double after = s.evaluate(kDuration + late + dt).position.z();
     EXPECT_NEAR((after - before) / (2 * dt), s.evaluate(kDuration + late).velocity.z(), 1e-6);

@@ -14,6 +14,7 @@ constexpr double kUnit = 0.1;         // m of shift that costs one unit in the c
 constexpr double kMissUnit = 0.01;    // m of ICP missed at touchdown, likewise
 constexpr double kTimeStep = 0.01;    // s, between the candidates of timing
 constexpr double kPeakOverMean = 1.9;  // speed of a swing from rest to rest, fifth order
+constexpr int kUnknownPhase = -1;
 constexpr double kLeastGamma = 0.2;
 constexpr double kRestMargin = 0.04;  // m, of an ICP that comes to rest, to the edge of the feet
 
@@ -46,7 +47,10 @@ void IcpQp::get_state(GaitdStepAdjusterState& s) const {
 
 void IcpQp::set_state(const GaitdStepAdjusterState& s) {
   feedback_.set_state(s);
-  step_index_ = -1;  // what was shifted before is in the gait state
+  step_index_ = s.step_index;
+  shift_ = view(s.shift).head<2>();
+  time_shift_ = s.time_shift;
+  phase_ = kUnknownPhase;  // what was shifted so far is in the gait state
 }
 
 void IcpQp::begin_phase(const GaitdGaitState& gait) {
