@@ -98,6 +98,8 @@ Expectations read_expectations(MapReader map, const CommandedSteps& steps, doubl
   expect.foot_slip_max = map.number("foot_slip_max", {0.0, 10.0, "m"});
   expect.torque_saturation_max = map.number("torque_saturation_max", kFraction);
   expect.torque_chatter_max = map.number("torque_chatter_max", {0.0, 10.0, ""});
+  expect.torque_step_max = map.number("torque_step_max", {0.0, 10.0, ""});
+  expect.stance_knee_torque_max = map.number("stance_knee_torque_max", {0.0, 1e6, "N m"});
   expect.contact_lost = map.boolean("contact_lost");
   expect.pelvis_drift_max = read_pelvis_drift(&map);
   expect.refused_commands =

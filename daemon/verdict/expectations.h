@@ -56,6 +56,8 @@ struct Expectations {
   std::optional<double> foot_slip_max;          // m per support phase
   std::optional<double> torque_saturation_max;  // fraction of ticks with any leg joint at its limit
   std::optional<double> torque_chatter_max;     // RMS change of torque per tick / effort limit
+  std::optional<double> torque_step_max;        // change per tick / effort limit, while walking
+  std::optional<double> stance_knee_torque_max;  // N m, RMS over single support
   std::optional<bool> contact_lost;             // false: no foot may lose contact while standing
   std::optional<PelvisDrift> pelvis_drift_max;
   int refused_commands = 0;  // exactly; always checked

@@ -13,7 +13,7 @@ namespace {
 using Json = nlohmann::json;
 
 // All signals that any figure looks at, besides those that the checks of a scenario name.
-constexpr std::array<const char*, 14> kSignals = {
+constexpr std::array<const char*, 17> kSignals = {
     "time",           "safety/faults",
     "gait/*",         "icp/*",
     "pelvis/*",       "foot/*/z",
@@ -21,6 +21,8 @@ constexpr std::array<const char*, 14> kSignals = {
     "truth/pelvis/*", "truth/foot/*/slip",
     "truth/foot/*/z", "wbc/*",
     "tick/*",         "joint/*/torque_desired",
+    "joint/*/velocity", "foot/*/force/z",
+    "truth/foot/*/force/z",
 };
 
 Json read_json(const LogReader& log, const std::string& key, RobotDescription* robot) {

@@ -39,19 +39,68 @@ void compute_slip(const RunData& run, RunFigures* figures) {
                            : std::max(figures->slip[0], figures->slip[1]);
 }
 
-double stance_knee_mean(const RunData& run) {
-  Column knee;
+// Of the knee that carries the robot, over single support; bent is positive.
+double stance_knee(const RunData& run, const char* signal, Statistic statistic) {
+  Column values;
   for (int side = 0; side < 2; ++side) {
     const LegDescription& leg = run.robot().legs[static_cast<std::size_t>(side)];
-    const Column* position = run.find("joint/" + leg.knee + "/position");
-    if (leg.knee.empty() || position == nullptr) return kNotMeasured;
+    const Column* column = run.find("joint/" + leg.knee + "/" + signal);
+    if (leg.knee.empty() || column == nullptr) return kNotMeasured;
     for (std::size_t tick = 0; tick < run.ticks(); ++tick) {
       if (run.is_during(tick, During::kSwing) && run.support()[tick] == side) {
-        knee.push_back(leg.knee_bend_sign * (*position)[tick]);
+        values.push_back(leg.knee_bend_sign * (*column)[tick]);
       }
     }
   }
-  return compute_statistic(Statistic::kMean, knee);
+  return compute_statistic(statistic, values);
+}
+
+// Work of all joints, braking counted as well, over the weight and the way while walking.
+double cost_of_transport(const RunData& run) {
+  const Column* x = run.find_first({"truth/pelvis/x", "pelvis/x"});
+  const Column* y = run.find_first({"truth/pelvis/y", "pelvis/y"});
+  const Column* left = run.find_first({"truth/foot/left/force/z", "foot/left/force/z"});
+  const Column* right = run.find_first({"truth/foot/right/force/z", "foot/right/force/z"});
+  if (x == nullptr || y == nullptr || left == nullptr || right == nullptr) return kNotMeasured;
+  double work = 0.0, impulse = 0.0, seconds = 0.0, way_x = 0.0, way_y = 0.0;
+  bool any_joint = false;
+  for (const auto& [joint, limit] : run.robot().effort_limits) {
+    const Column* torque = run.find("joint/" + joint + "/torque_desired");
+    const Column* velocity = run.find("joint/" + joint + "/velocity");
+    if (torque == nullptr || velocity == nullptr) continue;
+    any_joint = true;
+    for (std::size_t tick = 1; tick < run.ticks(); ++tick) {
+      if (!run.is_during(tick, During::kWalk)) continue;
+      work += std::abs((*torque)[tick] * (*velocity)[tick]) * (run.time()[tick] - run.time()[tick - 1]);
+    }
+  }
+  for (std::size_t tick = 1; tick < run.ticks(); ++tick) {
+    if (!run.is_during(tick, During::kWalk)) continue;
+    const double dt = run.time()[tick] - run.time()[tick - 1];
+    impulse += ((*left)[tick] + (*right)[tick]) * dt;
+    seconds += dt;
+    way_x += (*x)[tick] - (*x)[tick - 1];
+    way_y += (*y)[tick] - (*y)[tick - 1];
+  }
+  const double way = std::hypot(way_x, way_y);
+  constexpr double kLeastWay = 0.1;  // m
+  if (!any_joint || !(impulse > 0.0) || way < kLeastWay) return kNotMeasured;
+  return work / (impulse / seconds * way);
+}
+
+WorstJoint torque_step(const RunData& run) {
+  WorstJoint worst;
+  for (const auto& [joint, limit] : run.robot().effort_limits) {
+    const Column* torque = run.find("joint/" + joint + "/torque_desired");
+    if (torque == nullptr || !(limit > 0.0)) continue;
+    for (std::size_t tick = 1; tick < run.ticks(); ++tick) {
+      if (!run.is_during(tick, During::kWalk)) continue;
+      const double step = std::abs((*torque)[tick] - (*torque)[tick - 1]) / limit;
+      if (std::isnan(step)) return {step, joint};
+      if (worst.joint.empty() || step > worst.value) worst = {step, joint};
+    }
+  }
+  return worst;
 }
 
 double saturation(const RunData& run) {
@@ -122,7 +171,10 @@ RunFigures compute_run_figures(const RunData& run) {
   }
   compute_icp_error(run, &figures);
   compute_slip(run, &figures);
-  figures.stance_knee_mean = stance_knee_mean(run);
+  figures.stance_knee_mean = stance_knee(run, "position", Statistic::kMean);
+  figures.stance_knee_torque = stance_knee(run, "torque_desired", Statistic::kRms);
+  figures.cost_of_transport = cost_of_transport(run);
+  figures.torque_step = torque_step(run);
   figures.saturation = saturation(run);
   figures.chatter = chatter(run);
   figures.contact_lost_ticks = contact_lost_ticks(run);

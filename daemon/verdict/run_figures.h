@@ -32,6 +32,9 @@ struct RunFigures {
   double foot_slip = kNotMeasured;                            // the worse of the two
   double stance_knee_mean = kNotMeasured;                     // rad, bent is positive
   double saturation = kNotMeasured;          // fraction of ticks with any leg joint at its limit
+  WorstJoint torque_step;                    // largest change per tick / effort limit, walking
+  double stance_knee_torque = kNotMeasured;  // N m, RMS over single support
+  double cost_of_transport = kNotMeasured;   // sum of |power| of the joints / (weight * way)
   WorstJoint chatter;                        // RMS change of the torque per tick / effort limit
   double contact_lost_ticks = kNotMeasured;  // standing, since both feet first stood
   std::array<double, 3> final_pelvis = {kNotMeasured, kNotMeasured, kNotMeasured};  // x, y, yaw

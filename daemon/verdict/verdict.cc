@@ -136,6 +136,14 @@ void Judge::judge_torques(const Expectations& expected) {
     at_most("torque_chatter_max", figures_.chatter.value, *expected.torque_chatter_max, "",
             figures_.chatter.joint.empty() ? "" : "worst: " + figures_.chatter.joint);
   }
+  if (expected.torque_step_max) {
+    at_most("torque_step_max", figures_.torque_step.value, *expected.torque_step_max, "",
+            figures_.torque_step.joint.empty() ? "" : "worst: " + figures_.torque_step.joint);
+  }
+  if (expected.stance_knee_torque_max) {
+    at_most("stance_knee_torque_max", figures_.stance_knee_torque,
+            *expected.stance_knee_torque_max, "N m");
+  }
 }
 
 // Of all signals that match, the one that is worst against the bounds is reported.

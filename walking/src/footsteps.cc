@@ -50,8 +50,8 @@ GaitdPose middle_pose(const GaitdPose& a, const GaitdPose& b) {
   return m;
 }
 
-Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, int number,
-                       const GaitParameters& p) {
+Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
+                       int number, const GaitParameters& p) {
   const char* side = step.side == GAITD_LEFT ? "left" : "right";
   const Eigen::Quaterniond q = sdk::quaternion(step.pose.orientation);
   if (!sdk::view(step.pose.position).allFinite() || !q.coeffs().allFinite() ||
@@ -98,6 +98,13 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, int n
         "footstep %d (%s): %.3f m ahead of the other foot, %.3f to %.3f expected "
         "(gait.max_step_backward, gait.max_step_forward); take more steps",
         number, side, d.x(), -p[Gait::kMaxStepBackward], p[Gait::kMaxStepForward]);
+  }
+  const double travel = (sdk::view(step.pose.position) - sdk::view(from.position)).head<2>().norm();
+  if (travel > p[Gait::kMaxFootTravel]) {
+    return refuse(
+        "footstep %d (%s): %.3f m from where this foot stands before, at most %.3f expected "
+        "(gait.max_foot_travel); take shorter steps",
+        number, side, travel, p[Gait::kMaxFootTravel]);
   }
   if (std::abs(d.z()) > p[Gait::kMaxStepHeight]) {
     return refuse(

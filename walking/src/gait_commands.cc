@@ -67,11 +67,15 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
   }
   GaitdPose middle = middle_pose(feet[GAITD_LEFT], feet[GAITD_RIGHT]);
   FootstepGenerator check(walk, middle, first, width, parameters_);
-  GaitdPose stance = feet[other_side(first)];
+  GaitdPose at[2] = {feet[GAITD_LEFT], feet[GAITD_RIGHT]};
   for (int i = 0; i < check.count(); ++i) {
     const GaitdFootstep step = check.next();
-    if (Refusal r = check_footstep(step, stance, i + 1, parameters_); r.refused()) return r;
-    stance = step.pose;
+    if (Refusal r = check_footstep(step, at[other_side(step.side)], at[step.side], i + 1,
+                                   parameters_);
+        r.refused()) {
+      return r;
+    }
+    at[step.side] = step.pose;
   }
   FootstepGenerator generator(walk, middle, first, width, parameters_);
   for (int i = 0; i < generator.count(); ++i) {
@@ -110,7 +114,8 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
                     i == 0 ? " with the footsteps already ahead" : "",
                     step.side == GAITD_LEFT ? "left" : "right");
     }
-    if (Refusal r = check_footstep(step, feet[other_side(step.side)], i + 1, parameters_);
+    if (Refusal r = check_footstep(step, feet[other_side(step.side)], feet[step.side], i + 1,
+                                   parameters_);
         r.refused()) {
       return r;
     }

@@ -58,9 +58,9 @@ class FootstepGenerator {
 // Pose half-way between two soles: mean position and height, mean yaw, level.
 GaitdPose middle_pose(const GaitdPose& a, const GaitdPose& b);
 
-// Whether `step` can be taken from `stance`, the pose of the other foot. `number` names the
-// footstep in the message, from 1.
-Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, int number,
-                       const GaitParameters& parameters);
+// Whether `step` can be taken from `stance`, the pose of the other foot, by the foot that stands at
+// `from` before. `number` names the footstep in the message, from 1.
+Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
+                       int number, const GaitParameters& parameters);
 
 }  // namespace gaitd::walking

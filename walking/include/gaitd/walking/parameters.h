@@ -25,6 +25,7 @@ enum class Gait {
   kMaxFootSeparation,
   kMaxStepForward,
   kMaxStepBackward,
+  kMaxFootTravel,
   kMaxStepHeight,
   kMaxStepTurn,
   kMaxStepTilt,
@@ -35,7 +36,7 @@ enum class Gait {
   kRecoveryMargin,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 23> kGaitParameters = {
+inline constexpr std::array<GaitdParameter, 24> kGaitParameters = {
     real_parameter("omega", "1/s", 0, 10, 0,
                    "natural frequency of the ICP; 0: sqrt(g / nominal CoM height)"),
     real_parameter("swing_duration", "s", 0.2, 10, 0.6, "of footsteps that give none"),
@@ -61,6 +62,8 @@ inline constexpr std::array<GaitdParameter, 23> kGaitParameters = {
                    "largest sideways distance of one foothold from the other foot"),
     real_parameter("max_step_forward", "m", 0.05, 3, 1.0, "a foothold ahead of the other foot"),
     real_parameter("max_step_backward", "m", 0.05, 3, 0.6, "a foothold behind the other foot"),
+    real_parameter("max_foot_travel", "m", 0.05, 6, 1.85,
+                   "a foothold from the one of the same foot before"),
     real_parameter("max_step_height", "m", 0, 2, 0.45, "from one foothold to the next"),
     real_parameter("max_step_turn", "rad", 0, 3, 0.8, "yaw from one foothold to the next"),
     real_parameter("max_step_tilt", "rad", 0, 1, 0.4, "roll or pitch of a foothold"),
