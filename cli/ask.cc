@@ -56,10 +56,10 @@ std::unique_ptr<RpcClient> connect(const Context& context, const std::string& co
 }
 
 int ask(const Context& context, const std::string& command, const std::string& method,
-        const json& params) {
+        const json& params, std::chrono::milliseconds timeout) {
   const auto client = connect(context, command);
   if (!client) return kNoDaemon;
-  daemon::RpcResult result = client->call(method, params);
+  daemon::RpcResult result = client->call(method, params, timeout);
   if (auto* error = std::get_if<daemon::RpcError>(&result)) {
     // Two programs of different versions may not know the same methods and params.
     if (error->code == daemon::rpc_code::kMethodNotFound ||

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -18,7 +19,8 @@ std::unique_ptr<RpcClient> connect(const Context& context, const std::string& co
 /// Sends one request and prints its answer, or why not; returns the exit code. `command`: as one
 /// types it, "sim push". After `arm` and `sim.reset` it waits until the robot takes commands.
 int ask(const Context& context, const std::string& command, const std::string& method,
-        const nlohmann::json& params);
+        const nlohmann::json& params,
+        std::chrono::milliseconds timeout = std::chrono::seconds(10));
 
 /// Adds a command without arguments of its own that calls `method`. Its name in messages is that of
 /// its parents and its own.

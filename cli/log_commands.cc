@@ -12,6 +12,7 @@
 
 #include "cli/failure.h"
 #include "cli/print.h"
+#include "cli/replay_command.h"
 #include "daemon/telemetry/export_csv.h"
 #include "daemon/telemetry/log_info.h"
 #include "daemon/telemetry/log_reader.h"
@@ -104,6 +105,8 @@ void add_log_commands(CLI::App* app, Context* context) {
   info->callback([context, file, list] {
     context->action = [context, file, list] { return show_info(*context, *file, *list); };
   });
+
+  add_replay_command(log, context);
 
   auto* csv = log->add_subcommand("export", "Signals as CSV, one row per tick");
   auto options = std::make_shared<ExportOptions>();

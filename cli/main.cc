@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "cli/campaign_command.h"
+#include "cli/compare_command.h"
 #include "cli/completion_command.h"
 #include "cli/context.h"
 #include "cli/daemon_commands.h"
@@ -48,6 +49,7 @@ int run(int argc, char** argv) {
   add_watch_command(&app, &context);
   add_run_command(&app, &context);
   add_campaign_command(&app, &context);
+  add_compare_command(&app, &context);
   add_log_commands(&app, &context);
   add_report_command(&app, &context);
   add_completion_command(&app, &context);

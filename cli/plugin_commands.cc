@@ -2,18 +2,23 @@
 #include "cli/plugin_commands.h"
 
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
+#include "cli/ask.h"
 #include "cli/failure.h"
 #include "cli/print.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/robot.h"
 #include "daemon/conformance/check_plugin.h"
 #include "daemon/host/layers.h"
+#include "gaitd/sdk/layer_names.h"
 
 namespace gaitd::cli {
 namespace {
@@ -93,9 +98,55 @@ int check(const Context& context, const Arguments& arguments) {
   return report.pass() ? kDone : kFailed;
 }
 
+// Longer than any swap: loading, shadow, probation.
+constexpr std::chrono::minutes kSwapTimeout(2);
+
+CLI::Option* add_layer(CLI::App* command, std::string* layer) {
+  const std::vector<std::string> layers(sdk::kLayerNames.begin(), sdk::kLayerNames.end());
+  return command->add_option("LAYER", *layer, "Which layer")
+      ->required()
+      ->check(CLI::IsMember(layers));
+}
+
+void add_swap(CLI::App* plugin, Context* context) {
+  auto* command = plugin->add_subcommand(
+      "swap", "Exchange a layer for another variant, while the robot walks too");
+  command->footer(
+      "The new layer is loaded, runs beside the one in use, gets its state and takes over between\n"
+      "two ticks. The one before stays beside it for a while and takes over again if the new one\n"
+      "fails. The command returns when that is over.");
+  auto layer = std::make_shared<std::string>();
+  auto to = std::make_shared<std::string>();
+  add_layer(command, layer.get());
+  command->add_option("VARIANT", *to, "An installed variant, or the file of a library (with a /)")
+      ->required();
+  command->callback([context, layer, to] {
+    context->action = [context, layer, to] {
+      std::string what = *to;
+      // The daemon may have another working directory.
+      if (what.find('/') != std::string::npos) what = std::filesystem::absolute(what);
+      return ask(*context, "plugin swap", "plugin.swap", {{"layer", *layer}, {"to", what}},
+                 kSwapTimeout);
+    };
+  });
+}
+
+void add_rollback(CLI::App* plugin, Context* context) {
+  auto* command = plugin->add_subcommand("rollback", "Back to the layer before the last swap");
+  auto layer = std::make_shared<std::string>();
+  add_layer(command, layer.get());
+  command->callback([context, layer] {
+    context->action = [context, layer] {
+      return ask(*context, "plugin rollback", "plugin.rollback", {{"layer", *layer}}, kSwapTimeout);
+    };
+  });
+}
+
 }  // namespace
 
 void add_plugin_commands(CLI::App* app, Context* context) {
+  add_swap(app->get_subcommand("plugin"), context);
+  add_rollback(app->get_subcommand("plugin"), context);
   auto* command = app->get_subcommand("plugin")->add_subcommand(
       "check", "Try a plugin library, for its author: every demand that it fulfils or fails");
   command->footer(

@@ -37,6 +37,8 @@ resume
 stop
 abort
 plugin list
+plugin swap toe_off never
+plugin rollback toe_off
 param list
 param get gait.swing_duration
 param set gait.swing_duration 0.7
@@ -64,6 +66,9 @@ mode run
 steps
 watch --interval 0
 plugin
+plugin swap toe_off
+plugin swap no_such_layer never
+plugin rollback
 param
 param get
 param set gait.swing_duration
@@ -73,6 +78,9 @@ sim push --link utorso --force 1,0,0 --duration 0
 log
 log info
 log export
+log replay
+compare
+compare stand one.yaml
 log export --json $scratch/bad.mcap
 run
 run a b --log one.mcap
@@ -153,6 +161,9 @@ wait_for state standing 20
 expect_all 1 <<<"walk --steps 1 --length 1.9
 walk --steps 100000
 sim push --link no_such_link --force 1,0,0 --duration 0.1
+plugin swap toe_off no_such_variant
+plugin swap toe_off $scratch/none.so
+plugin rollback step_adjuster
 param get no.such.parameter
 param set gait.swing_duration 1000"
 for command in stop abort resume reset; do

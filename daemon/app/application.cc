@@ -15,9 +15,12 @@
 #include "daemon/app/metadata.h"
 #include "daemon/app/realtime.h"
 #include "daemon/config/command_parse.h"
+#include "daemon/control/command_json.h"
+#include "daemon/control/impedance.h"
 #include "daemon/control/parameter_methods.h"
 #include "daemon/host/layers.h"
 #include "daemon/host/plugin_json.h"
+#include "daemon/telemetry/input.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -174,19 +177,13 @@ bool Application::load_layers(const LayerRequests& requests) {
     if (std::find(known.begin(), known.end(), layer_variants_[layer]) == known.end()) {
       known.push_back(layer_variants_[layer]);  // given as a file
     }
+    known.push_back("other");  // that may come by a swap
     const auto at = std::find(known.begin(), known.end(), layer_variants_[layer]);
-    pipeline_->data().variants[layer] = static_cast<int>(at - known.begin());
+    const int variant = static_cast<int>(at - known.begin());
+    pipeline_->data().variants[layer] = variant;
+    pipeline_->layers().in_use(layer).variant = variant;
   }
-  using Impedance = walking::ObjectiveBuilder::Impedance;
-  const ImpedanceProfile& profile = robot_->impedance;
-  auto impedance = [&](Impedance state, const JointImpedance& values) {
-    pipeline_->objectives().set_impedance(state, values.stiffness, values.damping);
-  };
-  if (profile.given) {
-    impedance(Impedance::kSupport, profile.support);
-    impedance(Impedance::kSwing, profile.swing);
-    impedance(Impedance::kHeelStrike, profile.heel_strike);
-  }
+  set_impedance(robot_->impedance, &pipeline_->objectives());
   if (scenario_) {
     Command mode;
     mode.type = CommandType::kMode;
@@ -249,12 +246,24 @@ LogMetadata Application::metadata() const {
   m["build"] = GAITD_BUILD;
   nlohmann::json plugins;
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
-    const PluginLibrary& library = pipeline_->layers().layer(layer).library();
+    const PluginLibrary& library = pipeline_->layers().in_use(layer).layer->library();
     plugins[std::string(layer_name(layer))] = {{"variant", library.descriptor().id},
                                                {"version", library.descriptor().version},
+                                               {"file", library.path().string()},
                                                {"hash", library.hash()}};
   }
   m["plugins"] = plugins.dump();
+  m["truth"] = truth_ ? "true" : "false";
+  const GaitdStart start = scenario_ ? scenario_->start : GaitdStart{};
+  const auto& at = start.position;
+  add_replay_metadata(*robot_,
+                      {{"start", {at[0], at[1], at[2], start.yaw}},
+                       {"mode", scenario_ ? scenario_->mode : -1},
+                       {"arm", truth_},
+                       {"simulation", truth_},
+                       {"period", config_.period},
+                       {"hardware", config_.profile == Profile::kHardware}},
+                      &m);
   if (scenario_) {
     m["scenario"] = scenario_->name;
     m["seed"] = std::to_string(scenario_->seed);
@@ -266,6 +275,9 @@ LogMetadata Application::metadata() const {
 bool Application::start_telemetry() {
   TelemetryOptions options;
   options.period = config_.period;
+  options.input_text = [](const Input& input) {
+    return input_text(input.command, input.parameter_owner, input.parameter_place);
+  };
   telemetry_ = std::make_unique<Telemetry>(
       make_signal_table(robot_->model, known_variants_, truth_), options);
   if (config_.log.enabled) {
@@ -298,7 +310,7 @@ nlohmann::json Application::status() const {
   s["scenario"] = scenario_ ? nlohmann::json(scenario_->name) : nlohmann::json(nullptr);
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     s["layers"][layer]["layer"] = layer_name(layer);
-    s["layers"][layer]["variant"] = layer_variants_[layer];
+    s["layers"][layer]["variant"] = swaps_->variant(layer);
   }
   const Telemetry::LogStatus log = telemetry_->log_status();
   s["log"] = {{"file", log.file},
@@ -309,6 +321,24 @@ nlohmann::json Application::status() const {
               {"bytes", log.bytes},
               {"dropouts", telemetry_->dropouts()}};
   return s;
+}
+
+void Application::prepare_swaps() {
+  SwapService::Parts parts{.model = &robot_->model,
+                           .plugin_folders = paths_.plugin_folders(),
+                           .settings = &settings_,
+                           .parameters = &parameters_,
+                           .telemetry = telemetry_.get(),
+                           .bridge = bridge_.get(),
+                           .log = log_plugin,
+                           .words = known_variants_,
+                           .in_use = {}};
+  std::copy(layer_variants_.begin(), layer_variants_.end(), parts.in_use.begin());
+  swaps_ = std::make_unique<SwapService>(std::move(parts));
+  SwapRules& rules = pipeline_->layers().rules();
+  rules.simulation = truth_;
+  rules.wall_time_acts = config_.clock == GAITD_CLOCK_REALTIME;
+  swaps_->start();
 }
 
 bool Application::start_server() {
@@ -325,6 +355,8 @@ bool Application::start_server() {
                         return RpcError{rpc_code::kInvalidParams, error};
                       });
   add_parameter_methods(&methods, bridge_.get(), &parameters_);
+  prepare_swaps();
+  swaps_->add_methods(&methods);
   methods.add_snapshot("status", [this] { return status(); });
   methods.add_snapshot("version", [] {
     return nlohmann::json{
@@ -335,7 +367,7 @@ bool Application::start_server() {
   methods.add_snapshot("plugin.list", [this] {
     std::map<std::string, std::string> active;
     for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
-      active[std::string(layer_name(layer))] = layer_variants_[layer];
+      active[std::string(layer_name(layer))] = swaps_->variant(layer);
     }
     return plugin_list_json(PluginDirectory(paths_.plugin_folders()).list(), active);
   });
@@ -408,7 +440,8 @@ int Application::run() {
   options.safe_stop_on_overrun = config_.realtime.overrun == OverrunPolicy::kSafeStop;
   options.overrun_run = config_.realtime.overrun_run;
   loop_ = std::make_unique<ControlLoop>(options, robot_->model, pipeline_.get(), backend,
-                                        telemetry_.get(), bridge_.get(), player_.get());
+                                        telemetry_.get(), bridge_.get(), player_.get(),
+                                        &swaps_->port());
   running_loop_ = loop_.get();
   if (stop_requested_) loop_->stop();
   LoopReport report;
@@ -430,6 +463,7 @@ int Application::run() {
     report = loop_->run();
   });
   control.join();
+  swaps_->stop();
   running = false;
   watch.join();
   backend.vtable->stop(backend.self);

@@ -16,6 +16,7 @@
 #include "daemon/host/plugin_directory.h"
 #include "daemon/parameters/live_parameters.h"
 #include "daemon/server/command_server.h"
+#include "daemon/swap/swap_service.h"
 
 namespace gaitd::daemon {
 
@@ -55,6 +56,7 @@ class Application {
   bool load_layers(const LayerRequests& requests);
   bool load_backend();
   bool start_telemetry();
+  void prepare_swaps();
   bool start_server();
   std::string default_log_file() const;
   void watch_telemetry(const std::atomic<bool>& running) const;
@@ -74,12 +76,13 @@ class Application {
   std::unique_ptr<ScenarioPlayer> player_;
   LayerChain::Layers layers_;
   std::vector<std::string> layer_variants_;  // in use
-  LayerVariants known_variants_;             // installed
+  LayerVariants known_variants_;             // installed, and "other"
   std::unique_ptr<LoadedBackend> backend_;
   bool truth_ = false;
   std::string log_file_;
   std::unique_ptr<Telemetry> telemetry_;
   std::unique_ptr<CommandBridge> bridge_;
+  std::unique_ptr<SwapService> swaps_;
   std::unique_ptr<Pipeline> pipeline_;
   std::unique_ptr<ControlLoop> loop_;
   // The server answers, and signals come, before there is a loop to stop.

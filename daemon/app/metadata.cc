@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +35,22 @@ void add_robot_metadata(const GaitdModel& model, LogMetadata* metadata) {
   (*metadata)["joints"] = joints.dump();
   (*metadata)["legs"] = legs.dump();
   (*metadata)["fault_bits"] = faults.dump();
+}
+
+namespace {
+
+std::string content(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+void add_replay_metadata(const Robot& robot, json start, LogMetadata* metadata) {
+  start["robot_file"] = robot.file;
+  (*metadata)["replay"] = start.dump();
+  (*metadata)["robot_yaml"] = content(robot.file);
+  (*metadata)["robot_urdf"] = content(robot.urdf);
 }
 
 namespace {

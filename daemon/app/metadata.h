@@ -4,11 +4,15 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "daemon/config/robot.h"
 #include "daemon/telemetry/log_writer.h"
 #include "daemon/telemetry/telemetry.h"
 #include "gaitd/abi/types.h"
 
 namespace gaitd::daemon {
+
+// The files of the robot and how its control began: what replay needs besides the settings.
+void add_replay_metadata(const Robot& robot, nlohmann::json start, LogMetadata* metadata);
 
 // What the verdict needs to know of the robot (daemon/verdict/verdict.h).
 void add_robot_metadata(const GaitdModel& model, LogMetadata* metadata);

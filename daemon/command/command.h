@@ -15,17 +15,18 @@ enum class CommandType : std::uint8_t {
   kArm,
   kDisarm,
   kEstop,
-  kReset,      // clears a latched fault
+  kReset,  // clears a latched fault
   kMode,
   kWalk,
   kFootsteps,
   kPause,
   kResume,
-  kStop,       // finish the current step, close the feet, stand
-  kAbort,      // drop the footsteps ahead, put the foot down, stand
+  kStop,   // finish the current step, close the feet, stand
+  kAbort,  // drop the footsteps ahead, put the foot down, stand
   kSetParameter,
-  kPush,       // simulation only
-  kSimReset,   // simulation only: back to the start pose
+  kPush,      // simulation only
+  kSimReset,  // simulation only: back to the start pose
+  kSwap,      // of a layer, by a scenario
 };
 
 struct Command {
@@ -41,6 +42,8 @@ struct Command {
   GaitdDisturbance push;
   int parameter_index = -1;  // into the rows of LiveParameters
   double parameter_value = 0.0;
+  int swap_layer = -1;              // GAITD_LAYER_*
+  std::array<char, 256> swap_to{};  // a variant or the path of a library
 };
 
 // The answer, made by the control thread at the tick that took the command.

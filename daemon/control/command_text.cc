@@ -5,12 +5,14 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "gaitd/sdk/layer_names.h"
+
 namespace gaitd::daemon {
 namespace {
 
-constexpr const char* kNames[] = {"arm",   "disarm",    "estop",    "reset",    "mode",
-                                  "walk",  "footsteps", "pause",    "resume",   "stop",
-                                  "abort", "param.set", "sim.push", "sim.reset"};
+constexpr const char* kNames[] = {"arm",   "disarm",    "estop",    "reset",     "mode",
+                                  "walk",  "footsteps", "pause",    "resume",    "stop",
+                                  "abort", "param.set", "sim.push", "sim.reset", "plugin.swap"};
 
 class Writer {
  public:
@@ -58,6 +60,10 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
   if (c.type == CommandType::kPush) {
     w.add(R"(,"body":%d,"force":[%.17g,%.17g,%.17g],"duration":%.17g)", c.push.body,
           c.push.force[0], c.push.force[1], c.push.force[2], c.push.duration);
+  }
+  if (c.type == CommandType::kSwap) {
+    w.add(R"(,"layer":"%s","to":)", sdk::kLayerNames[c.swap_layer].data());
+    w.add_quoted(c.swap_to.data());
   }
   if (!reply.accepted) {
     w.add(R"(,"reason":)");

@@ -2,14 +2,16 @@
 #include "daemon/control/control_loop.h"
 
 #include <time.h>
-#include <xmmintrin.h>
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "daemon/control/command_text.h"
+#include "daemon/control/denormals.h"
 #include "daemon/control/signals.h"
 #include "daemon/control/stopwatch.h"
+#include "daemon/control/tick_guard.h"
 #include "gaitd/sdk/layer_names.h"
 
 namespace gaitd::daemon {
@@ -21,14 +23,11 @@ std::int64_t now_ns() {
   return std::int64_t{1000000000} * t.tv_sec + t.tv_nsec;
 }
 
-// Denormal numbers cost a hundred times a normal one: none on this thread.
-void flush_denormals() { _mm_setcsr(_mm_getcsr() | 0x8040); }
-
 }  // namespace
 
 ControlLoop::ControlLoop(const LoopOptions& options, const GaitdModel& model, Pipeline* pipeline,
                          const GaitdBackendInstance& backend, Telemetry* telemetry,
-                         CommandBridge* bridge, ScenarioPlayer* scenario)
+                         CommandBridge* bridge, ScenarioPlayer* scenario, SwapPort* swaps)
     : options_(options),
       model_(model),
       pipeline_(pipeline),
@@ -36,10 +35,11 @@ ControlLoop::ControlLoop(const LoopOptions& options, const GaitdModel& model, Pi
       telemetry_(telemetry),
       bridge_(bridge),
       scenario_(scenario),
+      swaps_(swaps),
       command_(std::make_unique<Command>()) {}
 
 LoopReport ControlLoop::run() {
-  flush_denormals();
+  const FlushDenormals flush;
   const Stopwatch watch;
   next_wake_ns_ = now_ns();
   if (options_.arm) pipeline_->safety().arm();
@@ -47,10 +47,12 @@ LoopReport ControlLoop::run() {
   while (!stop_.load(std::memory_order_relaxed)) {
     if (lockstep) telemetry_->wait_for_space();
     take_commands();
+    take_swaps();
     const Outcome outcome = tick();
     if (outcome == Outcome::kTicked) {
       ++tick_;
       ++report_.ticks;
+      if (std::exchange(write_failed_, false)) raise(kFaultBackend, "backend");
       if (scenario_ != nullptr) {
         report_.end = scenario_->update(options_.period, pipeline_->data());
         if (report_.end != ScenarioPlayer::End::kRunning) break;
@@ -71,25 +73,25 @@ LoopReport ControlLoop::run() {
 }
 
 ControlLoop::Outcome ControlLoop::tick() {
+  const TickGuard guard;
   TickData& data = pipeline_->data();
   const GaitdStatus read = backend_.vtable->read(backend_.self, &data.sensors);
   if (read == GAITD_NOT_READY) return Outcome::kNotReady;
   if (read != GAITD_OK) {
     if ((pipeline_->safety().faults() & kFaultBackend) == 0) {
-      pipeline_->safety().raise(kFaultBackend);
+      raise(kFaultBackend, "backend");
       telemetry_->push_event(EventKind::kFault, tick_, tick_ * options_.period,
                              R"({"fault":"backend","what":"read failed"})");
     }
     return Outcome::kBackendFailed;
   }
   pipeline_->run(tick_);
-  if (backend_.vtable->write(backend_.self, &data.commands) != GAITD_OK) {
-    pipeline_->safety().raise(kFaultBackend);
-  }
+  const bool written = backend_.vtable->write(backend_.self, &data.commands) == GAITD_OK;
   data.has_truth = backend_.vtable->truth != nullptr &&
                    backend_.vtable->truth(backend_.self, &data.truth) == GAITD_OK;
   record();
   report_changes();
+  if (!written) write_failed_ = true;
   return Outcome::kTicked;
 }
 
@@ -108,19 +110,36 @@ void ControlLoop::take_commands() {
 void ControlLoop::execute(const Command& command, bool from_client) {
   const bool simulation =
       command.type == CommandType::kPush || command.type == CommandType::kSimReset;
-  CommandReply reply = simulation ? simulate(command) : pipeline_->execute(command);
+  CommandReply reply = simulation                           ? simulate(command)
+                       : command.type == CommandType::kSwap ? request_swap(command)
+                                                            : pipeline_->execute(command);
   reply.tick = tick_;
   const double time = static_cast<double>(tick_) * options_.period;
   char text[kMaxEventText];
+  int owner = -1;
+  int place = -1;
   if (command.type == CommandType::kSetParameter) {
-    const std::string& key = pipeline_->parameters().row(command.parameter_index).key;
+    const LiveParameters::Row& row = pipeline_->parameters().row(command.parameter_index);
+    owner = row.owner;
+    place = row.index;
+    const std::string& key = row.key;
     telemetry_->push_event(reply.accepted ? EventKind::kParameter : EventKind::kCommand, tick_,
                            time, parameter_text(key.c_str(), command, reply, text, sizeof(text)));
   } else {
     telemetry_->push_event(EventKind::kCommand, tick_, time,
                            command_text(command, reply, text, sizeof(text)));
   }
+  telemetry_->push_input(tick_, time, command, owner, place);
   if (from_client) bridge_->push(reply);
+}
+
+// A fault that does not come from the data of a tick: an input of the next one.
+void ControlLoop::raise(Fault fault, const char* name) {
+  pipeline_->safety().raise(fault);
+  char text[64];
+  const int length = std::snprintf(text, sizeof(text), R"({"fault":"%s"})", name);
+  telemetry_->push_event(EventKind::kDecision, tick_, static_cast<double>(tick_) * options_.period,
+                         std::string_view(text, length));
 }
 
 CommandReply ControlLoop::simulate(const Command& command) {
@@ -147,6 +166,41 @@ CommandReply ControlLoop::simulate(const Command& command) {
     reply.accepted = true;
   }
   return reply;
+}
+
+CommandReply ControlLoop::request_swap(const Command& command) {
+  CommandReply reply;
+  reply.request = command.request;
+  reply.accepted = swaps_ != nullptr &&
+                   swaps_->request({command.swap_layer, tick_,
+                                    static_cast<double>(tick_) * options_.period, command.swap_to});
+  if (!reply.accepted) {
+    std::snprintf(reply.message.data(), reply.message.size(), "too many swaps at once");
+  } else if (options_.clock == GAITD_CLOCK_LOCKSTEP) {
+    ++swaps_awaited_;
+  }
+  return reply;
+}
+
+// Layers that were loaded begin their swap at this tick; what became of others is told. In lockstep
+// simulated time stands still while a layer of the scenario is loaded, so that its tick is known.
+void ControlLoop::take_swaps() {
+  if (swaps_ == nullptr) return;
+  SwapOrder order;
+  do {
+    while (swaps_->next_order(order)) {
+      if (order.from_scenario && swaps_awaited_ > 0) --swaps_awaited_;
+      if (order.layer >= 0) pipeline_->begin_swap(order);
+    }
+    if (swaps_awaited_ == 0) break;
+    const timespec pause{0, 200'000};
+    nanosleep(&pause, nullptr);
+  } while (!stop_.load(std::memory_order_relaxed));
+  SwapReport report;
+  while (pipeline_->take_swap_report(&report)) {
+    report.tick = tick_;
+    swaps_->report(report);
+  }
 }
 
 void ControlLoop::record() {
@@ -200,7 +254,7 @@ void ControlLoop::wait_for_next_period() {
   }
   time_overrun_ = overrun ? time_overrun_ + options_.period : 0.0;
   if (options_.safe_stop_on_overrun && time_overrun_ > options_.overrun_run) {
-    pipeline_->safety().raise(kFaultOverrun);
+    raise(kFaultOverrun, "overrun");
   }
   const timespec wake{static_cast<time_t>(next_wake_ns_ / 1000000000),
                       static_cast<long>(next_wake_ns_ % 1000000000)};

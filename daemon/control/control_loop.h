@@ -7,6 +7,7 @@
 
 #include "daemon/control/pipeline.h"
 #include "daemon/control/scenario_player.h"
+#include "daemon/control/swap_port.h"
 #include "daemon/server/command_bridge.h"
 #include "daemon/telemetry/telemetry.h"
 
@@ -36,7 +37,7 @@ class ControlLoop {
  public:
   ControlLoop(const LoopOptions& options, const GaitdModel& model, Pipeline* pipeline,
               const GaitdBackendInstance& backend, Telemetry* telemetry, CommandBridge* bridge,
-              ScenarioPlayer* scenario);
+              ScenarioPlayer* scenario, SwapPort* swaps);
 
   // Runs until stop() or the end of the scenario. Call on a thread of its own.
   LoopReport run();
@@ -46,8 +47,11 @@ class ControlLoop {
   enum class Outcome { kTicked, kNotReady, kBackendFailed };
   Outcome tick();
   void take_commands();
+  void take_swaps();
   void execute(const Command& command, bool from_client);
   CommandReply simulate(const Command& command);
+  CommandReply request_swap(const Command& command);
+  void raise(Fault fault, const char* name);
   void record();
   void report_changes();
   void wait_for_next_period();
@@ -59,13 +63,16 @@ class ControlLoop {
   Telemetry* telemetry_;
   CommandBridge* bridge_;
   ScenarioPlayer* scenario_;
+  SwapPort* swaps_;
 
   std::atomic<bool> stop_{false};
   std::unique_ptr<Command> command_;  // scratch: too large for the stack
   LoopReport report_;
   std::int64_t tick_ = 0;
+  int swaps_awaited_ = 0;  // lockstep: of the scenario, that are being loaded
   std::int64_t next_wake_ns_ = 0;
   double time_overrun_ = 0.0;
+  bool write_failed_ = false;
   SafetyState last_state_ = SafetyState::kDisarmed;
   std::uint32_t last_faults_ = 0;
 };

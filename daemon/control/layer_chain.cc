@@ -1,51 +1,104 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/control/layer_chain.h"
 
-#include "daemon/control/stopwatch.h"
-#include "daemon/host/check_output.h"
+#include <algorithm>
 
 namespace gaitd::daemon {
 namespace {
 
-template <class Output>
-void take_back(Output& output, const Output& last_good) {
-  output = last_good;
-}
-// The log keeps why there is no solution.
-void take_back(GaitdWholeBodyControllerOutput& output,
-               const GaitdWholeBodyControllerOutput& last_good) {
-  const int status = output.info.status;
-  output = last_good;
-  const bool known = status > GAITD_WBC_SOLVED && status <= GAITD_WBC_NON_FINITE;
-  output.info.status = known ? status : int{GAITD_WBC_NON_FINITE};
-}
+constexpr double kErrorTime = 0.5;  // s, of the mean ICP error that a newcomer is compared with
 
 }  // namespace
 
-void LayerChain::reset() {
-  for (auto& layer : layers_) layer->reset();
-  robot_ = {};
-  plan_ = {};
-  adjustment_ = {};
-  toe_off_ = {};
-  wbc_ = {};
-  failure_ = {};
+LayerChain::LayerChain(Layers l, const GaitdModel& model)
+    : slots_{LayerSlot<0>(std::move(l[0]), model, rules_),
+             LayerSlot<1>(std::move(l[1]), model, rules_),
+             LayerSlot<2>(std::move(l[2]), model, rules_),
+             LayerSlot<3>(std::move(l[3]), model, rules_),
+             LayerSlot<4>(std::move(l[4]), model, rules_)} {}
+
+template <class Self, class Function>
+auto LayerChain::with_slot(Self& self, int layer, Function&& function) {
+  switch (layer) {
+    case GAITD_LAYER_STATE_ESTIMATOR:
+      return function(std::get<GAITD_LAYER_STATE_ESTIMATOR>(self.slots_));
+    case GAITD_LAYER_ICP_PLANNER:
+      return function(std::get<GAITD_LAYER_ICP_PLANNER>(self.slots_));
+    case GAITD_LAYER_STEP_ADJUSTER:
+      return function(std::get<GAITD_LAYER_STEP_ADJUSTER>(self.slots_));
+    case GAITD_LAYER_TOE_OFF:
+      return function(std::get<GAITD_LAYER_TOE_OFF>(self.slots_));
+    default:
+      return function(std::get<GAITD_LAYER_WHOLE_BODY_CONTROLLER>(self.slots_));
+  }
 }
 
-template <class Input, class Output>
-bool LayerChain::run(int layer, const Input& input, Output& output, Output& last_good,
-                     TickTimes& times) {
-  const Stopwatch watch;
-  const GaitdStatus status = layers_[layer]->process(&input, &output);
-  const char* error = status == GAITD_OK ? output_error(output, joint_count_) : status_name(status);
-  times.layer_us[layer] = watch.microseconds();
-  if (error == nullptr) {
-    last_good = output;
-    return true;
+LayerInstance& LayerChain::in_use(int layer) {
+  return *with_slot(*this, layer, [](auto& slot) { return &slot.in_use(); });
+}
+
+void LayerChain::reset() {
+  std::apply([](auto&... slot) { (slot.reset(), ...); }, slots_);
+  failure_ = {};
+  icp_error_before_ = 0.0;
+}
+
+void LayerChain::reset_controllers() {
+  for (int i = GAITD_LAYER_ICP_PLANNER; i < GAITD_LAYER_COUNT; ++i) {
+    with_slot(*this, i, [](auto& slot) { slot.reset(); });
   }
-  failure_ = {layer, error};
-  take_back(output, last_good);
+}
+
+GaitdStatus LayerChain::set_parameter(int layer, int index, double value) {
+  return with_slot(*this, layer, [&](auto& slot) { return slot.set_parameter(index, value); });
+}
+
+void LayerChain::begin_swap(const SwapOrder& order, bool controlled) {
+  const bool runs = controlled || order.layer == GAITD_LAYER_STATE_ESTIMATOR;
+  with_slot(*this, order.layer, [&](auto& slot) { slot.begin(order, runs); });
+}
+
+void LayerChain::refuse_swap(const SwapOrder& order, const char* why) {
+  with_slot(*this, order.layer, [&](auto& slot) { slot.refuse(order, why); });
+}
+
+bool LayerChain::swapping(int layer) const {
+  return with_slot(*this, layer, [](const auto& slot) { return slot.swapping(); });
+}
+
+void LayerChain::give_up_swaps(const char* why) {
+  for (int i = GAITD_LAYER_ICP_PLANNER; i < GAITD_LAYER_COUNT; ++i) {
+    with_slot(*this, i, [why](auto& slot) { slot.give_up(why); });
+  }
+}
+
+void LayerChain::watch_icp_error(double error, double dt) {
+  if (error > icp_error_before_ + rules_.icp_error_growth) {
+    std::apply([](auto&... slot) { (slot.doubt("the ICP error grows"), ...); }, slots_);
+  }
+  for (int i = 0; i < GAITD_LAYER_COUNT; ++i) {
+    if (swapping(i)) return;
+  }
+  icp_error_before_ += std::min(1.0, dt / kErrorTime) * (error - icp_error_before_);
+}
+
+void LayerChain::take_too_long(int layer) {
+  with_slot(*this, layer, [](auto& slot) { slot.take_too_long(); });
+}
+
+bool LayerChain::take_report(SwapReport* report) {
+  for (int i = 0; i < GAITD_LAYER_COUNT; ++i) {
+    if (with_slot(*this, i, [report](auto& slot) { return slot.take_report(report); })) return true;
+  }
   return false;
+}
+
+template <int kLayer>
+bool LayerChain::run(const typename LayerSlot<kLayer>::Input& input,
+                     typename LayerSlot<kLayer>::Output& output, TickTimes& times) {
+  const char* error = std::get<kLayer>(slots_).run(input, output, &times.layer_us[kLayer]);
+  if (error != nullptr) failure_ = {kLayer, error};
+  return error == nullptr;
 }
 
 bool LayerChain::estimate(const GaitdStart& start, TickData& d) {
@@ -57,28 +110,28 @@ bool LayerChain::estimate(const GaitdStart& start, TickData& d) {
   in.sensors = &d.sensors;
   in.gait = &d.gait;
   in.commands = &d.commands;
-  return run(GAITD_LAYER_STATE_ESTIMATOR, in, d.robot, robot_, d.times);
+  return run<GAITD_LAYER_STATE_ESTIMATOR>(in, d.robot, d.times);
 }
 
 bool LayerChain::plan(TickData& d) {
   const GaitdIcpPlannerInput in{sizeof(in), 0, d.time, &d.robot, &d.gait};
-  return run(GAITD_LAYER_ICP_PLANNER, in, d.plan, plan_, d.times);
+  return run<GAITD_LAYER_ICP_PLANNER>(in, d.plan, d.times);
 }
 
 bool LayerChain::adjust(TickData& d) {
   const GaitdStepAdjusterInput in{sizeof(in), 0, d.time, &d.robot, &d.gait, &d.plan, &d.toe_off};
-  return run(GAITD_LAYER_STEP_ADJUSTER, in, d.adjustment, adjustment_, d.times);
+  return run<GAITD_LAYER_STEP_ADJUSTER>(in, d.adjustment, d.times);
 }
 
 bool LayerChain::toe_off(TickData& d) {
   const GaitdToeOffInput in{sizeof(in), 0, d.time, &d.robot, &d.gait, &d.plan, &d.adjustment};
-  return run(GAITD_LAYER_TOE_OFF, in, d.toe_off, toe_off_, d.times);
+  return run<GAITD_LAYER_TOE_OFF>(in, d.toe_off, d.times);
 }
 
 bool LayerChain::control(TickData& d) {
   const GaitdWholeBodyControllerInput in{sizeof(in), 0,          d.time,       &d.robot,
                                          &d.gait,    &d.toe_off, &d.objectives};
-  return run(GAITD_LAYER_WHOLE_BODY_CONTROLLER, in, d.wbc, wbc_, d.times);
+  return run<GAITD_LAYER_WHOLE_BODY_CONTROLLER>(in, d.wbc, d.times);
 }
 
 }  // namespace gaitd::daemon

@@ -3,14 +3,17 @@
 
 #include <array>
 #include <memory>
+#include <tuple>
 
+#include "daemon/control/layer_slot.h"
 #include "daemon/control/tick_data.h"
 #include "daemon/host/loaded_plugin.h"
 
 namespace gaitd::daemon {
 
-// The five layers and the check of what each wrote. A layer that fails or writes something that is
-// not finite or out of range leaves its last good output in place; the caller decides what follows.
+// The five layers, the check of what each wrote, and their hot swaps. A layer that fails or writes
+// something that is not finite or out of range leaves its last good output in place; the caller
+// decides what follows.
 class LayerChain {
  public:
   using Layers = std::array<std::unique_ptr<LoadedLayer>, GAITD_LAYER_COUNT>;
@@ -21,12 +24,8 @@ class LayerChain {
     const char* what = "";  // the field and its rule, or the status that process() returned
   };
 
-  LayerChain(Layers layers, int joint_count)
-      : layers_(std::move(layers)), joint_count_(joint_count) {}
-
-  LoadedLayer& layer(int index) { return *layers_[index]; }
-  const Failure& failure() const { return failure_; }
-  void reset();
+  // `model` must outlive it.
+  LayerChain(Layers layers, const GaitdModel& model);
 
   // Each runs one layer on `data`. False: failed, the output is the last good one.
   bool estimate(const GaitdStart& start, TickData& data);
@@ -35,19 +34,43 @@ class LayerChain {
   bool toe_off(TickData& data);
   bool control(TickData& data);
 
- private:
-  template <class Input, class Output>
-  bool run(int layer, const Input& input, Output& output, Output& last_good, TickTimes& times);
+  // ---- Between ticks.
 
-  Layers layers_;
-  const int joint_count_;
+  const Failure& failure() const { return failure_; }
+  LayerInstance& in_use(int layer);
+  // All of them, or those that run under control only.
+  void reset();
+  void reset_controllers();
+  // GAITD_OK, or what the layer in use says.
+  GaitdStatus set_parameter(int layer, int index, double value);
+
+  // `controlled`: the layers behind the estimator run. What comes of it is in the reports.
+  void begin_swap(const SwapOrder& order, bool controlled);
+  void refuse_swap(const SwapOrder& order, const char* why);
+  bool swapping(int layer) const;
+  // The layers behind the estimator have stopped: ends their swaps.
+  void give_up_swaps(const char* why);
+  // After each tick under control. Layers that came in a short while ago go again when it grows.
+  void watch_icp_error(double error, double dt);
+  void take_too_long(int layer);  // replay, see LayerSlot
+  bool take_report(SwapReport* report);
+  SwapRules& rules() { return rules_; }
+
+ private:
+  // Calls `function` with the slot of a layer.
+  template <class Self, class Function>
+  static auto with_slot(Self& self, int layer, Function&& function);
+  template <int kLayer>
+  bool run(const typename LayerSlot<kLayer>::Input& input,
+           typename LayerSlot<kLayer>::Output& output, TickTimes& times);
+
+  SwapRules rules_;
+  std::tuple<LayerSlot<GAITD_LAYER_STATE_ESTIMATOR>, LayerSlot<GAITD_LAYER_ICP_PLANNER>,
+             LayerSlot<GAITD_LAYER_STEP_ADJUSTER>, LayerSlot<GAITD_LAYER_TOE_OFF>,
+             LayerSlot<GAITD_LAYER_WHOLE_BODY_CONTROLLER>>
+      slots_;
   Failure failure_;
-  // Last good outputs, taken back when a layer fails.
-  GaitdRobotState robot_{};
-  GaitdIcpPlan plan_{};
-  GaitdStepAdjustment adjustment_{};
-  GaitdToeOff toe_off_{};
-  GaitdWholeBodyControllerOutput wbc_{};
+  double icp_error_before_ = 0.0;  // m, without any swap, its slow mean
 };
 
 }  // namespace gaitd::daemon

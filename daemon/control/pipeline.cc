@@ -2,11 +2,13 @@
 #include "daemon/control/pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
 #include "daemon/control/command_note.h"
 #include "daemon/control/stopwatch.h"
+#include "daemon/parameters/swap_parameters.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -27,10 +29,14 @@ Pipeline::Pipeline(const GaitdModel& model, LayerChain::Layers layers, const Gai
       start_(start),
       period_(period),
       parameters_(parameters),
-      layers_(std::move(layers), model.joint_count),
+      layers_(std::move(layers), model_),
       gait_(model),
       objectives_(model),
       safety_(model) {
+  layers_.rules().period = period;
+  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
+    layers_.in_use(layer).table = parameters_->table_in_use(layer);
+  }
   for (int i = 0; i < parameters_->size(); ++i) {
     const LiveParameters::Row& row = parameters_->row(i);
     if (row.owner >= GAITD_LAYER_COUNT) apply(row.owner, row.index, parameters_->value(i));
@@ -56,11 +62,14 @@ bool Pipeline::apply(int owner, int index, double value) {
     case kSafetyParameterOwner:
       safety_.set_parameter(index, value);
       return true;
+    case kSwapParameterOwner:
+      set_swap_rule(index, value, &layers_.rules());
+      return true;
     case kLimitParameterOwner:
       safety_.set_limit(index, value);
       return true;
     default:
-      if (layers_.layer(owner).set_parameter(index, value) != GAITD_OK) return false;
+      if (layers_.set_parameter(owner, index, value) != GAITD_OK) return false;
       // The plan moves: its reference goes on from where it is.
       if (owner == GAITD_LAYER_ICP_PLANNER) gait_.plan_anew();
       return true;
@@ -78,6 +87,10 @@ CommandReply Pipeline::set_parameter(const Command& command) {
                        (state == SafetyState::kStanding && !gait_.walking());
   char* text = reply.message.data();
   const std::size_t size = reply.message.size();
+  if (!parameters_->in_use(row)) {
+    std::snprintf(text, size, "%s: the plugin %s is not in use any more", key, row.variant.c_str());
+    return reply;
+  }
   if (row.effect.kind == ParameterEffect::kAtRest && !at_rest) {
     std::snprintf(text, size, "%s can only be changed while the robot stands: %s; %s", key,
                   row.effect.text,
@@ -101,6 +114,27 @@ CommandReply Pipeline::set_parameter(const Command& command) {
   return reply;
 }
 
+void Pipeline::begin_swap(const SwapOrder& order) {
+  const SwapRules& rules = layers_.rules();
+  const bool at_rest =
+      !safety_.controlled() || (safety_.state() == SafetyState::kStanding && !gait_.walking());
+  if (!rules.simulation && !(rules.on_hardware && at_rest)) {
+    return layers_.refuse_swap(order, rules.on_hardware
+                                          ? "on hardware a layer is only swapped while standing"
+                                          : "swap.on_hardware is false");
+  }
+  layers_.begin_swap(order, safety_.controlled());
+}
+
+bool Pipeline::take_swap_report(SwapReport* report) {
+  if (!layers_.take_report(report)) return false;
+  // What counts as in use follows the layer that runs.
+  const LayerInstance& now = layers_.in_use(report->layer);
+  parameters_->use(report->layer, now.table);
+  data_.variants[report->layer] = now.variant;
+  return true;
+}
+
 void Pipeline::reset() {
   layers_.reset();
   safety_.reset();
@@ -116,7 +150,7 @@ void Pipeline::begin_control() {
   gait_.reset(data_.robot);
   data_.gait = gait_.state();
   objectives_.reset(data_.robot, data_.gait);
-  for (int i = GAITD_LAYER_ICP_PLANNER; i < GAITD_LAYER_COUNT; ++i) layers_.layer(i).reset();
+  layers_.reset_controllers();
 }
 
 void Pipeline::run(std::int64_t tick) {
@@ -128,6 +162,7 @@ void Pipeline::run(std::int64_t tick) {
   if (safety_.update(period_, d, gait_.walking())) begin_control();
   const bool controlled = safety_.controlled();
   const bool ok = controlled && control(period_);
+  if (!controlled) layers_.give_up_swaps("the robot is not under control any more");
   safety_.write(period_, ok, d);
   d.times.total_us = watch.microseconds();
 }
@@ -143,7 +178,10 @@ bool Pipeline::control(double dt) {
   }
   objectives_.update(dt, d.robot, d.gait, gait_.lift_off(), d.adjustment, d.toe_off, d.objectives);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) d.legs[side] = objectives_.leg(side);
-  return layers_.control(d);
+  const bool solved = layers_.control(d);
+  layers_.watch_icp_error(
+      std::hypot(d.robot.icp[0] - d.plan.icp[0], d.robot.icp[1] - d.plan.icp[1]), dt);
+  return solved;
 }
 
 CommandReply Pipeline::execute(const Command& command) {

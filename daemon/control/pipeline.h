@@ -22,6 +22,10 @@ class Pipeline {
 
   // Between ticks.
   CommandReply execute(const Command& command);
+  // The order becomes the pipeline's; what comes of it is in the reports.
+  void begin_swap(const SwapOrder& order);
+  // What happened to swaps since the last tick, in order, each once.
+  bool take_swap_report(SwapReport* report);
   // Back to the first tick: for the reset of a simulation. Parameters stay.
   void reset();
 

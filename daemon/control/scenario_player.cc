@@ -4,12 +4,24 @@
 #include <algorithm>
 
 #include "daemon/config/command_parse.h"
+#include "daemon/host/layers.h"
 
 namespace gaitd::daemon {
 namespace {
 
 constexpr double kSettleTime = 2.0;  // s of standing after which a walk is over
 constexpr double kFaultTime = 1.0;   // s that a fallen robot is still watched
+
+// Both texts were checked when the scenario was read.
+Command swap_command(const ScenarioCommand& scenario) {
+  Command command{};
+  command.type = CommandType::kSwap;
+  command.swap_layer =
+      layer_from_name(scenario.params["layer"].get_ref<const std::string&>()).value_or(-1);
+  const auto& to = scenario.params["variant"].get_ref<const std::string&>();
+  to.copy(command.swap_to.data(), command.swap_to.size() - 1);
+  return command;
+}
 
 }  // namespace
 
@@ -18,8 +30,11 @@ ScenarioPlayer::ScenarioPlayer(const Scenario& scenario, const GaitdModel& model
     : duration_(scenario.duration) {
   for (const ScenarioCommand& c : scenario.commands) {
     std::string error;
-    if (auto command = c.method == "param.set" ? parameters.parse_set(c.params, &error)
-                                               : parse_command(c.method, c.params, model, &error)) {
+    if (c.method == "plugin.swap") {
+      commands_.push_back({c.at, swap_command(c)});
+    } else if (auto command = c.method == "param.set"
+                                  ? parameters.parse_set(c.params, &error)
+                                  : parse_command(c.method, c.params, model, &error)) {
       commands_.push_back({c.at, *command});
     } else {
       issues->add_text(c.where, "commands", error);

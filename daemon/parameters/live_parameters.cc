@@ -2,6 +2,7 @@
 #include "daemon/parameters/live_parameters.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "daemon/config/node.h"
 #include "daemon/config/settings.h"
@@ -38,32 +39,75 @@ std::string without_variant(std::string_view key, std::string* variant) {
 
 }  // namespace
 
-void LiveParameters::add(int owner, std::string_view scope, std::string_view variant,
-                         std::span<const GaitdParameter> table, const std::vector<double>& values) {
+LiveParameters::LiveParameters() : values_(std::make_unique<std::atomic<double>[]>(kCapacity)) {
+  rows_.reserve(kCapacity);
+  for (std::atomic<int>& table : tables_in_use_) table = -1;
+}
+
+int LiveParameters::add(int owner, std::string_view scope, std::string_view variant,
+                        std::span<const GaitdParameter> table, const std::vector<double>& values) {
+  if (rows_.size() + table.size() > kCapacity) return -1;
+  const int number = tables_++;
   for (std::size_t i = 0; i < table.size(); ++i) {
-    Row row{std::string(scope) + "." + table[i].name,
-            std::string(variant),
-            table[i],
-            owner,
-            static_cast<int>(i),
-            {}};
+    Row row{.key = std::string(scope) + "." + table[i].name,
+            .variant = std::string(variant),
+            .declared = table[i],
+            .owner = owner,
+            .index = static_cast<int>(i),
+            .table = number,
+            .effect = {}};
     row.effect = parameter_effect(row.key);
+    values_[rows_.size()] = values[i];
     rows_.push_back(std::move(row));
-    values_.emplace_back(values[i]);
   }
+  size_.store(static_cast<int>(rows_.size()), std::memory_order_release);
+  if (table_in_use(owner) < 0) use(owner, number);
+  return number;
+}
+
+int LiveParameters::find_table(int owner, std::string_view variant,
+                               std::span<const GaitdParameter> table) const {
+  for (int i = 0; i + static_cast<int>(table.size()) <= size(); ++i) {
+    if (rows_[i].owner != owner || rows_[i].index != 0 || rows_[i].variant != variant) continue;
+    std::size_t same = 0;
+    while (same < table.size() && rows_[i + same].table == rows_[i].table &&
+           std::memcmp(&rows_[i + same].declared, &table[same], sizeof(GaitdParameter)) == 0) {
+      ++same;
+    }
+    const std::size_t end = i + same;
+    const bool ends = static_cast<int>(end) == size() || rows_[end].table != rows_[i].table;
+    if (same == table.size() && ends) return rows_[i].table;
+  }
+  return -1;
+}
+
+int LiveParameters::find_row(int owner, int index) const {
+  for (int i = 0; i < size(); ++i) {
+    if (rows_[i].owner == owner && rows_[i].index == index && in_use(rows_[i])) return i;
+  }
+  return -1;
+}
+
+std::vector<double> LiveParameters::values(int table) const {
+  std::vector<double> out;
+  for (int i = 0; i < size(); ++i) {
+    if (rows_[i].table == table) out.push_back(value(i));
+  }
+  return out;
 }
 
 int LiveParameters::find(std::string_view key, std::string* error) const {
   std::string variant;
   const std::string plain = without_variant(key, &variant);
-  const auto row =
-      std::find_if(rows_.begin(), rows_.end(), [&](const Row& r) { return r.key == plain; });
-  if (row != rows_.end() && (variant.empty() || variant == row->variant)) {
-    return static_cast<int>(row - rows_.begin());
+  for (int i = 0; i < size(); ++i) {
+    const Row& r = rows_[i];
+    if (r.key == plain && in_use(r) && (variant.empty() || variant == r.variant)) return i;
   }
   const std::string name(key.substr(0, 200));
   std::vector<std::string> names;
-  for (const Row& r : rows_) {
+  for (int i = 0; i < size(); ++i) {
+    const Row& r = rows_[i];
+    if (!in_use(r)) continue;
     if (!variant.empty() && r.key.substr(0, r.key.find('.')) == plain.substr(0, plain.find('.')) &&
         r.variant != variant) {
       *error = name + ": " + variant + " is not in use, " + r.variant + " is; it " + kRestart;
@@ -115,6 +159,7 @@ std::optional<Command> LiveParameters::parse_set(const json& params, std::string
 std::vector<int> LiveParameters::match(std::string_view glob) const {
   std::vector<int> result;
   for (int i = 0; i < size(); ++i) {
+    if (!in_use(rows_[i])) continue;
     const std::string& key = rows_[i].key;
     if (glob.empty() || glob_match(glob, key) || glob == key.substr(0, key.find('.'))) {
       result.push_back(i);

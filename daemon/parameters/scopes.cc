@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "daemon/parameters/safety_parameters.h"
+#include "daemon/parameters/swap_parameters.h"
 #include "gaitd/walking/parameters.h"
 
 namespace gaitd::daemon {
@@ -17,6 +18,7 @@ constexpr DaemonScope kScopes[] = {
      "gains and weights of what the whole-body controller is asked for"},
     {kSafetyParameterOwner, "safety", kSafetyParameters, "faults, readying, fall-backs"},
     {kLimitParameterOwner, "limits", kLimitParameters, "clamps behind the plugins"},
+    {kSwapParameterOwner, "swap", kSwapParameters, "exchange of plugins while the robot walks"},
 };
 
 struct Rule {

@@ -16,6 +16,7 @@ enum ParameterOwner : int {
   kObjectiveParameterOwner,
   kSafetyParameterOwner,
   kLimitParameterOwner,
+  kSwapParameterOwner,
   kParameterOwnerCount
 };
 

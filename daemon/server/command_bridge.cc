@@ -38,6 +38,28 @@ void CommandBridge::submit(Command command, Respond respond) {
   pending_[next_request_++] = {std::move(respond), Clock::now() + timeout_};
 }
 
+std::uint64_t CommandBridge::open(Respond respond) {
+  open_[next_request_] = std::move(respond);
+  return next_request_++;
+}
+
+void CommandBridge::answer(std::uint64_t request, RpcResult result) {
+  const std::scoped_lock lock(answers_mutex_);
+  answers_.emplace_back(request, std::move(result));
+}
+
+void CommandBridge::release_answers() {
+  std::vector<std::pair<std::uint64_t, RpcResult>> answers;
+  {
+    const std::scoped_lock lock(answers_mutex_);
+    answers.swap(answers_);
+  }
+  for (auto& [request, result] : answers) {
+    const auto entry = open_.extract(request);
+    if (!entry.empty()) entry.mapped()(std::move(result));
+  }
+}
+
 void CommandBridge::poll(Clock::time_point now) {
   // A responder may submit again: take the entry out first.
   CommandReply reply;
@@ -53,6 +75,7 @@ void CommandBridge::poll(Clock::time_point now) {
     entry.mapped().respond(RpcError{rpc_code::kRefused, message, {{"tick", reply.tick}}});
   }
   release_held(now);
+  release_answers();
   std::vector<Respond> late;
   while (!pending_.empty() && pending_.begin()->second.deadline <= now) {
     late.push_back(std::move(pending_.begin()->second.respond));
@@ -87,6 +110,10 @@ void CommandBridge::release_held(Clock::time_point now) {
 void CommandBridge::abandon() {
   newest_tick_ = nullptr;
   release_held(Clock::now());
+  release_answers();
+  for (auto& [request, respond] : std::exchange(open_, {})) {
+    respond(RpcError{rpc_code::kStopping, "gaitd is stopping; the swap may not have been done"});
+  }
   auto pending = std::exchange(pending_, {});
   for (auto& [request, entry] : pending) {
     entry.respond(RpcError{rpc_code::kStopping,

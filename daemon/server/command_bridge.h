@@ -7,8 +7,11 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "daemon/command/command.h"
 #include "daemon/server/rpc.h"
@@ -45,11 +48,18 @@ class CommandBridge {
   /// "tick": n, "note": text or null}, for a parameter "old" and "value" too, or an error: refused
   /// with the control thread's reason, busy, no answer in time.
   void submit(Command command, Respond respond);
+  /// A request that another thread answers, in its own time: the number to answer it with.
+  std::uint64_t open(Respond respond);
   /// Hands over the answers that have come and times out those that have not.
   void poll(Clock::time_point now);
-  bool waiting() const { return !pending_.empty() || !held_.empty(); }
+  bool waiting() const { return !pending_.empty() || !held_.empty() || !open_.empty(); }
   /// Answers everything that waits with the stopping error.
   void abandon();
+
+  // ---- Any thread but the control thread.
+
+  /// The answer to an open() request; to one that is not open (any more): nothing happens.
+  void answer(std::uint64_t request, RpcResult result);
 
  private:
   struct Pending {
@@ -65,11 +75,15 @@ class CommandBridge {
   };
 
   void release_held(Clock::time_point now);
+  void release_answers();
 
   boost::lockfree::spsc_queue<Command, boost::lockfree::capacity<kCapacity>> commands_;
   boost::lockfree::spsc_queue<CommandReply, boost::lockfree::capacity<4 * kCapacity>> replies_;
   std::map<std::uint64_t, Pending> pending_;
   std::deque<Held> held_;
+  std::map<std::uint64_t, Respond> open_;
+  std::mutex answers_mutex_;
+  std::vector<std::pair<std::uint64_t, RpcResult>> answers_;
   std::function<std::int64_t()> newest_tick_;
   std::uint64_t next_request_ = 1;
   Clock::duration timeout_;

@@ -7,6 +7,8 @@ const char* event_kind_name(EventKind kind) {
   switch (kind) {
     case EventKind::kCommand:
       return "command";
+    case EventKind::kInput:
+      return "input";
     case EventKind::kReply:
       return "reply";
     case EventKind::kParameter:

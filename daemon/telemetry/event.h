@@ -9,6 +9,7 @@ namespace gaitd::daemon {
 // What happened besides the signals of the ticks. Written to the log by name.
 enum class EventKind : std::uint8_t {
   kCommand,    // taken by the control thread
+  kInput,      // the same with all that it says, for replay
   kReply,      // to a command
   kParameter,  // changed
   kSwap,       // any stage of a plugin swap

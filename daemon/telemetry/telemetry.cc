@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "daemon/telemetry/input.h"
 #include "daemon/telemetry/recent_maximum.h"
 #include "daemon/telemetry/ring.h"
 
@@ -33,6 +34,8 @@ struct EventSlot {
   std::array<char, kMaxEventText> text{};
 };
 
+constexpr std::size_t kInputs = 128;  // commands that wait for the telemetry thread
+
 std::size_t ring_ticks(const TelemetryOptions& options) {
   return static_cast<std::size_t>(std::max(2.0, std::ceil(options.ring_seconds / options.period)));
 }
@@ -49,6 +52,8 @@ struct Telemetry::Impl {
         sensors(tick_ring.capacity()),
         slots(tick_ring.capacity()),
         event_slots(event_ring.capacity()),
+        input_ring(kInputs),
+        inputs(input_ring.capacity()),
         newest(table.size()),
         log(table) {
     for (std::size_t i = 0; i < table.size(); ++i) {
@@ -72,10 +77,12 @@ struct Telemetry::Impl {
   // Control thread and telemetry thread.
   RingIndexes tick_ring;
   RingIndexes event_ring;
+  RingIndexes input_ring;
   std::vector<double> values;
   std::vector<GaitdSensors> sensors;
   std::vector<TickSlot> slots;
   std::vector<EventSlot> event_slots;
+  std::vector<Input> inputs;
   std::atomic<std::uint64_t> dropouts{0};
   std::atomic<std::uint64_t> event_dropouts{0};
   std::atomic<bool> running{false};
@@ -135,6 +142,15 @@ void Telemetry::Impl::drain_events() {
                      .kind = event_kind_name(slot.kind),
                      .text = std::string(slot.text.data(), slot.size),
                      .truncated = slot.truncated});
+  }
+  for (; !input_ring.empty(); input_ring.release()) {
+    const Input& input = inputs[input_ring.read_slot()];
+    if (!options.input_text) continue;
+    batch.push_back({.tick = input.tick,
+                     .time = input.time,
+                     .kind = event_kind_name(EventKind::kInput),
+                     .text = options.input_text(input),
+                     .truncated = false});
   }
   const std::scoped_lock lock(log_mutex);
   for (const Event& event : batch) log.writer().write_event(event);
@@ -212,10 +228,28 @@ bool Telemetry::push_event(EventKind kind, std::int64_t tick, double time,
   return true;
 }
 
+bool Telemetry::push_input(std::int64_t tick, double time, const Command& command,
+                           int parameter_owner, int parameter_place) noexcept {
+  Impl& impl = *impl_;
+  if (impl.input_ring.free() == 0) {
+    impl.event_dropouts.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+  Input& input = impl.inputs[impl.input_ring.write_slot()];
+  input.tick = tick;
+  input.time = time;
+  input.command = command;
+  input.parameter_owner = parameter_owner;
+  input.parameter_place = parameter_place;
+  impl.input_ring.commit();
+  return true;
+}
+
 bool Telemetry::wait_for_space(std::size_t events) {
   Impl& impl = *impl_;
   const std::size_t wanted = std::min(events, impl.event_ring.capacity());
-  while (impl.tick_ring.free() == 0 || impl.event_ring.free() < wanted) {
+  while (impl.tick_ring.free() == 0 || impl.event_ring.free() < wanted ||
+         impl.input_ring.free() < std::min(events, impl.input_ring.capacity())) {
     if (!impl.running.load(std::memory_order_acquire)) return false;
     std::this_thread::sleep_for(kWaitForSpace);
   }
@@ -247,6 +281,8 @@ std::vector<double> Telemetry::recent_maxima() const {
 }
 
 const SignalTable& Telemetry::table() const { return impl_->table; }
+
+double Telemetry::period() const { return impl_->options.period; }
 
 std::uint64_t Telemetry::dropouts() const noexcept {
   return impl_->dropouts.load(std::memory_order_relaxed);

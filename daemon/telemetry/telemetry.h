@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -14,6 +15,9 @@
 #include "gaitd/abi/types.h"
 
 namespace gaitd::daemon {
+
+struct Command;
+struct Input;  // daemon/telemetry/input.h
 
 // Where the control thread writes one tick.
 struct TickSlot {
@@ -28,6 +32,8 @@ struct TelemetryOptions {
   double ring_seconds = 2.0;  // what the ring of ticks holds
   std::size_t ring_events = 1024;
   double poll_period = 0.002;  // s, sleep of the telemetry thread when there is nothing to do
+  // The text of an input; called on the telemetry thread. Without one inputs are not recorded.
+  std::function<std::string(const Input&)> input_text;
 };
 
 inline constexpr std::size_t kMaxEventText = 480;  // bytes, of an event from the control thread
@@ -58,6 +64,10 @@ class Telemetry {
   // [rt] False if the ring was full, and counted. Text beyond kMaxEventText is cut off and marked.
   bool push_event(EventKind kind, std::int64_t tick, double time, std::string_view text) noexcept;
 
+  // [rt] What replay needs of a command. False if the ring was full, and counted as an event.
+  bool push_input(std::int64_t tick, double time, const Command& command, int parameter_owner,
+                  int parameter_place) noexcept;
+
   // [control thread, outside the guarded section] In lockstep, before each tick: sleeps until the
   // next tick and `events` events are certain to find room, so that nothing is ever dropped. False
   // if the thread is not running, so that waiting is of no use.
@@ -78,6 +88,7 @@ class Telemetry {
   std::vector<double> recent_maxima() const;
 
   const SignalTable& table() const;
+  double period() const;                    // s, of the tick
   std::uint64_t dropouts() const noexcept;  // ticks
   std::uint64_t event_dropouts() const noexcept;
 

@@ -1,29 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// A shipped layer that goes wrong at a time, in a way that its parameters choose.
+// A shipped layer that goes wrong at a time, in a way that its parameters choose, or without them
+// the environment: GAITD_TEST_FAULT and GAITD_TEST_FAULT_TIME.
 #include FAULTY_HEADER
 
 #include <time.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 
 namespace {
 
-enum class Fault { kNone, kNan, kError, kThrow, kSize, kSlow, kCrash };
+enum class Fault { kNone, kNan, kError, kThrow, kSize, kSlow, kCrash, kDiverge };
 
 class FaultyLayer : public FAULTY_CLASS {
  public:
   using Traits = gaitd::sdk::LayerTraits<FAULTY_LAYER>;
   static constexpr std::array<GaitdParameter, 2> kParameters = {
-      gaitd::sdk::integer_parameter("fault", "", 0, 6, 0, "what goes wrong"),
+      gaitd::sdk::integer_parameter("fault", "", 0, 7, 0, "what goes wrong"),
       gaitd::sdk::real_parameter("fault_time", "s", 0, 1000, 0.7, "from when on")};
 
   explicit FaultyLayer(const GaitdModel& model) : FAULTY_CLASS(model) {}
   void set_parameter(int index, double value) {
     if (index == 0) fault_ = static_cast<Fault>(value);
     if (index == 1) time_ = value;
+    const char* fault = std::getenv("GAITD_TEST_FAULT");
+    const char* time = std::getenv("GAITD_TEST_FAULT_TIME");
+    if (fault != nullptr) fault_ = static_cast<Fault>(std::atoi(fault));
+    if (time != nullptr) time_ = std::atof(time);
   }
   GaitdStatus process(const Traits::Input& in, Traits::Output& out) {
     const GaitdStatus status = FAULTY_CLASS::process(in, out);
@@ -42,6 +48,9 @@ class FaultyLayer : public FAULTY_CLASS {
       case Fault::kSlow:
         spend(0.004);
         break;
+      case Fault::kDiverge:
+        drift(in.time.time - time_, out);
+        break;
       case Fault::kCrash:
         std::raise(SIGSEGV);
         break;
@@ -58,6 +67,16 @@ class FaultyLayer : public FAULTY_CLASS {
   static void spoil(GaitdStepAdjustment& out) { out.linear_momentum_rate[0] = kNan; }
   static void spoil(GaitdToeOff& out) { out.criterion[2] = kNan; }
   static void spoil(GaitdWholeBodyControllerOutput& out) { out.commands.joints[2].torque = kNan; }
+  static void drift(double time, GaitdRobotState& out) { out.pelvis_position[0] += time; }
+  static void drift(double time, GaitdIcpPlan& out) { out.icp[0] -= time; }
+  static void drift(double time, GaitdStepAdjustment& out) {
+    out.linear_momentum_rate[1] += 2000.0 * time;
+    out.cmp[1] -= time;
+  }
+  static void drift(double, GaitdToeOff&) {}
+  static void drift(double time, GaitdWholeBodyControllerOutput& out) {
+    out.commands.joints[0].torque += 1000.0 * time;
+  }
   static void spend(double seconds) {
     timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);

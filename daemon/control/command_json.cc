@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/command_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace gaitd::daemon {
+namespace {
+
+using nlohmann::json;
+
+// Calls `field(name, value)` for everything that a footstep of a command says; both directions.
+template <class Footstep, class Field>
+void visit(Footstep& step, Field&& field) {
+  field("side", step.side);
+  field("position", step.pose.position);
+  field("orientation", step.pose.orientation);
+  field("swing_duration", step.swing_duration);
+  field("transfer_duration", step.transfer_duration);
+  field("swing_height", step.swing_height);
+  field("closing", step.closing);
+  field("polygon_count", step.polygon_count);
+  field("region_count", step.region_count);
+  field("contact_polygon", step.contact_polygon);
+  field("landing_region", step.landing_region);
+}
+
+template <class Walk, class Field>
+void visit_walk(Walk& walk, Field&& field) {
+  field("steps", walk.steps);
+  field("length", walk.length);
+  field("lateral", walk.lateral);
+  field("width", walk.width);
+  field("turn", walk.turn);
+  field("swing_duration", walk.swing_duration);
+  field("transfer_duration", walk.transfer_duration);
+  field("first_side", walk.first_side);
+}
+
+struct Write {
+  json* out;
+  template <class T>
+  void operator()(const char* name, const T& value) const {
+    (*out)[name] = value;
+  }
+};
+template <class T>
+void read(const json& in, T& value) {
+  in.get_to(value);
+}
+template <class T, std::size_t kSize>
+void read(const json& in, T (&values)[kSize]) {
+  for (std::size_t i = 0; i < kSize; ++i) read(in.at(i), values[i]);
+}
+struct Read {
+  const json* in;
+  template <class T>
+  void operator()(const char* name, T& value) const {
+    read(in->at(name), value);
+  }
+};
+
+}  // namespace
+
+std::string input_text(const Command& c, int parameter_owner, int parameter_place) {
+  json out = {{"type", static_cast<int>(c.type)}};
+  switch (c.type) {
+    case CommandType::kMode:
+      out["mode"] = c.mode;
+      break;
+    case CommandType::kWalk:
+      visit_walk(c.walk, Write{&out});
+      break;
+    case CommandType::kFootsteps:
+      out["replace"] = c.replace;
+      out["footsteps"] = json::array();
+      for (int i = 0; i < c.footstep_count; ++i) {
+        json step;
+        visit(c.footsteps[i], Write{&step});
+        out["footsteps"].push_back(std::move(step));
+      }
+      break;
+    case CommandType::kPush:
+      out["body"] = c.push.body;
+      out["point"] = c.push.point;
+      out["force"] = c.push.force;
+      out["duration"] = c.push.duration;
+      break;
+    case CommandType::kSetParameter:
+      out["owner"] = parameter_owner;
+      out["place"] = parameter_place;
+      out["value"] = c.parameter_value;
+      break;
+    default:
+      break;
+  }
+  return out.dump();
+}
+
+bool read_input(const json& in, Command* c, int* parameter_owner, int* parameter_place) {
+  try {
+    *c = Command{};
+    c->type = static_cast<CommandType>(in.at("type").get<int>());
+    if (c->type == CommandType::kMode) c->mode = in.at("mode").get<int>();
+    if (c->type == CommandType::kWalk) visit_walk(c->walk, Read{&in});
+    if (c->type == CommandType::kFootsteps) {
+      c->replace = in.at("replace").get<bool>();
+      for (const json& step : in.at("footsteps")) {
+        if (c->footstep_count >= static_cast<int>(c->footsteps.size())) return false;
+        GaitdFootstep& footstep = c->footsteps[c->footstep_count++];
+        footstep = {};
+        visit(footstep, Read{&step});
+      }
+    }
+    if (c->type == CommandType::kSetParameter) {
+      *parameter_owner = in.at("owner").get<int>();
+      *parameter_place = in.at("place").get<int>();
+      c->parameter_value = in.at("value").get<double>();
+    }
+    return true;
+  } catch (const json::exception&) {
+    return false;
+  }
+}
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/output_blend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace gaitd::daemon {
+namespace {
+
+// What two sound variants may differ by.
+constexpr double kPosition = 0.05;      // m, of the pelvis
+constexpr double kAngle = 0.1;          // rad, of the pelvis
+constexpr double kVelocity = 0.5;       // m/s, of the CoM
+constexpr double kIcpReference = 0.25;  // m
+constexpr double kCmp = 0.4;            // m, wanted; the feet are not larger
+constexpr double kTorque = 1.5;         // effort limits, of one joint
+
+template <std::size_t kSize>
+double distance(const double (&a)[kSize], const double (&b)[kSize]) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kSize; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum);
+}
+
+double angle(const double (&a)[4], const double (&b)[4]) {
+  double dot = 0.0;
+  for (int i = 0; i < 4; ++i) dot += a[i] * b[i];
+  return 2.0 * std::acos(std::min(1.0, std::abs(dot)));
+}
+
+void mix(double from, double share, double& to) { to = from + share * (to - from); }
+template <std::size_t kSize>
+void mix(const double (&from)[kSize], double share, double (&to)[kSize]) {
+  for (std::size_t i = 0; i < kSize; ++i) mix(from[i], share, to[i]);
+}
+
+}  // namespace
+
+double output_difference(const GaitdModel&, const GaitdRobotState& a, const GaitdRobotState& b) {
+  return std::max({distance(a.pelvis_position, b.pelvis_position) / kPosition,
+                   angle(a.pelvis_orientation, b.pelvis_orientation) / kAngle,
+                   distance(a.com_velocity, b.com_velocity) / kVelocity});
+}
+
+double output_difference(const GaitdModel&, const GaitdIcpPlan& a, const GaitdIcpPlan& b) {
+  return distance(a.icp, b.icp) / kIcpReference;
+}
+
+double output_difference(const GaitdModel&, const GaitdStepAdjustment& a,
+                         const GaitdStepAdjustment& b) {
+  return distance(a.cmp, b.cmp) / kCmp;
+}
+
+double output_difference(const GaitdModel&, const GaitdToeOff&, const GaitdToeOff&) {
+  return 0.0;  // yes or no: either may be right
+}
+
+double output_difference(const GaitdModel& model, const GaitdWholeBodyControllerOutput& a,
+                         const GaitdWholeBodyControllerOutput& b) {
+  double largest = 0.0;
+  for (int i = 0; i < model.joint_count; ++i) {
+    const double torque = a.commands.joints[i].torque - b.commands.joints[i].torque;
+    largest = std::max(largest, std::abs(torque) / model.joints[i].effort_limit);
+  }
+  return largest / kTorque;
+}
+
+void cross_fade(const GaitdIcpPlan& from, double share, GaitdIcpPlan& to) {
+  mix(from.icp, share, to.icp);
+  mix(from.icp_velocity, share, to.icp_velocity);
+  mix(from.ecmp, share, to.ecmp);
+  mix(from.com, share, to.com);
+  mix(from.com_velocity, share, to.com_velocity);
+  mix(from.icp_end, share, to.icp_end);
+  mix(from.kappa, share, to.kappa);
+}
+
+void cross_fade(const GaitdStepAdjustment& from, double share, GaitdStepAdjustment& to) {
+  mix(from.shift, share, to.shift);
+  mix(from.time_shift, share, to.time_shift);
+  mix(from.ecmp, share, to.ecmp);
+  mix(from.cmp, share, to.cmp);
+  mix(from.kappa, share, to.kappa);
+  mix(from.linear_momentum_rate, share, to.linear_momentum_rate);
+  mix(from.angular_momentum_rate, share, to.angular_momentum_rate);
+}
+
+void cross_fade(const GaitdWholeBodyControllerOutput& from, double share,
+                GaitdWholeBodyControllerOutput& to) {
+  for (int i = 0; i < to.commands.joint_count; ++i) {
+    const GaitdJointCommand& a = from.commands.joints[i];
+    GaitdJointCommand& b = to.commands.joints[i];
+    mix(a.torque, share, b.torque);
+    mix(a.position, share, b.position);
+    mix(a.velocity, share, b.velocity);
+    mix(a.stiffness, share, b.stiffness);
+    mix(a.damping, share, b.damping);
+    mix(a.acceleration, share, b.acceleration);
+  }
+}
+
+}  // namespace gaitd::daemon

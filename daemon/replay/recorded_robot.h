@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "daemon/config/robot.h"
+#include "daemon/config/settings.h"
+#include "daemon/control/pipeline.h"
+#include "daemon/host/plugin_directory.h"
+#include "daemon/parameters/live_parameters.h"
+#include "daemon/replay/replay.h"
+
+namespace gaitd::daemon {
+
+/// The control pipeline as a log tells that it was at tick 0: robot, settings, layers, parameters.
+class RecordedRobot {
+ public:
+  /// Null with what is missing in `error`. `notes`: what is not as it was, such as another build.
+  static std::unique_ptr<RecordedRobot> load(const LogReader& log, const ReplayOptions& options,
+                                             std::vector<std::string>* notes, std::string* error);
+
+  /// The layer of a swap event, as an order; layer -1: it is left out, since the layer is another
+  /// one by --set.
+  bool load_swap(const nlohmann::json& event, SwapOrder* order, std::string* error);
+
+  Pipeline& pipeline() { return *pipeline_; }
+  LiveParameters& parameters() { return parameters_; }
+  const GaitdModel& model() const { return robot_.model; }
+
+ private:
+  explicit RecordedRobot(const ReplayOptions& options) : directory_(options.plugin_folders) {}
+  bool read_robot(const LogReader& log, std::string* error);
+  bool read_settings(const LogReader& log, const ReplayOptions& options, std::string* error);
+  int variant_word(int layer, const std::string& variant) const;
+  bool load_layers(const nlohmann::json& plugins, LayerChain::Layers* layers, std::string* error);
+  std::unique_ptr<LoadedLayer> load_layer(int layer, const std::string& variant,
+                                          const std::string& file, const std::string& hash,
+                                          const std::vector<double>* values, int* table,
+                                          std::string* error);
+
+  PluginDirectory directory_;
+  Settings settings_;
+  Robot robot_;
+  LiveParameters parameters_;
+  std::vector<std::string>* notes_ = nullptr;
+  std::array<std::vector<std::string>, GAITD_LAYER_COUNT> words_;  // of layer/<layer>/variant
+  std::unique_ptr<Pipeline> pipeline_;
+};
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/telemetry/log_reader.h"
+
+namespace gaitd::daemon {
+
+struct ReplayOptions {
+  std::vector<std::filesystem::path> plugin_folders;
+  std::vector<std::string> set;  ///< KEY=VALUE, over what was recorded: then it will differ
+};
+
+/// A signal that is not what was recorded, bit by bit.
+struct SignalDifference {
+  std::string signal;
+  std::string stage;  ///< of the tick, that writes it: a layer, "gait machine", "objectives", ...
+  std::int64_t tick = 0;  ///< the first one that differs
+  double recorded = 0.0;  ///< then
+  double replayed = 0.0;
+  double largest = 0.0;  ///< difference over all ticks
+};
+
+struct ReplayReport {
+  std::int64_t ticks = 0;                     ///< replayed
+  std::size_t signals = 0;                    ///< compared in each
+  std::vector<SignalDifference> differences;  ///< the first first: by tick, then by stage
+  std::vector<std::string> notes;             ///< e.g. plugins of another build
+};
+
+/// Feeds the recorded sensors, commands, parameter changes and swaps to the gait machine and the
+/// layers, as fast as they go, and compares every signal that they write. Nothing with `error` if
+/// the log does not hold what it takes.
+std::optional<ReplayReport> replay(const LogReader& log, const ReplayOptions& options,
+                                   std::string* error);
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/swap/swap_service.h"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "daemon/host/layers.h"
+#include "daemon/host/plugin_file.h"
+#include "gaitd/sdk/layer_names.h"
+
+namespace gaitd::daemon {
+namespace {
+
+using nlohmann::json;
+constexpr auto kPoll = std::chrono::milliseconds(2);
+
+std::string one_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  for (std::size_t at; (at = text.find('\n')) != std::string::npos;) text.replace(at, 1, "; ");
+  return text;
+}
+
+RpcError invalid(const std::string& method, const std::string& what) {
+  return {rpc_code::kInvalidParams, method + ": " + what};
+}
+
+}  // namespace
+
+SwapService::SwapService(Parts parts)
+    : parts_(std::move(parts)), directory_(parts_.plugin_folders) {
+  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
+    names_[layer].in_use = parts_.in_use[layer];
+  }
+}
+
+SwapService::~SwapService() { stop(); }
+
+void SwapService::start() {
+  thread_ = std::thread([this] { run(); });
+  pthread_setname_np(thread_.native_handle(), "gaitd-swap");
+}
+
+void SwapService::stop() {
+  if (!thread_.joinable()) return;
+  {
+    const std::scoped_lock lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+std::string SwapService::variant(int layer) const {
+  const std::scoped_lock lock(mutex_);
+  return names_[layer].in_use;
+}
+
+void SwapService::add_methods(Methods* methods) {
+  const auto add = [this, methods](const std::string& name, bool rollback) {
+    methods->add_async(name, [this, name, rollback](const json& params, Respond respond) {
+      const auto text = [&params](const char* key) {
+        const auto found = params.is_object() ? params.find(key) : params.end();
+        return found != params.end() && found->is_string() ? found->get<std::string>() : "";
+      };
+      const std::string to = text("to");
+      const auto layer = layer_from_name(text("layer"));
+      if (!layer || *layer >= GAITD_LAYER_COUNT || params.size() != (rollback ? 1 : 2) ||
+          to.empty() != rollback) {
+        std::string layers;
+        for (const std::string_view one : sdk::kLayerNames) {
+          layers += (layers.empty() ? "" : ", ") + std::string(one);
+        }
+        return respond(
+            invalid(name, std::string("expected {\"layer\": ") + "one of " + layers +
+                              (rollback ? "}" : ", \"to\": a variant or the path of a library}")));
+      }
+      Wanted wanted;
+      wanted.request = parts_.bridge->open(std::move(respond));
+      wanted.layer = *layer;
+      wanted.to = to;
+      wanted.tick = parts_.telemetry->newest_tick();
+      {
+        const std::scoped_lock lock(mutex_);
+        wanted_.push_back(std::move(wanted));
+      }
+      wake_.notify_all();
+    });
+  };
+  add("plugin.swap", false);
+  add("plugin.rollback", true);
+}
+
+void SwapService::run() {
+  for (bool last = false;;) {
+    Wanted wanted;
+    while (take_wanted(&wanted)) carry_out(wanted);
+    SwapReport report;
+    while (port_.next_report(report)) follow(report);
+    std::unique_lock lock(mutex_);
+    if (last) return;
+    last = stopping_;  // once more, for what came since
+    if (!last && wanted_.empty()) wake_.wait_for(lock, kPoll);
+  }
+}
+
+bool SwapService::take_wanted(Wanted* wanted) {
+  SwapRequest request;
+  if (port_.next_request(request)) {
+    *wanted = {next_of_scenario_++, request.layer, request.to.data(), true,
+               request.tick,        request.time};
+    return true;
+  }
+  const std::scoped_lock lock(mutex_);
+  if (wanted_.empty()) return false;
+  *wanted = std::move(wanted_.front());
+  wanted_.pop_front();
+  return true;
+}
+
+void SwapService::carry_out(const Wanted& wanted) {
+  SwapOrder order{
+      .request = wanted.request, .layer = wanted.layer, .from_scenario = wanted.from_scenario};
+  json what = {{"layer", layer_name(wanted.layer)}};
+  std::string error;
+  if (!wanted.to.empty() && !load(wanted, &order, &what, &error)) {
+    order = {.layer = -1, .from_scenario = wanted.from_scenario};
+  }
+  if (error.empty()) under_way_[wanted.request] = {wanted, std::move(what)};
+  if (!port_.order(order)) {
+    delete order.candidate;
+    under_way_.erase(wanted.request);
+    error = "too many swaps at once; try again later";
+  }
+  if (!error.empty()) refuse(wanted, error);
+}
+
+// The values that the configuration gives it; for a variant that was in use before, those it had.
+std::vector<double> SwapService::values_for(int layer, const GaitdPluginDescriptor& d, int* table,
+                                            std::string* error) {
+  const std::span<const GaitdParameter> declared{d.parameters, d.parameter_count};
+  *table = parts_.parameters->find_table(layer, d.id, declared);
+  if (*table >= 0) return parts_.parameters->values(*table);
+  Issues issues;
+  const auto values = parts_.settings->resolve(layer_name(layer), declared, &issues, d.id);
+  if (!issues.ok()) *error = one_line(issues.error_text());
+  if (!error->empty() || declared.empty()) return values;
+  *table = parts_.parameters->add(layer, layer_name(layer), d.id, declared, values);
+  if (*table < 0) *error = "too many different tables of parameters; start gaitd again";
+  return values;
+}
+
+bool SwapService::load(const Wanted& wanted, SwapOrder* order, json* what, std::string* error) {
+  const auto began = std::chrono::steady_clock::now();
+  const auto path = directory_.find(wanted.layer, wanted.to, error);
+  if (!path) return false;
+  Refusal refusal;
+  const auto file = read_plugin_file(*path, wanted.layer, &refusal);
+  if (!file) {
+    *error = one_line(refusal.text());
+    return false;
+  }
+  const GaitdPluginDescriptor& d = file->descriptor;
+  LoadedLayer::Request request;
+  request.path = *path;
+  request.layer = wanted.layer;
+  request.model = parts_.model;
+  request.parameters = values_for(wanted.layer, d, &order->table, error);
+  request.log = parts_.log;
+  if (!error->empty()) return false;
+  auto layer = LoadedLayer::load(request, &refusal);
+  if (layer == nullptr) {
+    *error = one_line(refusal.text());
+    return false;
+  }
+  const auto& words = parts_.words[wanted.layer];
+  const auto word = std::find(words.begin(), words.end() - 1, d.id);
+  order->variant = static_cast<int>(word - words.begin());
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - began;
+  *what = {{"layer", layer_name(wanted.layer)},
+           {"variant", d.id},
+           {"version", d.version},
+           {"file", path->string()},
+           {"hash", layer->library().hash()},
+           {"parameters", request.parameters},
+           {"staged_ms", took.count()}};
+  order->candidate = layer.release();
+  return true;
+}
+
+// Before the control thread has seen anything of it.
+void SwapService::refuse(const Wanted& wanted, const std::string& why) {
+  const json event = {{"command", wanted.to.empty() ? "plugin.rollback" : "plugin.swap"},
+                      {"layer", layer_name(wanted.layer)},
+                      {"to", wanted.to},
+                      {"accepted", false},
+                      {"reason", why}};
+  parts_.telemetry->record_event(EventKind::kCommand, wanted.tick, wanted.time, event.dump());
+  if (parts_.bridge == nullptr || wanted.from_scenario) return;
+  parts_.bridge->answer(wanted.request, RpcError{rpc_code::kRefused, why, {{"tick", wanted.tick}}});
+}
+
+void SwapService::follow(const SwapReport& report) {
+  delete report.retired;
+  const auto entry = under_way_.find(report.request);
+  if (entry == under_way_.end()) return;
+  UnderWay& swap = entry->second;
+  const char* step = kSwapStepNames[static_cast<int>(report.step)];
+  json said = {{"step", step}, {"tick", report.tick}};
+  if (report.difference > 0.0) said["difference"] = report.difference;
+  if (report.why[0] != '\0') said["why"] = report.why;
+  json event = said;
+  event["request"] = report.request;
+  event["wall_time"] = report.wall_time;
+  // The first event of a swap says everything that it takes to do it again.
+  if (swap.steps.empty()) event.update(swap.what);
+  event["layer"] = layer_name(report.layer);
+  event["rollback"] = report.rollback;
+  swap.steps.push_back(std::move(said));
+  const double time = static_cast<double>(report.tick) * parts_.telemetry->period();
+  parts_.telemetry->record_event(EventKind::kSwap, report.tick, time, event.dump());
+
+  const bool back = report.step == SwapStep::kRolledBack;
+  if (report.step == SwapStep::kSwitched || (back && !report.rolled_back_already)) {
+    const std::scoped_lock lock(mutex_);
+    Names& names = names_[report.layer];
+    if (back) {
+      std::swap(names.in_use, names.before);
+    } else {
+      names.before = std::exchange(names.in_use, swap.what.value("variant", ""));
+    }
+  }
+  if (report.step == SwapStep::kShadow || report.step == SwapStep::kSwitched) return;
+  finish(swap, report);
+  under_way_.erase(entry);
+}
+
+void SwapService::finish(UnderWay& swap, const SwapReport& report) {
+  const bool well =
+      report.step == SwapStep::kDone || (report.rollback && report.step == SwapStep::kRolledBack);
+  const std::string why = report.step == SwapStep::kRolledBack
+                              ? std::string("it was in use and had to go again: ") + report.why
+                              : std::string(report.why);
+  if (!well) {
+    Wanted wanted = swap.wanted;
+    wanted.tick = report.tick;
+    wanted.time = static_cast<double>(report.tick) * parts_.telemetry->period();
+    return refuse(wanted, why);
+  }
+  if (parts_.bridge == nullptr || swap.wanted.from_scenario) return;
+  json result = swap.what;
+  result.erase("parameters");
+  result["accepted"] = true;
+  result["tick"] = report.tick;
+  result["variant"] = variant(report.layer);
+  result["note"] = std::string(layer_name(report.layer)) + " is " + variant(report.layer) +
+                   (report.rollback ? " again" : " now");
+  result["steps"] = swap.steps;
+  parts_.bridge->answer(swap.wanted.request, std::move(result));
+}
+
+}  // namespace gaitd::daemon
