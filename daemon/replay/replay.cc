@@ -148,12 +148,11 @@ bool Player::play(ReplayReport* report, std::string* error) {
   replayed_.resize(table.size());
   Pipeline& pipeline = robot_.pipeline();
   TickData& data = pipeline.data();
-  data.has_truth = log_.metadata_value("truth") == "true";
+  const bool has_truth = log_.metadata_value("truth") == "true";
   LogReader::TickCursor ticks = log_.ticks();
   LogReader::SensorsCursor sensors = log_.sensors();
   const FlushDenormals flush;  // as on the control thread
   for (std::int64_t tick = 0; ticks.next(recorded_); ++tick) {
-    if (!sensors.next(&data.sensors)) break;
     const bool first_part = tick > 0 || recorded_[1] == 0.0;  // the signal "tick"
     if (!first_part || recorded_[1] != static_cast<double>(tick)) {
       *error = first_part ? "ticks are missing in the log from tick " + std::to_string(tick) +
@@ -162,6 +161,9 @@ bool Player::play(ReplayReport* report, std::string* error) {
       return false;
     }
     if (!begin_tick(tick, error)) return false;
+    // After the commands: the reset of a simulation clears what it finds, as on the control thread.
+    if (!sensors.next(&data.sensors)) break;
+    data.has_truth = has_truth;
     pipeline.run(tick);
     record_signals(robot_.model(), data, replayed_);
     compare(tick, report);
