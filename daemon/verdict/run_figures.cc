@@ -71,7 +71,8 @@ double cost_of_transport(const RunData& run) {
     any_joint = true;
     for (std::size_t tick = 1; tick < run.ticks(); ++tick) {
       if (!run.is_during(tick, During::kWalk)) continue;
-      work += std::abs((*torque)[tick] * (*velocity)[tick]) * (run.time()[tick] - run.time()[tick - 1]);
+      work +=
+          std::abs((*torque)[tick] * (*velocity)[tick]) * (run.time()[tick] - run.time()[tick - 1]);
     }
   }
   for (std::size_t tick = 1; tick < run.ticks(); ++tick) {
@@ -86,21 +87,6 @@ double cost_of_transport(const RunData& run) {
   constexpr double kLeastWay = 0.1;  // m
   if (!any_joint || !(impulse > 0.0) || way < kLeastWay) return kNotMeasured;
   return work / (impulse / seconds * way);
-}
-
-WorstJoint torque_step(const RunData& run) {
-  WorstJoint worst;
-  for (const auto& [joint, limit] : run.robot().effort_limits) {
-    const Column* torque = run.find("joint/" + joint + "/torque_desired");
-    if (torque == nullptr || !(limit > 0.0)) continue;
-    for (std::size_t tick = 1; tick < run.ticks(); ++tick) {
-      if (!run.is_during(tick, During::kWalk)) continue;
-      const double step = std::abs((*torque)[tick] - (*torque)[tick - 1]) / limit;
-      if (std::isnan(step)) return {step, joint};
-      if (worst.joint.empty() || step > worst.value) worst = {step, joint};
-    }
-  }
-  return worst;
 }
 
 double saturation(const RunData& run) {
@@ -123,19 +109,24 @@ double saturation(const RunData& run) {
          static_cast<double>(run.ticks());
 }
 
-WorstJoint chatter(const RunData& run) {
+enum class Change { kRms, kLargestWalking };
+
+// Change of the torque per tick over the effort limit, of the joint where it is worst.
+WorstJoint torque_change(const RunData& run, Change change) {
   WorstJoint worst;
   for (const auto& [joint, limit] : run.robot().effort_limits) {
     const Column* torque = run.find("joint/" + joint + "/torque_desired");
     if (torque == nullptr || torque->size() < 2 || !(limit > 0.0)) continue;
-    double squares = 0.0;
+    Column changes;
     for (std::size_t tick = 1; tick < torque->size(); ++tick) {
-      const double change = ((*torque)[tick] - (*torque)[tick - 1]) / limit;
-      squares += change * change;
+      if (change == Change::kLargestWalking && !run.is_during(tick, During::kWalk)) continue;
+      changes.push_back(std::abs((*torque)[tick] - (*torque)[tick - 1]) / limit);
     }
-    const double rms = std::sqrt(squares / static_cast<double>(torque->size() - 1));
-    if (std::isnan(rms)) return {rms, joint};
-    if (worst.joint.empty() || rms > worst.value) worst = {rms, joint};
+    if (changes.empty()) continue;
+    const double value =
+        compute_statistic(change == Change::kRms ? Statistic::kRms : Statistic::kMax, changes);
+    if (std::isnan(value)) return {value, joint};
+    if (worst.joint.empty() || value > worst.value) worst = {value, joint};
   }
   return worst;
 }
@@ -174,9 +165,9 @@ RunFigures compute_run_figures(const RunData& run) {
   figures.stance_knee_mean = stance_knee(run, "position", Statistic::kMean);
   figures.stance_knee_torque = stance_knee(run, "torque_desired", Statistic::kRms);
   figures.cost_of_transport = cost_of_transport(run);
-  figures.torque_step = torque_step(run);
+  figures.torque_step = torque_change(run, Change::kLargestWalking);
   figures.saturation = saturation(run);
-  figures.chatter = chatter(run);
+  figures.chatter = torque_change(run, Change::kRms);
   figures.contact_lost_ticks = contact_lost_ticks(run);
   figures.final_pelvis = {last_of(run, "x"), last_of(run, "y"), last_of(run, "yaw")};
   return figures;

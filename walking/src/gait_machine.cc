@@ -19,13 +19,8 @@ constexpr double kHeldMargin = 0.01;
 // Back into the landing region of the footstep, where it has one.
 void keep_in_region(GaitdFootstep& step) {
   if (step.region_count < 3) return;
-  ConvexPolygon region;
-  for (int i = 0; i < step.region_count; ++i) {
-    region.add({step.landing_region[i][0], step.landing_region[i][1]});
-  }
-  region.make_hull();
-  sdk::view(step.pose.position).head<2>() =
-      region.closest_point(sdk::view(step.pose.position).head<2>());
+  auto position = sdk::view(step.pose.position).head<2>();
+  position = landing_region(step).closest_point(position);
 }
 
 }  // namespace
@@ -155,15 +150,19 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   begin_transfer(other_side(side));
 }
 
+Eigen::Quaterniond GaitMachine::heading() const {
+  return sdk::quaternion(
+      middle_pose(state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose)
+          .orientation);
+}
+
 // Waiting helps an ICP that has not come far enough towards the leading foot; one that runs ahead
 // or has left the feet only gets away.
 bool GaitMachine::icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& plan) const {
   if (support_polygon(model_, state_).inside_distance(sdk::view(robot.icp)) < kHeldMargin) {
     return true;
   }
-  const Eigen::Quaterniond heading = sdk::quaternion(
-      middle_pose(state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose)
-          .orientation);
+  const Eigen::Quaterniond heading = this->heading();
   const Eigen::Vector2d error = sdk::view(robot.icp) - sdk::view(plan.icp);
   const Eigen::Vector3d local = heading.conjugate() * Eigen::Vector3d(error.x(), error.y(), 0.0);
   const GaitdPose& leading = state_.footholds[other_side(state_.next_side)].pose;

@@ -18,10 +18,7 @@ constexpr double kClosedGap = 0.05;  // m, feet that are as good as side by side
 }  // namespace
 
 int GaitMachine::recovery_side(const GaitdRobotState& robot, const Eigen::Vector2d& away) const {
-  const Eigen::Quaterniond heading = sdk::quaternion(
-      middle_pose(state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose)
-          .orientation);
-  const Eigen::Vector3d local = heading.conjugate() * Eigen::Vector3d(away.x(), away.y(), 0.0);
+  const Eigen::Vector3d local = heading().conjugate() * Eigen::Vector3d(away.x(), away.y(), 0.0);
   if (std::abs(local.y()) > kSideways * std::abs(local.x())) {
     return local.y() > 0.0 ? GAITD_LEFT : GAITD_RIGHT;
   }
@@ -34,7 +31,7 @@ int GaitMachine::recovery_side(const GaitdRobotState& robot, const Eigen::Vector
     return left_ahead > 0.0 ? GAITD_RIGHT : GAITD_LEFT;
   }
   return robot.feet[GAITD_LEFT].normal_force < robot.feet[GAITD_RIGHT].normal_force ? GAITD_LEFT
-                                                                                     : GAITD_RIGHT;
+                                                                                    : GAITD_RIGHT;
 }
 
 GaitdFootstep GaitMachine::recovery_step(const GaitdRobotState& robot, int side) const {
@@ -46,8 +43,7 @@ GaitdFootstep GaitMachine::recovery_step(const GaitdRobotState& robot, int side)
   sole.make_hull();
   const Eigen::Vector2d icp = sdk::view(robot.icp);
   const Eigen::Vector2d cmp = sole.closest_point(icp);
-  const double time =
-      parameters_[Gait::kRecoverySwing] + parameters_[Gait::kRecoveryTransfer];
+  const double time = parameters_[Gait::kRecoverySwing] + parameters_[Gait::kRecoveryTransfer];
   const Eigen::Vector2d coming = cmp + std::exp(state_.omega * time) * (icp - cmp);
 
   GaitdFootstep step{};
@@ -61,9 +57,9 @@ GaitdFootstep GaitMachine::recovery_step(const GaitdRobotState& robot, int side)
       heading.conjugate() * Eigen::Vector3d(coming.x() - middle.x(), coming.y() - middle.y(), 0.0);
   local.x() = std::clamp(local.x(), -parameters_[Gait::kMaxStepBackward],
                          parameters_[Gait::kMaxStepForward]);
-  local.y() = side_sign(side) * std::clamp(side_sign(side) * local.y(),
-                                           model_.nominal_foot_separation,
-                                           parameters_[Gait::kMaxFootSeparation]);
+  local.y() =
+      side_sign(side) * std::clamp(side_sign(side) * local.y(), model_.nominal_foot_separation,
+                                   parameters_[Gait::kMaxFootSeparation]);
   sdk::view(step.pose.position).head<2>() = (middle + heading * local).head<2>();
   step.pose.position[2] -= height_offset_;
   sdk::store(heading, step.pose.orientation);
@@ -73,8 +69,7 @@ GaitdFootstep GaitMachine::recovery_step(const GaitdRobotState& robot, int side)
 }
 
 bool GaitMachine::recover(double dt, const GaitdRobotState& robot) {
-  const double load =
-      robot.feet[GAITD_LEFT].normal_force + robot.feet[GAITD_RIGHT].normal_force;
+  const double load = robot.feet[GAITD_LEFT].normal_force + robot.feet[GAITD_RIGHT].normal_force;
   const ConvexPolygon feet = support_polygon(model_, state_);
   const Eigen::Vector2d icp = sdk::view(robot.icp);
   const bool held = feet.inside_distance(icp) >= parameters_[Gait::kRecoveryMargin];

@@ -29,8 +29,8 @@ void IcpFeedback::update_kappa(const GaitdStepAdjusterInput& in) {
   }
   const double height = in.robot->com[2] - (feet > 0 ? ground / feet : 0.0);
   const double omega = in.gait->omega;
-  const double kappa =
-      std::clamp(height * omega * omega / model_.gravity, p_[Feedback::kKappaMin], p_[Feedback::kKappaMax]);
+  const double kappa = std::clamp(height * omega * omega / model_.gravity, p_[Feedback::kKappaMin],
+                                  p_[Feedback::kKappaMax]);
   const double blend = 1.0 - std::exp(-2.0 * M_PI * p_[Feedback::kKappaFilter] * in.time.period);
   state_.kappa += blend * (kappa - state_.kappa);
 }

@@ -59,6 +59,15 @@ GaitdFoothold foothold_of(const GaitdModel& model, const GaitdFootstep& footstep
   return foothold;
 }
 
+ConvexPolygon landing_region(const GaitdFootstep& footstep) {
+  ConvexPolygon region;
+  for (int i = 0; i < footstep.region_count; ++i) {
+    region.add({footstep.landing_region[i][0], footstep.landing_region[i][1]});
+  }
+  region.make_hull();
+  return region;
+}
+
 SoleExtent sole_extent(const GaitdFoothold& foothold) {
   SoleExtent e{1e9, -1e9, 1e9, -1e9};
   for (int i = 0; i < foothold.polygon_count; ++i) {

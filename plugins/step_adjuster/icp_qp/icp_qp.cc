@@ -10,9 +10,9 @@
 namespace gaitd::plugins {
 namespace {
 
-constexpr double kUnit = 0.1;         // m of shift that costs one unit in the choice of timing
-constexpr double kMissUnit = 0.01;    // m of ICP missed at touchdown, likewise
-constexpr double kTimeStep = 0.01;    // s, between the candidates of timing
+constexpr double kUnit = 0.1;          // m of shift that costs one unit in the choice of timing
+constexpr double kMissUnit = 0.01;     // m of ICP missed at touchdown, likewise
+constexpr double kTimeStep = 0.01;     // s, between the candidates of timing
 constexpr double kPeakOverMean = 1.9;  // speed of a swing from rest to rest, fifth order
 constexpr int kUnknownPhase = -1;
 constexpr double kLeastGamma = 0.2;
@@ -60,8 +60,8 @@ void IcpQp::begin_phase(const GaitdGaitState& gait) {
   // A step before this one may have left the commanded way, another variant may have begun it.
   shift_ = start_shift_ =
       (view(gait.adjusted[0].pose.position) - view(step.pose.position)).head<2>();
-  time_shift_ = gait.phase_duration - (phase_ == GAITD_PHASE_SWING ? step.swing_duration
-                                                                    : step.transfer_duration);
+  time_shift_ = gait.phase_duration -
+                (phase_ == GAITD_PHASE_SWING ? step.swing_duration : step.transfer_duration);
 }
 
 Capture IcpQp::capture(const GaitdStepAdjusterInput& in) const {
@@ -74,8 +74,8 @@ Capture IcpQp::capture(const GaitdStepAdjusterInput& in) const {
   c.icp = view(in.robot->icp);
   const double growth = std::exp(c.omega * gait.time_remaining);
   c.gamma_end = std::max(in.plan->gamma[0] * growth, kLeastGamma);
-  const Eigen::Vector2d made = (view(gait.adjusted[0].pose.position) -
-                                view(step.pose.position)).head<2>();
+  const Eigen::Vector2d made =
+      (view(gait.adjusted[0].pose.position) - view(step.pose.position)).head<2>();
   c.start_shift = start_shift_;
   c.icp_end = view(in.plan->icp_end) + c.gamma_end * (start_shift_ - made);
   const Eigen::Vector2d planned = view(in.plan->icp) - view(in.plan->offset);
@@ -89,8 +89,8 @@ Capture IcpQp::capture(const GaitdStepAdjusterInput& in) const {
   if (gait.footstep_count == 1) {
     // The step ends in standing: the ICP may come to rest anywhere well between the feet.
     walking::ConvexPolygon both;
-    for (const GaitdFoothold& f : {gait.footholds[gait.support],
-                                   walking::foothold_of(model_, gait.adjusted[0])}) {
+    for (const GaitdFoothold& f :
+         {gait.footholds[gait.support], walking::foothold_of(model_, gait.adjusted[0])}) {
       walking::add_foothold(f, model_.feet[step.side].toe_point, both);
     }
     both.make_hull();
@@ -110,17 +110,17 @@ Capture IcpQp::capture(const GaitdStepAdjusterInput& in) const {
   const double backward = -p_[P::kReachBackward] * height;
   const double inward = p_[P::kReachInward] * separation;
   const double outward = p_[P::kReachOutward] * height;
-  for (const auto& [x, y] : {std::pair{forward, inward}, {forward, separation}, {0.0, outward},
-                             {backward, separation}, {backward, inward}}) {
+  for (const auto& [x, y] : {std::pair{forward, inward},
+                             {forward, separation},
+                             {0.0, outward},
+                             {backward, separation},
+                             {backward, inward}}) {
     c.reach.add(Eigen::Vector2d(view(stance.position).head<2>()) +
                 heading * Eigen::Vector2d(x, side * y));
   }
   c.reach.add(c.commanded + start_shift_);
   c.reach.make_hull();
-  for (int i = 0; i < step.region_count; ++i) {
-    c.landing.add({step.landing_region[i][0], step.landing_region[i][1]});
-  }
-  c.landing.make_hull();
+  c.landing = walking::landing_region(step);
   return c;
 }
 

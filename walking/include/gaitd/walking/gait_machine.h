@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "gaitd/abi/types.h"
 #include "gaitd/walking/commands.h"
@@ -54,6 +55,8 @@ class GaitMachine {
   void begin_stand();
   void touch_down(const GaitdRobotState& robot, bool early);
   void apply_pending_mode();
+  // Level, half-way between the feet.
+  Eigen::Quaterniond heading() const;
   void adjust(const GaitdStepAdjustment& adjustment);
   // Standing, or on the way to it: whether only a step can catch the robot; begins that step.
   bool recover(double dt, const GaitdRobotState& robot);

@@ -19,6 +19,9 @@ GaitdFoothold foothold_of(const GaitdModel& model, const GaitdFootstep& footstep
 // A foothold at `pose` with the whole sole.
 GaitdFoothold whole_sole(const GaitdModel& model, int side, const GaitdPose& pose);
 
+// Where the footstep may land, in W, seen from above; empty: anywhere.
+ConvexPolygon landing_region(const GaitdFootstep& footstep);
+
 // Extent of the loadable part of a foothold in the sole frame (m).
 struct SoleExtent {
   double x_min, x_max, y_min, y_max;
