@@ -149,9 +149,8 @@ std::optional<Campaign> load_campaign(const std::string& file, Issues* issues) {
   campaign.text.assign(std::istreambuf_iterator<char>(in), {});
   MapReader root(node, "", issues);
   root.require({"schema", "name", "scenarios"});
-  constexpr std::array<std::string_view, 1> kSchemas = {"gaitd.campaign/1"};
   constexpr std::array<std::string_view, 2> kSuccess = {"expectations", "no_fall"};
-  root.choice("schema", kSchemas);
+  root.schema("gaitd.campaign/1");
   campaign.name = root.text("name").value_or("");
   read_scenarios(&root, &campaign);
   read_settings(root.map("set"), &campaign);

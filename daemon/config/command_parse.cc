@@ -17,7 +17,6 @@ constexpr std::array<std::string_view, 3> kModes = {"stand", "walk-straight", "w
 constexpr std::array<std::string_view, 2> kSides = {"left", "right"};
 constexpr int kMaxSteps = 1000;
 constexpr Bounds kDuration = {0.05, 20.0, "s"};
-constexpr Bounds kPosition = {-1e4, 1e4, "m"};
 constexpr Bounds kSolePosition = {-1.0, 1.0, "m"};
 
 struct PlainMethod {
@@ -95,7 +94,7 @@ void read_contact_polygon(MapReader* map, GaitdFootstep* footstep) {
 void read_landing_region(MapReader* map, GaitdFootstep* footstep) {
   const std::vector<NodePtr> nodes = map->list("landing_region", 3, GAITD_MAX_REGION_POINTS);
   const std::string path = map->path_of("landing_region");
-  const std::vector<double> points = read_points(nodes, path, 3, kPosition, map->issues());
+  const std::vector<double> points = read_points(nodes, path, 3, kPositionBounds, map->issues());
   if (points.empty()) return;
   footstep->region_count = static_cast<int>(points.size() / 3);
   std::copy(points.begin(), points.end(), &footstep->landing_region[0][0]);
@@ -111,9 +110,9 @@ void read_landing_region(MapReader* map, GaitdFootstep* footstep) {
 void read_footstep(MapReader map, GaitdFootstep* footstep) {
   map.require({"side", "x", "y"});
   footstep->side = map.choice("side", kSides).value_or(GAITD_LEFT);
-  footstep->pose.position[0] = map.number("x", kPosition).value_or(0.0);
-  footstep->pose.position[1] = map.number("y", kPosition).value_or(0.0);
-  footstep->pose.position[2] = map.number("z", kPosition).value_or(0.0);
+  footstep->pose.position[0] = map.number("x", kPositionBounds).value_or(0.0);
+  footstep->pose.position[1] = map.number("y", kPositionBounds).value_or(0.0);
+  footstep->pose.position[2] = map.number("z", kPositionBounds).value_or(0.0);
   const double yaw = map.number("yaw", {-100.0, 100.0, "rad"}).value_or(0.0);
   const double pitch = map.number("pitch", {-1.0, 1.0, "rad"}).value_or(0.0);
   const double roll = map.number("roll", {-1.0, 1.0, "rad"}).value_or(0.0);

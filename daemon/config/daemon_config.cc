@@ -9,7 +9,6 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr std::string_view kSchema = "gaitd.config/1";
 constexpr std::array<std::string_view, 3> kBackends = {"simbody", "socketcan", "mock"};
 constexpr std::array<std::string_view, 2> kClocks = {"realtime", "lockstep"};
 constexpr std::array<std::string_view, 3> kProfiles = {"simulation", "hardware", "auto"};
@@ -101,9 +100,7 @@ bool load_config_file(const std::string& file, Settings* settings, Issues* issue
   const NodePtr document = load_yaml_file(file, &found);
   MapReader root(document, "", &found);
   root.require({"schema"});
-  if (const auto schema = root.text("schema"); schema && *schema != kSchema) {
-    root.fail("schema", std::string(kSchema), *schema, "write that, or use a matching gaitd");
-  }
+  root.schema("gaitd.config/1");
   if (root.valid()) {
     Node settings_only = *document;
     std::erase_if(settings_only.entries,

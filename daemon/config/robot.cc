@@ -16,7 +16,6 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr std::string_view kSchema = "gaitd.robot/1";
 
 void read_parameters(MapReader map, SettingSource source, Settings* settings, Issues* issues) {
   for (const Node::Entry& entry : map.entries()) {
@@ -169,9 +168,7 @@ std::optional<Robot> read_robot(const NodePtr& document, const std::string& file
   Robot robot;
   robot.file = file;
   root.require({"schema", "name", "urdf", "pelvis", "feet", "legs", "imus", "posture"});
-  if (const auto schema = root.text("schema"); schema && *schema != kSchema) {
-    root.fail("schema", std::string(kSchema), *schema, "write that, or use a matching gaitd");
-  }
+  root.schema("gaitd.robot/1");
   robot.name = root.text("name").value_or("");
   if (robot.name.size() >= GAITD_NAME_SIZE) {
     root.fail("name", "at most 47 characters", std::to_string(robot.name.size()), "shorten it");

@@ -11,7 +11,6 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr std::string_view kSchema = "gaitd.scenario/1";
 constexpr std::array<std::string_view, 3> kModes = {"stand", "walk-straight", "walk-bent"};
 // What the command line may replace.
 constexpr std::array<std::string_view, 8> kOverridable = {
@@ -29,11 +28,10 @@ NodePtr with_overrides(NodePtr root, Settings* settings) {
 
 // Without a height the robot starts on the ground.
 GaitdStart read_start(MapReader map, const nlohmann::json& terrain, const Location& where) {
-  constexpr Bounds kPosition = {-1e4, 1e4, "m"};
   GaitdStart start{};
-  start.position[0] = map.number("x", kPosition).value_or(0.0);
-  start.position[1] = map.number("y", kPosition).value_or(0.0);
-  start.position[2] = map.number("z", kPosition).value_or(terrain.value("ground_z", 0.0));
+  start.position[0] = map.number("x", kPositionBounds).value_or(0.0);
+  start.position[1] = map.number("y", kPositionBounds).value_or(0.0);
+  start.position[2] = map.number("z", kPositionBounds).value_or(terrain.value("ground_z", 0.0));
   if (!map.has("z") && !terrain.contains("ground_z")) {
     map.issues()->add(map.valid() ? map.where() : where, "start.z",
                       "the height of the soles, as there is no terrain.ground_z", "nothing",
@@ -92,9 +90,7 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
   if (document->kind == NodeKind::kMap) overlaid = with_overrides(document, settings);
   MapReader root(overlaid, "", &found);
   root.require({"schema", "name", "robot", "duration"});
-  if (const auto schema = root.text("schema"); schema && *schema != kSchema) {
-    root.fail("schema", std::string(kSchema), *schema, "write that, or use a matching gaitd");
-  }
+  root.schema("gaitd.scenario/1");
   Scenario scenario;
   scenario.file = file;
   scenario.name = root.text("name").value_or("");

@@ -7,7 +7,6 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr Bounds kPosition = {-1e4, 1e4, "m"};
 constexpr Bounds kTolerance = {1e-6, 1e3, "m"};
 constexpr Bounds kAngle = {-100.0, 100.0, "rad"};
 constexpr Bounds kAngleTolerance = {1e-6, 10.0, "rad"};
@@ -22,8 +21,8 @@ std::optional<FinalPelvis> read_final_pelvis(MapReader map) {
   if (!map.valid()) return std::nullopt;
   map.require({"x", "y", "tolerance"});
   FinalPelvis result;
-  result.x = map.number("x", kPosition).value_or(0.0);
-  result.y = map.number("y", kPosition).value_or(0.0);
+  result.x = map.number("x", kPositionBounds).value_or(0.0);
+  result.y = map.number("y", kPositionBounds).value_or(0.0);
   result.tolerance = map.number("tolerance", kTolerance).value_or(0.0);
   result.yaw = map.number("yaw", kAngle);
   result.yaw_tolerance = map.number("yaw_tolerance", kAngleTolerance);

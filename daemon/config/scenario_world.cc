@@ -10,7 +10,6 @@ namespace {
 constexpr double kDefaultFriction = 0.8;
 constexpr std::size_t kMaxBoxes = 1000;
 constexpr Bounds kFriction = {0.0, 10.0, ""};
-constexpr Bounds kPosition = {-1e4, 1e4, "m"};
 
 struct Figure {
   std::string_view name;
@@ -65,7 +64,7 @@ nlohmann::json read_box(MapReader map, double friction) {
   std::array<double, 3> center{};
   std::array<double, 3> size{};
   std::array<double, 3> rpy{};
-  map.numbers("center", center, kPosition);
+  map.numbers("center", center, kPositionBounds);
   map.numbers("size", size, {1e-3, 1e4, "m"});
   map.numbers("rpy", rpy, {-6.3, 6.3, "rad"});
   const double own_friction = map.number("friction", kFriction).value_or(friction);
@@ -91,7 +90,7 @@ nlohmann::json read_terrain(MapReader map) {
   }
   const double friction = map.number("friction", kFriction).value_or(kDefaultFriction);
   nlohmann::json result = {{"friction", friction}, {"boxes", nlohmann::json::array()}};
-  if (const auto ground = map.number("ground_z", kPosition)) result["ground_z"] = *ground;
+  if (const auto ground = map.number("ground_z", kPositionBounds)) result["ground_z"] = *ground;
   const std::vector<NodePtr> boxes = map.list("boxes", 0, kMaxBoxes);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const std::string path = map.path_of("boxes") + "[" + std::to_string(i) + "]";

@@ -108,6 +108,13 @@ std::optional<std::string> MapReader::text(std::string_view key) {
   return std::nullopt;
 }
 
+void MapReader::schema(std::string_view expected) {
+  const auto got = text("schema");
+  if (got && *got != expected) {
+    fail("schema", expected, *got, "write that, or use a matching gaitd");
+  }
+}
+
 std::optional<int> MapReader::choice(std::string_view key,
                                      std::span<const std::string_view> words) {
   const NodePtr value = node(key);

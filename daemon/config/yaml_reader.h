@@ -25,6 +25,8 @@ struct Bounds {
   std::string text() const;  // "0.05..20 s", "at least 0 m", "" when unbounded
 };
 
+inline constexpr Bounds kPositionBounds = {-1e4, 1e4, "m"};
+
 // Checked access to one map. Every getter names a key that may be there: it returns nothing when
 // the key is absent, and reports and returns nothing when the value does not fit. `finish` reports
 // the keys that nobody asked for. Nothing throws; a reader over something that is not a map reports
@@ -42,6 +44,8 @@ class MapReader {
   std::optional<double> number(std::string_view key, const Bounds& bounds = {});
   std::optional<long long> integer(std::string_view key, long long minimum, long long maximum);
   std::optional<bool> boolean(std::string_view key);
+  // The key `schema`, if there, must be this.
+  void schema(std::string_view expected);
   // A scalar read as text, not empty.
   std::optional<std::string> text(std::string_view key);
   // The index of the word among `words`.

@@ -110,7 +110,7 @@ void Storm::recover() {
 }
 
 void Storm::burst() {
-  next_burst_ = tick_ + source_.integer(10, 60);
+  next_burst_ = tick_ + source_.integer(5, 30);
   for (int i = source_.integer(1, 3); i > 0; --i) {
     Connection& c = connection(static_cast<std::size_t>(source_.integer(0, 3)));
     std::vector<Request> requests;
