@@ -28,6 +28,7 @@ void keep_in_region(GaitdFootstep& step) {
 GaitMachine::GaitMachine(const GaitdModel& model)
     : model_(model),
       parameters_(kGaitParameters),
+      timing_(model),
       nominal_omega_(std::sqrt(model.gravity / model.nominal_com_height)) {
   const int separation = static_cast<int>(Gait::kMinFootSeparation);
   set_parameter(separation, kGaitParameters[separation].default_value);
@@ -87,7 +88,7 @@ void GaitMachine::begin_stand() {
   publish_footsteps();
 }
 
-void GaitMachine::begin_transfer(int trailing_side) {
+void GaitMachine::begin_transfer(const GaitdRobotState& robot, int trailing_side) {
   const bool final = queue_.size() == 0 || state_.paused != 0;
   state_.phase = GAITD_PHASE_TRANSFER;
   state_.support = GAITD_BOTH;
@@ -95,6 +96,7 @@ void GaitMachine::begin_transfer(int trailing_side) {
   state_.transfer_final = final ? 1 : 0;
   state_.time_in_phase = 0.0;
   time_shift_ = 0.0;
+  time_changes_ = {};
   state_.final_transfer_duration = parameters_[Gait::kFinalTransferDuration];
   if (final) {
     state_.phase_duration = state_.final_transfer_duration;
@@ -108,8 +110,22 @@ void GaitMachine::begin_transfer(int trailing_side) {
     state_.next_side = queue_[0].side;
     ++state_.step_index;
   }
+  publish_footsteps();
+  if (!final) time_step(robot);
   state_.time_remaining = state_.phase_duration;
   changed();
+}
+
+void GaitMachine::time_step(const GaitdRobotState& robot) {
+  const GaitParameters& p = parameters_;
+  const bool wanted = p.flag(Gait::kStepTiming) && state_.mode == GAITD_MODE_WALK_STRAIGHT;
+  if (!wanted || recovering_) return;
+  time_changes_ = timing_.solve(state_, sdk::view(robot.com).head<2>(),
+                                {.knee = p[Gait::kTimingKnee],
+                                 .drop = p[Gait::kTimingDrop],
+                                 .roll = p[Gait::kTimingRoll],
+                                 .change = p[Gait::kTimingChange]});
+  state_.phase_duration += time_changes_[0];
   publish_footsteps();
 }
 
@@ -119,7 +135,7 @@ void GaitMachine::begin_swing(const GaitdRobotState& robot) {
   state_.support = other_side(side);
   state_.next_side = side;
   state_.time_in_phase = 0.0;
-  state_.phase_duration = queue_[0].swing_duration;
+  state_.phase_duration = queue_[0].swing_duration + time_changes_[1];
   state_.time_remaining = state_.phase_duration;
   state_.early_contact = 0;
   state_.late_contact = 0;
@@ -147,7 +163,7 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   if (recovering_) close_after_recovery();
   time_shift_ = 0.0;
   apply_pending_mode();
-  begin_transfer(other_side(side));
+  begin_transfer(robot, other_side(side));
 }
 
 Eigen::Quaterniond GaitMachine::heading() const {
@@ -202,13 +218,13 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
     case GAITD_PHASE_STAND:
       apply_pending_mode();
       if (recover(dt, robot)) break;
-      if (queue_.size() > 0 && state_.paused == 0) begin_transfer(GAITD_BOTH);
+      if (queue_.size() > 0 && state_.paused == 0) begin_transfer(robot, GAITD_BOTH);
       break;
     case GAITD_PHASE_TRANSFER: {
       if (state_.transfer_final != 0) {
         if (recover(dt, robot)) break;
         if (queue_.size() > 0 && state_.paused == 0) {
-          begin_transfer(GAITD_BOTH);
+          begin_transfer(robot, GAITD_BOTH);
         } else if (over) {
           recovering_ = false;
           begin_stand();
@@ -252,6 +268,10 @@ void GaitMachine::publish_footsteps() {
     if (i > 0) keep_in_region(state_.adjusted[i]);
     position.z() += height_offset_;
     offset *= parameters_[Gait::kShiftKept];
+    if (2 * i + 1 < StepTiming::kPhases) {
+      state_.adjusted[i].transfer_duration += time_changes_[2 * i];
+      state_.adjusted[i].swing_duration += time_changes_[2 * i + 1];
+    }
   }
 }
 

@@ -90,7 +90,7 @@ bool GaitMachine::recover(double dt, const GaitdRobotState& robot) {
   state_.paused = 0;
   path_offset_.setZero();
   recovering_ = true;
-  begin_transfer(GAITD_BOTH);
+  begin_transfer(robot, GAITD_BOTH);
   return true;
 }
 

@@ -150,6 +150,21 @@ double IcpTrajectory::gamma(int footstep, double remaining) const {
   return end - slope * omega_ * left + slope + std::exp(-omega_ * left) * (icp - end - slope);
 }
 
+// On a piece xi = r + c/w + B exp(w t), so that com' = w (xi - com) has the solution
+// com = r + B/2 exp(w t) + K exp(-w t).
+void IcpTrajectory::com_at_ends(Eigen::Vector2d com, std::span<Eigen::Vector2d> ends) const {
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (static_cast<int>(i) < count_) {
+      const Piece& p = pieces_[i];
+      const double decay = std::exp(-omega_ * p.duration);
+      const Eigen::Vector2d slope = (p.end - p.start) / (p.duration * omega_);
+      const Eigen::Vector2d end = icp_at_start(static_cast<int>(i) + 1) - p.end - slope;
+      com = p.end + 0.5 * end + decay * (com - p.start - 0.5 * decay * end);
+    }
+    ends[i] = com;
+  }
+}
+
 void IcpTrajectory::fit_start(const Eigen::Vector2d& icp, double limit) {
   if (count_ == 0) return;
   Piece& p = pieces_[0];

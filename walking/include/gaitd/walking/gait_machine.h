@@ -8,6 +8,7 @@
 #include "gaitd/walking/commands.h"
 #include "gaitd/walking/footsteps.h"
 #include "gaitd/walking/refusal.h"
+#include "gaitd/walking/step_timing.h"
 
 namespace gaitd::walking {
 
@@ -50,7 +51,9 @@ class GaitMachine {
  private:
   static constexpr int kQueueCapacity = 1024;
 
-  void begin_transfer(int trailing_side);
+  void begin_transfer(const GaitdRobotState& robot, int trailing_side);
+  // Changes the durations of the step that begins where the legs would be too short for it.
+  void time_step(const GaitdRobotState& robot);
   void begin_swing(const GaitdRobotState& robot);
   void begin_stand();
   void touch_down(const GaitdRobotState& robot, bool early);
@@ -82,6 +85,8 @@ class GaitMachine {
   Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();        // m, of the current swing's foothold
   Eigen::Vector3d path_offset_ = Eigen::Vector3d::Zero();  // m, of the next foothold after it
   double time_shift_ = 0.0;                            // s, of the current phase
+  StepTiming timing_;
+  StepTiming::Changes time_changes_{};  // s, from the transfer of the current step on
   double time_unheld_ = 0.0;  // s, since the feet cannot hold the ICP
   bool recovering_ = false;   // the steps of now are the robot's own
   double height_offset_ = 0.0;  // m, measured minus commanded height of the ground so far

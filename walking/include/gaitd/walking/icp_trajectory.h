@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <span>
 
 #include "gaitd/abi/types.h"
 
@@ -46,6 +47,10 @@ class IcpTrajectory {
   Sample evaluate(double remaining) const;
   // d icp / d (footstep i and all after it), with `remaining` seconds left in the current piece.
   double gamma(int footstep, double remaining) const;
+
+  // Where a CoM that is now at `com` (m) is at the ends of the first pieces, when it follows the
+  // ICP: as many as fit, standing at the last end beyond that.
+  void com_at_ends(Eigen::Vector2d com, std::span<Eigen::Vector2d> ends) const;
 
   // First transfer: the start of the first piece is free so that the ICP begins at `icp` (m) with
   // the whole piece ahead; kept within `limit` metres of where it was. Theory section 2.
