@@ -59,6 +59,15 @@ void check_link(const std::string& link, const GaitdModel& model, const Location
               suggestion(link, body_names(model)));
 }
 
+void check_sensor(const std::string& sensor, const GaitdModel& model, const std::string& path,
+                  const Location& where, Issues* issues) {
+  std::vector<std::string> known = {"imu", "left_foot", "right_foot"};
+  for (int i = 0; i < model.joint_count; ++i) known.emplace_back(model.joints[i].name);
+  if (std::find(known.begin(), known.end(), sensor) != known.end()) return;
+  issues->add(where, path, "imu, left_foot, right_foot or a joint", sensor,
+              suggestion(sensor, known));
+}
+
 }  // namespace
 
 nlohmann::json Scenario::simulator_config() const {
@@ -129,6 +138,11 @@ void check_scenario(const Scenario& scenario, const GaitdModel& model, Issues* i
   }
   for (const ScenarioDisturbance& disturbance : scenario.disturbances) {
     check_link(disturbance.link, model, disturbance.where, "disturbances.link", issues);
+  }
+  const nlohmann::json faults = scenario.sensors.value("faults", nlohmann::json::array());
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    check_sensor(faults[i].value("sensor", ""), model,
+                 "sensors.faults[" + std::to_string(i) + "].sensor", {scenario.file, 0}, issues);
   }
   for (const auto& [section, links] : scenario.model_error.items()) {
     if (!links.is_object()) continue;

@@ -9,6 +9,9 @@ namespace {
 
 constexpr double kDefaultFriction = 0.8;
 constexpr std::size_t kMaxBoxes = 1000;
+constexpr std::size_t kMaxSensorFaults = 100;
+constexpr std::array<std::string_view, 5> kSensorFaultKinds = {"freeze", "nan", "spike", "dead",
+                                                               "silent"};
 constexpr Bounds kFriction = {0.0, 10.0, ""};
 
 struct Figure {
@@ -107,6 +110,17 @@ nlohmann::json read_terrain(MapReader map) {
 nlohmann::json read_sensors(MapReader map) {
   nlohmann::json result = {
       {"noise", read_word_or_figures(&map, "noise", {"none", "nominal"}, kSensorFigures)}};
+  const std::vector<NodePtr> faults = map.list("faults", 0, kMaxSensorFaults);
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    MapReader fault(faults[i], map.path_of("faults") + "[" + std::to_string(i) + "]", map.issues());
+    fault.require({"sensor", "kind", "from", "duration"});
+    result["faults"].push_back(
+        {{"sensor", fault.text("sensor").value_or("")},
+         {"kind", kSensorFaultKinds[fault.choice("kind", kSensorFaultKinds).value_or(0)]},
+         {"from", fault.number("from", {0.0, 1e5, "s"}).value_or(0.0)},
+         {"duration", fault.number("duration", {0.0, 1e5, "s"}).value_or(0.0)}});
+    fault.finish();
+  }
   map.finish();
   return result;
 }

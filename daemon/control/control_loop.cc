@@ -75,7 +75,7 @@ LoopReport ControlLoop::run() {
 ControlLoop::Outcome ControlLoop::tick() {
   const TickGuard guard;
   TickData& data = pipeline_->data();
-  const GaitdStatus read = backend_.vtable->read(backend_.self, &data.sensors);
+  const GaitdStatus read = backend_.vtable->read(backend_.self, &data.readings);
   if (read == GAITD_NOT_READY) return Outcome::kNotReady;
   if (read != GAITD_OK) {
     if ((pipeline_->safety().faults() & kFaultBackend) == 0) {
@@ -210,7 +210,7 @@ void ControlLoop::record() {
   slot->tick = data.time.tick;
   slot->time = data.time.time;
   record_signals(model_, data, slot->values);
-  *slot->sensors = data.sensors;
+  *slot->sensors = data.readings;
   telemetry_->commit();
 }
 
@@ -236,6 +236,12 @@ void ControlLoop::report_changes() {
   if ((d.faults & (kFaultEstimator | kFaultLayer | kFaultSolver)) != 0 && failure.layer >= 0) {
     length += std::snprintf(text + length, sizeof(text) - length, R"(,"layer":"%s","what":"%s")",
                             sdk::kLayerNames[failure.layer].data(), failure.what);
+  }
+  if ((d.faults & kFaultSensors) != 0) {
+    const SensorMonitor::Suspect& suspect = pipeline_->monitor().suspect();
+    length += std::snprintf(text + length, sizeof(text) - length,
+                            R"(,"sensor":"%s","what":"%s for %.0f ms")", suspect.sensor,
+                            name_of(suspect.suspicion), 1e3 * suspect.age);
   }
   length += std::snprintf(text + length, sizeof(text) - length, "}");
   telemetry_->push_event(d.safety == SafetyState::kFault ? EventKind::kFault : EventKind::kState,

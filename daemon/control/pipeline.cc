@@ -32,7 +32,8 @@ Pipeline::Pipeline(const GaitdModel& model, LayerChain::Layers layers, const Gai
       layers_(std::move(layers), model_),
       gait_(model),
       objectives_(model),
-      safety_(model) {
+      safety_(model),
+      monitor_(model) {
   layers_.rules().period = period;
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     layers_.in_use(layer).table = parameters_->table_in_use(layer);
@@ -138,6 +139,7 @@ bool Pipeline::take_swap_report(SwapReport* report) {
 void Pipeline::reset() {
   layers_.reset();
   safety_.reset();
+  monitor_.reset();
   const auto variants = data_.variants;
   data_ = TickData{};
   data_.variants = variants;
@@ -157,6 +159,7 @@ void Pipeline::run(std::int64_t tick) {
   const Stopwatch watch;
   TickData& d = data_;
   d.time = {tick, static_cast<double>(tick) * period_, period_};
+  monitor_.check(period_, safety_.parameters(), d);
   const bool estimated = layers_.estimate(start_, d);
   safety_.check(d, estimated);
   if (safety_.update(period_, d, gait_.walking())) begin_control();

@@ -4,6 +4,7 @@
 #include "daemon/command/command.h"
 #include "daemon/control/layer_chain.h"
 #include "daemon/control/safety.h"
+#include "daemon/control/sensor_monitor.h"
 #include "daemon/control/tick_data.h"
 #include "daemon/parameters/live_parameters.h"
 #include "gaitd/walking/gait_machine.h"
@@ -29,12 +30,13 @@ class Pipeline {
   // Back to the first tick: for the reset of a simulation. Parameters stay.
   void reset();
 
-  // data().sensors must hold the sensors of tick `tick`; data().commands holds the answer after.
+  // data().readings must hold the sensors of tick `tick`; data().commands holds the answer after.
   void run(std::int64_t tick);
 
   TickData& data() { return data_; }
   const TickData& data() const { return data_; }
   Safety& safety() { return safety_; }
+  const SensorMonitor& monitor() const { return monitor_; }
   walking::GaitMachine& gait() { return gait_; }
   walking::ObjectiveBuilder& objectives() { return objectives_; }
   LayerChain& layers() { return layers_; }
@@ -54,6 +56,7 @@ class Pipeline {
   walking::GaitMachine gait_;
   walking::ObjectiveBuilder objectives_;
   Safety safety_;
+  SensorMonitor monitor_;
   TickData data_;
 };
 

@@ -16,6 +16,7 @@ class Safety {
 
   SafetyState state() const { return state_; }
   std::uint32_t faults() const { return faults_; }
+  const sdk::Parameters<SafetyParameter>& parameters() const { return p_; }
   // The whole-body controller has the joints.
   bool controlled() const {
     return state_ == SafetyState::kStanding || state_ == SafetyState::kWalking ||

@@ -38,7 +38,8 @@ struct TickTimes {
 // Everything one tick reads and writes, stage by stage, in the order of the pipeline.
 struct TickData {
   GaitdLayerTime time{};
-  GaitdSensors sensors{};
+  GaitdSensors readings{};  // as the backend gave them
+  GaitdSensors sensors{};   // without those that cannot be true: what the layers get
   GaitdRobotState robot{};
   GaitdGaitState gait{};
   GaitdIcpPlan plan{};

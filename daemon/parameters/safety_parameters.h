@@ -10,6 +10,11 @@ enum class SafetyParameter {
   kTiltLimit,
   kFallHeight,
   kSensorTimeout,
+  kFrozenTime,
+  kStuckTravel,
+  kGyroJump,
+  kAccelerometerJump,
+  kForceRange,
   kSolverPatience,
   kReadyDuration,
   kReadyTolerance,
@@ -21,11 +26,19 @@ enum class SafetyParameter {
   kTorqueRate,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 12> kSafetyParameters = {
+inline constexpr std::array<GaitdParameter, 17> kSafetyParameters = {
     sdk::real_parameter("tilt_limit", "rad", 0.1, 3, 0.8, "of the pelvis, beyond is a fall"),
     sdk::real_parameter("fall_height", "", 0.1, 1, 0.6,
                         "pelvis above the lower foot, over the nominal height; below is a fall"),
     sdk::real_parameter("sensor_timeout", "s", 0.001, 1, 0.02, "age of a signal that is stale"),
+    sdk::real_parameter("frozen_time", "s", 0, 1, 0.02,
+                        "for which an IMU or a loaded foot sensor may repeat itself; 0: for ever"),
+    sdk::real_parameter("stuck_travel", "rad", 0, 3, 0.05,
+                        "that a joint may be told to move without a new reading; 0: any"),
+    sdk::real_parameter("gyro_jump", "rad/s", 0.1, 1e6, 10, "in a tick, beyond is not believed"),
+    sdk::real_parameter("accelerometer_jump", "m/s^2", 1, 1e6, 200, "likewise"),
+    sdk::real_parameter("force_range", "weight", 1, 1e6, 20,
+                        "forces on a foot beyond are not believed"),
     sdk::real_parameter("solver_patience", "s", 0, 1, 0.05,
                         "without a solution before the safe stop"),
     sdk::real_parameter("ready_duration", "s", 0.1, 60, 3, "of the ramp to the standing posture"),

@@ -162,7 +162,7 @@ bool Player::play(ReplayReport* report, std::string* error) {
     }
     if (!begin_tick(tick, error)) return false;
     // After the commands: the reset of a simulation clears what it finds, as on the control thread.
-    if (!sensors.next(&data.sensors)) break;
+    if (!sensors.next(&data.readings)) break;
     data.has_truth = has_truth;
     pipeline.run(tick);
     record_signals(robot_.model(), data, replayed_);

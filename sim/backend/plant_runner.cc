@@ -5,8 +5,10 @@
 
 namespace gaitd::sim {
 
-PlantRunner::PlantRunner(std::unique_ptr<Plant> plant, int32_t clock, const GaitdHost* host)
+PlantRunner::PlantRunner(std::unique_ptr<Plant> plant, const std::vector<SensorFault>& faults,
+                         int32_t clock, const GaitdHost* host)
     : plant_(std::move(plant)),
+      faults_(faults),
       clock_(clock),
       host_(host),
       joint_count_(plant_->model().joint_count),
@@ -49,13 +51,16 @@ void PlantRunner::reset() {
   last_command_.size = sizeof(last_command_);
   last_command_.joint_count = joint_count_;
   plant_->reset();
+  faults_.reset();
   diverged_.store(false);
   publish();
   if (running) start();
 }
 
 void PlantRunner::publish() {
-  plant_->read(&output_.back().sensors);
+  GaitdSensors& sensors = output_.back().sensors;
+  plant_->read(&sensors);
+  faults_.apply(sensors.time, &sensors);
   plant_->read(&output_.back().truth);
   output_.publish();
 }

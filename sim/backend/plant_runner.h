@@ -24,7 +24,8 @@ class PlantRunner {
  public:
   // `clock`: GAITD_CLOCK_REALTIME or GAITD_CLOCK_LOCKSTEP. `host` may be null; it hears about a
   // plant thread that gives up.
-  PlantRunner(std::unique_ptr<Plant> plant, int32_t clock, const GaitdHost* host);
+  PlantRunner(std::unique_ptr<Plant> plant, const std::vector<SensorFault>& faults, int32_t clock,
+              const GaitdHost* host);
   ~PlantRunner();
   PlantRunner(const PlantRunner&) = delete;
   PlantRunner& operator=(const PlantRunner&) = delete;
@@ -62,6 +63,7 @@ class PlantRunner {
   void run_one_period();
 
   std::unique_ptr<Plant> plant_;
+  SensorFaults faults_;
   int32_t clock_;
   const GaitdHost* host_;
   int joint_count_;

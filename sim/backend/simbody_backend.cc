@@ -66,7 +66,8 @@ GaitdStatus init(void* self, const GaitdModel* model, const char* config, double
       return GAITD_INVALID_ARGUMENT;
     }
     backend->runner = std::make_unique<PlantRunner>(
-        std::make_unique<gaitd::sim::Plant>(*model, parsed, period), clock, backend->host);
+        std::make_unique<gaitd::sim::Plant>(*model, parsed, period), parsed.sensor_faults,
+        clock, backend->host);
     return GAITD_OK;
   } catch (const std::invalid_argument& problem) {
     report(problem.what(), error, error_size);

@@ -56,9 +56,47 @@ void read_terrain(const json& value, std::vector<std::string>* errors, TerrainCo
   }
 }
 
-void read_sensors(const json& value, std::vector<std::string>* errors, SensorFigures* figures) {
+void read_sensor_faults(const json& list, const GaitdModel& model,
+                        std::vector<std::string>* errors, std::vector<SensorFault>* faults) {
+  if (!list.is_array()) {
+    errors->push_back("sensors.faults: expected a list, got " + list.dump());
+    return;
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    JsonReader reader(list[i], "sensors.faults[" + std::to_string(i) + "]", errors);
+    reader.allow({"sensor", "kind", "from", "duration"});
+    SensorFault fault;
+    const json& object = reader.object();
+    const std::string sensor = object.value("sensor", json("")).is_string()
+                                   ? object.value("sensor", std::string())
+                                   : std::string();
+    if (!find_sensor(model, sensor, &fault)) {
+      errors->push_back(reader.path("sensor") +
+                        ": expected imu, left_foot, right_foot or the name of a joint, got \"" +
+                        sensor + "\"");
+    }
+    const json kind = reader.has("kind") ? reader.at("kind") : json();
+    const auto* found =
+        std::find_if(std::begin(kSensorFaultKinds), std::end(kSensorFaultKinds),
+                     [&](const char* name) { return kind == name; });
+    if (found == std::end(kSensorFaultKinds)) {
+      reader.error(reader.path("kind"), "freeze, nan, spike, dead or silent", kind);
+    }
+    fault.kind = static_cast<SensorFault::Kind>(found - std::begin(kSensorFaultKinds));
+    reader.number("from", kNotNegative, &fault.from);
+    reader.number("duration", kNotNegative, &fault.duration);
+    faults->push_back(fault);
+  }
+}
+
+void read_sensors(const json& value, const GaitdModel& model, std::vector<std::string>* errors,
+                  Config* config) {
+  SensorFigures* const figures = &config->sensors;
   JsonReader reader(value, "sensors", errors);
-  reader.allow({"noise"});
+  reader.allow({"noise", "faults"});
+  if (reader.has("faults")) {
+    read_sensor_faults(reader.at("faults"), model, errors, &config->sensor_faults);
+  }
   if (!reader.has("noise")) return;
   const json& noise = reader.at("noise");
   if (noise == "none") return;
@@ -179,7 +217,9 @@ void read_top(const json& root, const GaitdModel& model, double period,
         "start.z: expected the height of the soles, as there is no "
         "terrain.ground_z, got nothing");
   }
-  if (reader.has("sensors")) read_sensors(reader.at("sensors"), errors, &config->sensors);
+  if (reader.has("sensors")) {
+    read_sensors(reader.at("sensors"), model, errors, config);
+  }
   if (reader.has("actuators")) read_actuators(reader.at("actuators"), errors, &config->actuators);
   if (reader.has("model_error")) {
     read_model_error(reader.at("model_error"), model, errors, config);

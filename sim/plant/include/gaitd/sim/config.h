@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gaitd/abi/types.h"
+#include "gaitd/sim/sensor_faults.h"
 
 namespace gaitd::sim {
 
@@ -75,6 +76,7 @@ struct Config {
   double time_step = 0.0005;  // s
   TerrainConfig terrain;
   SensorFigures sensors;
+  std::vector<SensorFault> sensor_faults;
   ActuatorFigures actuators;
   std::vector<BodyError> body_errors;  // one per body
   double friction_scale = 1;           // of every friction coefficient of the terrain

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/sensor_monitor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "walking/test/atlas.h"
+
+namespace gaitd::daemon {
+namespace {
+
+using testing::atlas;
+using Suspicion = SensorMonitor::Suspicion;
+
+constexpr double kPeriod = 0.001;  // s
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Sensors that never say the same twice.
+class Bench {
+ public:
+  Bench() : monitor(atlas()), data(std::make_unique<TickData>()) {
+    GaitdSensors& s = data->readings;
+    s.joint_count = atlas().joint_count;
+    s.imu_count = 1;
+    s.foot_count = GAITD_MAX_FEET;
+    for (auto& foothold : data->gait.footholds) foothold.contact = GAITD_CONTACT_FULL;
+    data->gait.phase = GAITD_PHASE_SWING;
+    next();
+  }
+  // New readings of everything, not looked at yet.
+  void next() {
+    ++count_;
+    const double wobble = 1e-4 * (count_ % 7);
+    GaitdSensors& s = data->readings;
+    for (int i = 0; i < s.joint_count; ++i) {
+      s.joints[i] = {{}, 0.3 + wobble, wobble, 10.0, {}};
+      s.joints[i].info.sequence = static_cast<std::uint32_t>(count_);
+      s.joints[i].info.valid = 1;
+    }
+    s.imus[0] = {};
+    s.imus[0].info.valid = 1;
+    s.imus[0].info.sequence = static_cast<std::uint32_t>(count_);
+    s.imus[0].orientation[3] = 1.0;
+    s.imus[0].angular_rate[1] = 0.1 + wobble;
+    s.imus[0].specific_force[2] = 9.8 + wobble;
+    for (auto& foot : s.feet) {
+      foot = {};
+      foot.info.valid = 1;
+      foot.info.sequence = static_cast<std::uint32_t>(count_);
+      foot.force[2] = 800.0 + wobble;
+    }
+  }
+  void check() { monitor.check(kPeriod, parameters, *data); }
+  void run(int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      next();
+      check();
+    }
+  }
+
+  SensorMonitor monitor;
+  std::unique_ptr<TickData> data;
+  sdk::Parameters<SafetyParameter> parameters{kSafetyParameters};
+
+ private:
+  int count_ = 0;
+};
+
+TEST(SensorMonitor, PassesOnWhatIsCredible) {
+  Bench b;
+  for (int i = 0; i < 200; ++i) {
+    b.run(1);
+    EXPECT_EQ(b.data->sensors.joints[3].position, b.data->readings.joints[3].position);
+    EXPECT_EQ(b.data->sensors.imus[0].angular_rate[1], b.data->readings.imus[0].angular_rate[1]);
+    EXPECT_EQ(b.data->sensors.feet[1].force[2], b.data->readings.feet[1].force[2]);
+    EXPECT_EQ(b.data->sensors.imus[0].info.age, 0.0);
+    EXPECT_EQ(b.monitor.suspect().suspicion, Suspicion::kNone);
+  }
+}
+
+TEST(SensorMonitor, HoldsTheLastReadingThroughASpike) {
+  Bench b;
+  b.run(20);
+  const double before = b.data->sensors.imus[0].angular_rate[1];
+  b.next();
+  b.data->readings.imus[0].angular_rate[1] = 30.0;
+  b.data->readings.joints[4].position = kNan;
+  b.data->readings.feet[0].force[2] = 1e6;
+  b.check();
+  EXPECT_EQ(b.data->sensors.imus[0].angular_rate[1], before);
+  EXPECT_LT(b.data->sensors.joints[4].position, 0.4);
+  EXPECT_LT(b.data->sensors.feet[0].force[2], 900.0);
+  EXPECT_NEAR(b.data->sensors.imus[0].info.age, kPeriod, 1e-9);
+  EXPECT_EQ(b.monitor.suspect().suspicion, Suspicion::kUntrue);
+  b.run(1);
+  EXPECT_EQ(b.data->sensors.imus[0].info.age, 0.0);
+  EXPECT_EQ(b.data->sensors.joints[4].position, b.data->readings.joints[4].position);
+}
+
+TEST(SensorMonitor, ALastingFaultGrowsOldUnderItsName) {
+  Bench b;
+  b.run(20);
+  for (int i = 0; i < 30; ++i) {
+    b.next();
+    b.data->readings.joints[4].velocity = kNan;
+    b.check();
+  }
+  EXPECT_NEAR(b.data->sensors.joints[4].info.age, 0.03, 1e-9);
+  EXPECT_EQ(std::string(b.monitor.suspect().sensor), atlas().joints[4].name);
+}
+
+TEST(SensorMonitor, BelievesAJumpThatStays) {
+  Bench b;
+  b.run(20);
+  for (int i = 0; i < 5; ++i) {
+    b.next();
+    b.data->readings.imus[0].angular_rate[1] = 25.0 + 1e-3 * i;
+    b.check();
+  }
+  EXPECT_GT(b.data->sensors.imus[0].angular_rate[1], 24.0);
+}
+
+TEST(SensorMonitor, NamesASensorThatIsSilent) {
+  Bench b;
+  b.run(20);
+  b.next();
+  b.data->readings.feet[1].info.age = 0.05;
+  b.check();
+  EXPECT_EQ(b.monitor.suspect().suspicion, Suspicion::kSilent);
+  EXPECT_EQ(std::string(b.monitor.suspect().sensor), "right foot force");
+}
+
+TEST(SensorMonitor, ReadingsThatWereNeverCredibleAreNotValid) {
+  Bench b;
+  b.data->readings.imus[0].angular_rate[0] = kNan;
+  b.check();
+  EXPECT_EQ(b.data->sensors.imus[0].info.valid, 0u);
+}
+
+TEST(SensorMonitor, FindsAnImuThatFreezesOnlyByNewFrames) {
+  Bench b;
+  b.run(20);
+  const GaitdImuSensor frozen = b.data->readings.imus[0];
+  for (int i = 0; i < 50; ++i) {  // no new frames: late, not frozen
+    b.next();
+    b.data->readings.imus[0] = frozen;
+    b.check();
+  }
+  EXPECT_EQ(b.monitor.suspect().suspicion, Suspicion::kNone);
+  for (int i = 0; i < 30; ++i) {
+    b.next();
+    const GaitdSignalInfo info = b.data->readings.imus[0].info;
+    b.data->readings.imus[0] = frozen;
+    b.data->readings.imus[0].info = info;
+    b.check();
+  }
+  EXPECT_GT(b.data->sensors.imus[0].info.age, 0.02);
+  EXPECT_EQ(b.monitor.suspect().suspicion, Suspicion::kFrozen);
+}
+
+TEST(SensorMonitor, AFootSensorMayRepeatNothingInTheAirButNotUnderLoad) {
+  for (const bool carries : {false, true}) {
+    Bench b;
+    b.run(20);
+    b.data->gait.footholds[0].contact = carries ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
+    for (int i = 0; i < 40; ++i) {
+      b.next();
+      for (double& force : b.data->readings.feet[0].force) force = 0.0;
+      b.check();
+    }
+    EXPECT_EQ(b.data->sensors.feet[0].info.age > 0.02, carries);
+  }
+}
+
+TEST(SensorMonitor, AJointThatIsToldToMoveAndDoesNotIsStuck) {
+  for (const bool commanded : {false, true}) {
+    Bench b;
+    b.run(20);
+    const double position = b.data->readings.joints[5].position;
+    b.data->commands.joints[5].velocity = commanded ? 1.0 : 0.0;
+    for (int i = 0; i < 80; ++i) {
+      b.next();
+      b.data->readings.joints[5].position = position;
+      b.check();
+    }
+    EXPECT_EQ(b.data->sensors.joints[5].info.age > 0.05, commanded);
+    EXPECT_EQ(b.monitor.suspect().suspicion, commanded ? Suspicion::kStuck : Suspicion::kNone);
+  }
+}
+
+}  // namespace
+}  // namespace gaitd::daemon
