@@ -2,6 +2,7 @@
 #include "cli/campaign_runner.h"
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -26,15 +27,24 @@ class Pool {
  public:
   Pool(const Campaign& campaign, const std::vector<CampaignRun>& runs, const RunnerOptions& options,
        ResultFile* results)
-      : campaign_(campaign), runs_(runs), options_(options), results_(results) {}
+      : campaign_(campaign), runs_(runs), options_(options), results_(results) {
+    // What a killed campaign left; its last children may still be writing there.
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(logs(), ignored)) {
+      if (entry.path().filename().string().starts_with(kRunning)) {
+        fs::remove_all(entry.path(), ignored);
+      }
+    }
+    running_ = logs() / (kRunning + std::to_string(getpid()));
+    fs::create_directories(running_, ignored);
+  }
 
   // Children that are still there, when anything goes wrong.
   ~Pool() {
     for (const auto& [pid, number] : children_) kill(pid, SIGTERM);
-    for (const auto& [pid, number] : children_) {
-      waitpid(pid, nullptr, 0);
-      forget(number);
-    }
+    for (const auto& [pid, number] : children_) waitpid(pid, nullptr, 0);
+    std::error_code ignored;
+    fs::remove_all(running_, ignored);
   }
 
   bool idle() const { return children_.empty(); }
@@ -46,13 +56,13 @@ class Pool {
                                        "run",
                                        run.scenario,
                                        "--log",
-                                       campaign_log(options_.folder, run.number).string()};
+                                       running(run.number, ".mcap").string()};
     std::vector<std::string> settings = assignments(campaign_, run);
     settings.insert(settings.end(), options_.settings.begin(), options_.settings.end());
     for (const std::string& setting : settings) {
       arguments.insert(arguments.end(), {"--set", setting});
     }
-    const pid_t pid = start_child(arguments, output(run.number).string(), "/dev/null");
+    const pid_t pid = start_child(arguments, running(run.number, ".json").string(), "/dev/null");
     if (pid < 0) {
       *error = "cannot start " + options_.gaitctl.string() + ": " + std::strerror(errno);
       return false;
@@ -68,7 +78,7 @@ class Pool {
       if (waitpid(pid, &status, WNOHANG) != pid) continue;
       const int run = number;
       children_.erase(pid);
-      std::ifstream in(output(run));
+      std::ifstream in(running(run, ".json"));
       const std::string text(std::istreambuf_iterator<char>(in), {});
       CampaignResult result = read_result(campaign_, run, text);
       if (WIFSIGNALED(status)) {
@@ -76,7 +86,10 @@ class Pool {
         result.problem = "gaitctl run was killed by signal " + std::to_string(WTERMSIG(status));
       }
       std::error_code ignored;
-      fs::remove(output(run), ignored);
+      fs::remove(running(run, ".json"), ignored);
+      for (const char* extension : {".mcap", ".txt"}) {
+        fs::rename(running(run, extension), log(run, extension), ignored);
+      }
       if (!results_->append(result, error)) return false;
       keep_worst();
       return true;
@@ -104,20 +117,26 @@ class Pool {
   }
 
  private:
-  fs::path output(int number) const {
-    return campaign_log(options_.folder, number).replace_extension(".json");
+  static constexpr const char* kRunning = "running-";
+
+  fs::path logs() const { return campaign_log(options_.folder, 0).parent_path(); }
+  fs::path log(int number, const char* extension) const {
+    return campaign_log(options_.folder, number).replace_extension(extension);
+  }
+  // While it is being written.
+  fs::path running(int number, const char* extension) const {
+    return running_ / log(number, extension).filename();
   }
   void forget(int number) const {
     std::error_code ignored;
-    for (const char* extension : {".mcap", ".txt", ".json"}) {
-      fs::remove(campaign_log(options_.folder, number).replace_extension(extension), ignored);
-    }
+    for (const char* extension : {".mcap", ".txt"}) fs::remove(log(number, extension), ignored);
   }
 
   const Campaign& campaign_;
   const std::vector<CampaignRun>& runs_;
   const RunnerOptions& options_;
   ResultFile* results_;
+  fs::path running_;
   std::map<pid_t, int> children_;  // numbers of the runs
   std::map<int, bool> deleted_;
 };
