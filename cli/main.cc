@@ -12,6 +12,7 @@
 #include "cli/completion_command.h"
 #include "cli/context.h"
 #include "cli/daemon_commands.h"
+#include "cli/doctor/doctor_command.h"
 #include "cli/failure.h"
 #include "cli/log_commands.h"
 #include "cli/man_text.h"
@@ -52,6 +53,7 @@ int run(int argc, char** argv) {
   add_compare_command(&app, &context);
   add_log_commands(&app, &context);
   add_report_command(&app, &context);
+  add_doctor_command(&app, &context);
   add_completion_command(&app, &context);
   const auto man = [&app] { return gaitd::usage::man_page(app, man_text()); };
   if (gaitd::usage::answer_hidden_request(argc, argv, app, context.values, man)) return kDone;

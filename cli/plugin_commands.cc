@@ -13,6 +13,7 @@
 
 #include "cli/ask.h"
 #include "cli/failure.h"
+#include "cli/plugin_new.h"
 #include "cli/print.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/robot.h"
@@ -147,6 +148,7 @@ void add_rollback(CLI::App* plugin, Context* context) {
 void add_plugin_commands(CLI::App* app, Context* context) {
   add_swap(app->get_subcommand("plugin"), context);
   add_rollback(app->get_subcommand("plugin"), context);
+  add_plugin_new(app->get_subcommand("plugin"), context);
   auto* command = app->get_subcommand("plugin")->add_subcommand(
       "check", "Try a plugin library, for its author: every demand that it fulfils or fails");
   command->footer(

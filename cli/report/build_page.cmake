@@ -13,14 +13,15 @@ function(run what)
   endif()
 endfunction()
 
-# Exact versions stand in package.json. Nothing that a package wants to run is run.
-file(SHA256 ${SOURCE}/package.json wanted)
+# Versions and hashes of all packages stand in the lock file. Nothing that a package wants to run is
+# run. In the lock file rollup's builds for systems that gaitd is not for are left out.
+file(SHA256 ${SOURCE}/package-lock.json wanted)
 set(installed "")
 if(EXISTS ${WORK}/installed)
   file(READ ${WORK}/installed installed)
 endif()
 if(NOT installed STREQUAL wanted)
-  run("npm install" install --no-package-lock --ignore-scripts --no-audit --no-fund --loglevel=error)
+  run("npm ci" ci --ignore-scripts --no-audit --no-fund --loglevel=error)
   if(failed)
     return()
   endif()

@@ -27,6 +27,11 @@ using nlohmann::json;
 
 constexpr double kRowsPerSecond = 100.0;
 constexpr std::size_t kMostRows = 12000;
+// What the page shows.
+constexpr char kShown[] =
+    "time,com/?,com/height_target,truth/com/z,icp/*,cmp/desired/*,cop/*,pelvis/*,foot/*,footstep/*,"
+    "leg/*,joint/*/position,joint/*/torque_desired,step_adjust/*,tick/*_us,gait/phase,"
+    "toe_off/active";
 constexpr char kPlaceholder[] = "\"GAITD_DATA\"";
 
 std::string read_file(const fs::path& path) {
@@ -63,33 +68,29 @@ std::size_t stride_of(const LogReader& log) {
 
 void add_signals(const LogReader& log, json* data) {
   const daemon::SignalTable& table = log.signals();
+  std::vector<int> shown;
+  for (const std::string& name : log.match(kShown)) shown.push_back(find_signal(table, name));
+  const std::vector<std::vector<double>> columns = log.columns(shown);
   const std::size_t stride = stride_of(log);
-  std::vector<bool> keeps_longest(table.size());
+  (*data)["rows"] = (log.tick_count() + stride - 1) / stride;
   (*data)["signals"] = json::array();
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    keeps_longest[i] = table[i].name.starts_with("tick/");
-    (*data)["signals"].push_back(
-        {{"name", table[i].name}, {"unit", table[i].unit}, {"words", table[i].words}});
-  }
-  std::vector<std::vector<float>> columns(table.size());
-  std::vector<double> values(table.size());
-  LogReader::TickCursor ticks = log.ticks();
-  for (std::size_t tick = 0; ticks.next(values); ++tick) {
-    for (std::size_t i = 0; i < table.size(); ++i) {
-      const auto value = static_cast<float>(values[i]);
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const daemon::SignalDescription& signal = table[static_cast<std::size_t>(shown[i])];
+    const bool keeps_longest = signal.name.starts_with("tick/");
+    std::vector<float> rows;
+    for (std::size_t tick = 0; tick < columns[i].size(); ++tick) {
+      const auto value = static_cast<float>(columns[i][tick]);
       if (tick % stride == 0) {
-        columns[i].push_back(value);
-      } else if (keeps_longest[i]) {
-        columns[i].back() = std::max(columns[i].back(), value);
+        rows.push_back(value);
+      } else if (keeps_longest) {
+        rows.back() = std::max(rows.back(), value);
       }
     }
+    (*data)["signals"].push_back({{"name", signal.name},
+                                  {"unit", signal.unit},
+                                  {"words", signal.words},
+                                  {"values", base64(rows)}});
   }
-  std::vector<float> all;
-  for (const std::vector<float>& column : columns) {
-    all.insert(all.end(), column.begin(), column.end());
-  }
-  (*data)["rows"] = columns.empty() ? 0 : columns.front().size();
-  (*data)["values"] = base64(all);
 }
 
 // What the scenario expects, if it is still to be found by its name.
@@ -102,10 +103,17 @@ daemon::Expectations expectations(const LogReader& log) {
   return scenario ? scenario->expect : daemon::Expectations();
 }
 
+// As the log holds it, else as it is installed now.
 void add_robot(const LogReader& log, json* data) {
+  daemon::Issues issues;
+  if (const auto yaml = log.metadata_value("robot_yaml")) {
+    const daemon::NodePtr node = daemon::parse_yaml(*yaml, "robot.yaml", &issues);
+    if (node != nullptr && issues.ok()) (*data)["robot"] = daemon::to_json(*node);
+    (*data)["urdf"] = log.metadata_value("robot_urdf").value_or("");
+    return;
+  }
   const auto file = daemon::Paths::detect().robot(log.metadata_value("robot").value_or(""));
   if (!file) return;
-  daemon::Issues issues;
   const daemon::NodePtr node = daemon::load_yaml_file(file->string(), &issues);
   if (node == nullptr || !issues.ok()) return;
   (*data)["robot"] = daemon::to_json(*node);
@@ -120,7 +128,9 @@ std::string report_data(const LogReader& log) {
   data["title"] = log.metadata_value("scenario").value_or("");
   if (data["title"] == "") data["title"] = fs::path(log.path()).stem().string();
   json metadata = json::object();
-  for (const auto& [key, value] : log.metadata()) metadata[key] = value;
+  for (const auto& [key, value] : log.metadata()) {
+    if (!key.starts_with("robot_")) metadata[key] = value;  // they have places of their own
+  }
   for (const auto& [key, value] : log.end_metadata()) metadata[key] = value;
   data["metadata"] = metadata;
   data["world"] = json::parse(log.metadata_value("world").value_or("null"), nullptr, false);

@@ -32,6 +32,17 @@ void add_robot_metadata(const GaitdModel& model, LogMetadata* metadata) {
   }
   json faults;
   for (std::size_t i = 0; i < kFaultNames.size(); ++i) faults[kFaultNames[i]] = i;
+  json soles;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const GaitdFoot& foot = model.feet[side];
+    json corners = json::array();
+    for (int i = 0; i < foot.point_count; ++i) {
+      corners.push_back({foot.points[i][0], foot.points[i][1]});
+    }
+    soles[side == GAITD_LEFT ? "left" : "right"] = corners;
+  }
+  (*metadata)["pelvis"] = model.bodies[0].name;
+  (*metadata)["soles"] = soles.dump();
   (*metadata)["joints"] = joints.dump();
   (*metadata)["legs"] = legs.dump();
   (*metadata)["fault_bits"] = faults.dump();

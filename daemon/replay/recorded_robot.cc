@@ -8,7 +8,7 @@
 #include "daemon/config/node.h"
 #include "daemon/control/impedance.h"
 #include "daemon/host/layers.h"
-#include "gaitd/dynamics/urdf.h"
+#include "daemon/replay/robot_of_log.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -23,28 +23,9 @@ json metadata_json(const LogReader& log, const char* key) {
 }  // namespace
 
 bool RecordedRobot::read_robot(const LogReader& log, std::string* error) {
-  const json replay = metadata_json(log, "replay");
-  const auto yaml = log.metadata_value("robot_yaml");
-  const auto urdf = log.metadata_value("robot_urdf");
-  if (!replay.is_object() || !yaml || !urdf) {
-    *error = "it does not hold the robot; only logs of this version of gaitd on are replayed";
-    return false;
-  }
-  Issues issues;
-  const std::string file = replay.value("robot_file", "robot.yaml");
-  const auto load = [&urdf](const std::string& path, const dynamics::UrdfOptions& options) {
-    return dynamics::load_urdf_text(*urdf, path, options);
-  };
-  const Profile profile =
-      replay.value("hardware", false) ? Profile::kHardware : Profile::kSimulation;
-  const auto robot = daemon::read_robot(parse_yaml(*yaml, file, &issues), file, profile, load,
-                                        &settings_, &issues);
-  if (!robot) {
-    *error = "its robot cannot be read: " + issues.error_text();
-    return false;
-  }
-  robot_ = *robot;
-  return true;
+  const auto robot = robot_of_log(log, &settings_, error);
+  if (robot) robot_ = *robot;
+  return robot.has_value();
 }
 
 bool RecordedRobot::read_settings(const LogReader& log, const ReplayOptions& options,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "daemon/telemetry/records_codec.h"
+#include "daemon/telemetry/scene_topics.h"
 #include "daemon/telemetry/signal_codec.h"
 #include "daemon/telemetry/signal_schema.h"
 
@@ -33,6 +34,7 @@ struct LogWriter::Impl {
   SignalCodec codec;
   RecordsCodec records;
   McapWriter file;
+  std::unique_ptr<SceneTopics> scene;  // null without a robot in the metadata
   std::uint16_t signals_channel = 0;
   std::uint16_t sensors_channel = 0;
   std::uint16_t events_channel = 0;
@@ -62,6 +64,8 @@ bool LogWriter::open(const std::string& path, const LogMetadata& metadata,
     impl.signals_channel = file.add_channel(signals, kSignalsTopic, "protobuf", layout);
     impl.sensors_channel = file.add_channel(sensors, kSensorsTopic, "protobuf", {});
     impl.events_channel = file.add_channel(events, kEventsTopic, "protobuf", {});
+    impl.scene = SceneTopics::create(metadata, impl.table);
+    if (impl.scene != nullptr) impl.scene->add_channels(&file);
     file.add_metadata(kStartMetadata, metadata);
   }
   *error = file.error();
@@ -79,6 +83,7 @@ void LogWriter::write_tick(std::int64_t tick, double time, std::span<const doubl
     impl.records.append_sensors(*sensors, &impl.file.begin_message(impl.sensors_channel, stamp));
     impl.file.end_message();
   }
+  if (impl.scene != nullptr) impl.scene->write(stamp, values, &impl.file);
   ++impl.ticks;
   impl.last_tick = tick;
   impl.last_time = time;

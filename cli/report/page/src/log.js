@@ -4,9 +4,8 @@
 export class Log {
   constructor(document_) {
     Object.assign(this, document_);  // title, metadata, verdict, events, signals, rows, urdf, robot
-    const bytes = Uint8Array.from(atob(document_.values), (c) => c.charCodeAt(0));
-    this.values = new Float32Array(bytes.buffer);
     this.index = new Map(this.signals.map((signal, i) => [signal.name, i]));
+    this.columns = new Map();  // those that were asked for
     this.time = this.column('time');
   }
 
@@ -14,8 +13,15 @@ export class Log {
 
   // One value per row; undefined if the log does not have it.
   column(name) {
-    const i = this.index.get(name);
-    return i === undefined ? undefined : this.values.subarray(i * this.rows, (i + 1) * this.rows);
+    let column = this.columns.get(name);
+    if (column === undefined && this.index.has(name)) {
+      const text = atob(this.signals[this.index.get(name)].values);
+      const bytes = new Uint8Array(text.length);
+      for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+      column = new Float32Array(bytes.buffer);
+      this.columns.set(name, column);
+    }
+    return column;
   }
 
   value(name, row) {

@@ -4,6 +4,7 @@ import {Log} from './log.js';
 import {addPlots} from './plots.js';
 import {kMarkers, Scene} from './scene.js';
 
+const began = performance.now();
 const $ = (id) => document.getElementById(id);
 const log = new Log(JSON.parse($('gaitd-data').textContent));
 const [start, end] = [log.time[0], log.time[log.rows - 1]];
@@ -36,10 +37,11 @@ function fillTexts() {
       row('judgements', ['', name, `${value === null ? '-' : Number(value.toPrecision(4))} ${verdict.units[name] ?? ''}`]);
     }
   }
-  for (const {time, kind, text} of log.events) {
-    row('events', [`${time.toFixed(3)} s`, kind, JSON.stringify(text)]);
-  }
-  for (const [key, value] of Object.entries(log.metadata)) row('configuration', [key, value]);
+  const fillWhenOpened = (id, rows) => $(id).closest('details').addEventListener(
+      'toggle', () => { for (const cells of rows) row(id, cells); }, {once: true});
+  fillWhenOpened('events', log.events.map(
+      ({time, kind, text}) => [`${time.toFixed(3)} s`, kind, JSON.stringify(text)]));
+  fillWhenOpened('configuration', Object.entries(log.metadata));
   $('legend').innerHTML = kMarkers.map(({name, color}) =>
       `<span><i style="background:${color}"></i>${name}</span>`).join('');
 }
@@ -61,22 +63,20 @@ $('play').addEventListener('click', () => {
 });
 
 let last = performance.now();
-let plotsDrawn = 0;
 function frame(now) {
   if (player.playing) {
     go(player.time + (now - last) / 1000 * Number($('speed').value));
     if (player.time >= end) $('play').click();
   }
+  if (player.playing) scene?.adapt(now - last);
   last = now;
   scene?.update(log.row(player.time));
-  // Plots are slower to draw than the robot, and the line in them need not be smooth.
-  if (player.changed && now - plotsDrawn > 100) {
-    plotsDrawn = now;
+  if (player.changed) {
     player.changed = false;
-    for (const {plot} of plots) plot.redraw(false, false);
+    for (const {plot} of plots) plot.placeTime?.();
   }
   ++player.frames;
   requestAnimationFrame(frame);
 }
 requestAnimationFrame(frame);
-Object.assign(window, {gaitd: {log, player, plots, scene}});  // for the console of the browser
+Object.assign(window, {gaitd: {log, player, plots, scene, built: performance.now() - began}});  // for the console of the browser

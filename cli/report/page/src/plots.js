@@ -58,19 +58,25 @@ function shades(log) {
   }]}};
 }
 
-// The time of the replay as a line; a click goes there.
+// The time of the replay as a line of its own above the plot, which is not drawn again for it; a click
+// goes there.
 function cursor(player) {
+  const place = (plot) => plot.placeTime?.();
   return {hooks: {
-    draw: [(plot) => {
-      const {ctx, bbox} = plot;
-      const x = plot.valToPos(player.time, 'x', true);
-      ctx.save();
-      ctx.fillStyle = '#000000';
-      ctx.fillRect(x, bbox.top, devicePixelRatio, bbox.height);
-      ctx.restore();
+    ready: [(plot) => {
+      const line = document.createElement('div');
+      line.className = 'now';
+      plot.over.append(line);
+      plot.placeTime = () => {
+        const x = plot.valToPos(player.time, 'x');
+        line.hidden = !(x >= 0 && x <= plot.over.clientWidth);
+        line.style.transform = `translateX(${x}px)`;
+      };
+      plot.placeTime();
+      plot.over.addEventListener('click', (event) => player.go(plot.posToVal(event.offsetX, 'x')));
     }],
-    ready: [(plot) => plot.over.addEventListener(
-        'click', (event) => player.go(plot.posToVal(event.offsetX, 'x')))],
+    setScale: [place],
+    setSize: [place],
   }};
 }
 

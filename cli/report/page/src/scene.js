@@ -15,13 +15,29 @@ function material(color, opacity = 1) {
   return new THREE.MeshLambertMaterial({color, opacity, transparent: opacity < 1});
 }
 
-// Half a metre apart. In short pieces: software renderers drop lines that begin behind the camera.
+// Few faces and plain shading: software renderers draw the robot too.
+function simplify(robot) {
+  const ball = new THREE.SphereGeometry(1, 16, 10), tube = new THREE.CylinderGeometry(1, 1, 1, 16);
+  robot.traverse((mesh) => {
+    if (!mesh.isMesh) return;
+    if (mesh.geometry.type === 'SphereGeometry') mesh.geometry = ball;
+    if (mesh.geometry.type === 'CylinderGeometry') mesh.geometry = tube;
+    const {color, opacity} = mesh.material;
+    if (color) mesh.material = material(color, opacity);
+  });
+}
+
+const kGrid = 0.5;       // m
+const kGridRange = 3.5;  // m, around the robot
+
+// In short pieces: software renderers drop lines that begin behind the camera.
 function gridPoints() {
-  const points = [], range = Array.from({length: 81}, (_, i) => -20 + 0.5 * i);
+  const points = [], count = 2 * kGridRange / kGrid + 1;
+  const range = Array.from({length: count}, (_, i) => -kGridRange + kGrid * i);
   for (const x of range) {
     for (const y of range) {
-      if (x < 20) points.push(new THREE.Vector3(x, y, 0), new THREE.Vector3(x + 0.5, y, 0));
-      if (y < 20) points.push(new THREE.Vector3(x, y, 0), new THREE.Vector3(x, y + 0.5, 0));
+      if (x < kGridRange) points.push(new THREE.Vector3(x, y, 0), new THREE.Vector3(x + kGrid, y, 0));
+      if (y < kGridRange) points.push(new THREE.Vector3(x, y, 0), new THREE.Vector3(x, y + kGrid, 0));
     }
   }
   return points;
@@ -38,6 +54,7 @@ function terrain(world) {
     const grid = new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(gridPoints()),
                                         new THREE.LineBasicMaterial({color: '#b5b2aa'}));
     grid.position.z = ground;
+    group.grid = grid;
     group.add(grid);
   }
   for (const {center, size, rpy = [0, 0, 0]} of boxes) {
@@ -53,7 +70,14 @@ export class Scene {
   constructor(element, log) {
     this.log = log;
     this.element = element;
-    this.renderer = new THREE.WebGLRenderer({antialias: true});
+    this.renderer = new THREE.WebGLRenderer();
+    // More pixels than the screen has smooth the edges, as long as the graphics are fast enough.
+    this.pixels = Math.max(2, devicePixelRatio);
+    this.slow = 0;
+    const info = this.renderer.getContext().getExtension('WEBGL_debug_renderer_info');
+    const name = info ? this.renderer.getContext().getParameter(info.UNMASKED_RENDERER_WEBGL) : '';
+    if (/swiftshader|llvmpipe|software/i.test(name)) this.pixels = 0.75;
+    this.renderer.setPixelRatio(this.pixels);
     element.append(this.renderer.domElement);
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color('#f4f6f8');
@@ -63,7 +87,8 @@ export class Scene {
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener('change', () => { this.stale = true; });
     this.scene.add(new THREE.HemisphereLight('#ffffff', '#777766', 3));
-    this.scene.add(terrain(log.world));
+    this.terrain = terrain(log.world);
+    this.scene.add(this.terrain);
     this.addRobot();
     this.addMarkers();
     new ResizeObserver(() => this.resize()).observe(element);
@@ -75,6 +100,7 @@ export class Scene {
     this.scene.add(this.pelvis);
     if (!this.log.urdf) return;
     this.robot = new URDFLoader().parse(this.log.urdf);
+    simplify(this.robot);
     this.pelvis.add(this.robot);
     this.joints = Object.values(this.robot.joints)
         .map((joint) => ({joint, column: this.log.column(`joint/${joint.urdfName}/position`)}))
@@ -84,7 +110,7 @@ export class Scene {
   addMarkers() {
     this.markers = kMarkers.filter(({prefix}) => this.log.has(`${prefix}/x`))
         .map(({prefix, color}) => {
-          const mesh = new THREE.Mesh(new THREE.SphereGeometry(0.018), material(color));
+          const mesh = new THREE.Mesh(new THREE.SphereGeometry(0.018, 12, 8), material(color));
           mesh.material.depthTest = false;  // a foot must not hide them
           mesh.renderOrder = 1;
           this.scene.add(mesh);
@@ -106,6 +132,16 @@ export class Scene {
   update(row) {
     if (row !== this.row) this.show(row);
     else if (this.stale) this.draw();
+  }
+
+  // Fewer pixels where frames of `milliseconds` come too slowly.
+  adapt(milliseconds) {
+    this.slow = Math.max(0, this.slow + (milliseconds > 22 ? 1 : -1));
+    if (this.slow < 20 || this.pixels < 0.4) return;
+    this.slow = 0;
+    this.pixels *= 0.7;
+    this.renderer.setPixelRatio(this.pixels);
+    this.stale = true;
   }
 
   draw() {
@@ -168,6 +204,11 @@ export class Scene {
   follow() {
     const target = this.pelvis.position.clone();
     target.z -= 0.15;
+    const {grid} = this.terrain;
+    if (grid) {
+      grid.position.x = kGrid * Math.round(target.x / kGrid);
+      grid.position.y = kGrid * Math.round(target.y / kGrid);
+    }
     this.camera.position.add(target).sub(this.controls.target);
     this.controls.target.copy(target);
     this.controls.update();

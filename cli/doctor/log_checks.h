@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// One function per kind of trouble; each looks at one thing only and stands in its own file.
+#pragma once
+
+#include "cli/doctor/finding.h"
+#include "cli/doctor/log_case.h"
+
+namespace gaitd::doctor {
+
+Findings check_faults(const LogCase& log);     // what gaitd itself gave as the reason
+Findings check_solver(const LogCase& log);     // whole-body problems that were not solved
+Findings check_support(const LogCase& log);    // pushes; CoP on the edge of the feet
+Findings check_torques(const LogCase& log);    // leg joints at their torque limits
+Findings check_joints(const LogCase& log);     // leg joints at their position limits
+Findings check_slip(const LogCase& log);       // feet that slide
+Findings check_timing(const LogCase& log);     // late ticks, in real time
+Findings check_estimate(const LogCase& log);   // IMU against legs, gravity and truth
+Findings check_footsteps(const LogCase& log);  // footsteps out of reach
+Findings check_weight(const LogCase& log);     // mass of the model against measured forces
+
+// A finding of a log, at the tick where it began.
+Finding log_finding(const LogCase& log, const char* check, std::size_t tick, std::string what,
+                    std::string advice);
+
+}  // namespace gaitd::doctor

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "cli/doctor/reach.h"
+#include "cli/doctor/robot_doctor.h"
+#include "daemon/config/leg_kinematics.h"
+#include "gaitd/dynamics/dynamics.h"
+#include "gaitd/walking/polygon.h"
+
+namespace gaitd::doctor {
+namespace {
+
+constexpr double kNearStop = 0.05;   // rad
+constexpr double kLeastBend = 0.01;  // of the leg length
+constexpr double kIcpMargin = 0.02;  // m
+constexpr double kLoaded = 0.4;      // of the effort limit, standing on both legs
+constexpr double kOverloaded = 0.9;
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+Findings check_reach(const GaitdModel& model) {
+  const double length = leg_length(model);
+  const double height = model.nominal_pelvis_height;
+  const double reserve = length - height;
+  const bool bent = reserve > kLeastBend * length;
+  return {{"reach", bent ? Severity::kOk : Severity::kWarning,
+           format("the pelvis stands %.3f m above the soles, straight legs would lift it by %.3f "
+                  "m; steps reach about %.2f m",
+                  height, reserve, longest_step(length)),
+           bent ? "" : "bend the knees of posture by 0.3 to 0.6 rad"}};
+}
+
+Findings check_stops(const GaitdModel& model) {
+  Findings findings;
+  for (const GaitdLeg& leg : model.legs) {
+    for (int k = 0; k < leg.joint_count; ++k) {
+      const GaitdJoint& joint = model.joints[leg.joints[k]];
+      const double q = model.nominal_position[leg.joints[k]];
+      const double room = std::min(q - joint.position_min, joint.position_max - q);
+      if (room > kNearStop) continue;
+      findings.push_back({"posture", Severity::kWarning,
+                          format("%s stands %.3f rad from its stop", joint.name, room),
+                          "its value in posture, its limits in the URDF"});
+    }
+  }
+  return findings;
+}
+
+Findings check_icp(const GaitdModel& model) {
+  const daemon::PostureFigures figures = daemon::compute_posture_figures(model);
+  walking::ConvexPolygon soles;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const Eigen::Rotation2Dd turn(figures.sole_yaw[side]);
+    const Vector2d at(figures.sole_position[side][0], figures.sole_position[side][1]);
+    for (int p = 0; p < model.feet[side].point_count; ++p) {
+      soles.add(at + turn * Eigen::Map<const Vector2d>(model.feet[side].points[p]));
+    }
+  }
+  soles.make_hull();
+  // Standing still, the ICP is the ground projection of the centre of mass.
+  const Vector2d icp(figures.com[0], figures.com[1]);
+  const Vector2d middle(0.5 * (figures.sole_position[0][0] + figures.sole_position[1][0]),
+                        0.5 * (figures.sole_position[0][1] + figures.sole_position[1][1]));
+  const double margin = soles.inside_distance(icp);
+  const Vector2d off = icp - middle;
+  const Severity severity = margin < 0.0          ? Severity::kProblem
+                            : margin < kIcpMargin ? Severity::kWarning
+                                                  : Severity::kOk;
+  return {
+      {"icp", severity,
+       format("standing, the ICP is %.1f mm in front and %.1f mm to the left of the middle of "
+              "the feet, %.0f mm inside their edge",
+              1e3 * off.x(), 1e3 * off.y(), 1e3 * margin),
+       severity == Severity::kOk
+           ? ""
+           : "shift the pelvis over the feet: hip and ankle pitch in posture; check the centres "
+             "of mass"}};
+}
+
+// Statics: both feet push straight up under the centre of mass, each with what its distance gives.
+Findings check_torques(const GaitdModel& model) {
+  dynamics::Dynamics dynamics(model);
+  const int joints = model.joint_count;
+  const Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(model.nominal_position, joints);
+  dynamics.update(Vector3d::Zero(), Eigen::Quaterniond::Identity(), dynamics::Vector6d::Zero(), q,
+                  Eigen::VectorXd::Zero(joints));
+  const daemon::PostureFigures figures = daemon::compute_posture_figures(model);
+  const double left = figures.sole_position[0][1];
+  const double right = figures.sole_position[1][1];
+  const double share = std::clamp((figures.com[1] - right) / (left - right), 0.0, 1.0);
+  std::array<dynamics::ExternalWrench, 2> wrenches;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const int body = model.feet[side].body;
+    const Vector3d point(figures.com[0], figures.sole_position[side][1],
+                         figures.sole_position[side][2]);
+    wrenches[side].body = body;
+    wrenches[side].p_BF = dynamics.R_WB(body).transpose() * (point - dynamics.p_WB(body));
+    wrenches[side].wrench[5] =
+        (side == GAITD_LEFT ? share : 1.0 - share) * model.total_mass * model.gravity;
+  }
+  Eigen::VectorXd torque(dynamics.velocity_size());
+  dynamics.inverse_dynamics(Eigen::VectorXd::Zero(dynamics.velocity_size()), wrenches, torque);
+  int worst = 0;
+  double load = 0.0;
+  for (int i = 0; i < joints; ++i) {
+    const double ratio = std::abs(torque[6 + i]) / model.joints[i].effort_limit;
+    if (ratio <= load) continue;
+    load = ratio;
+    worst = i;
+  }
+  const Severity severity = load > kOverloaded ? Severity::kProblem
+                            : load > kLoaded   ? Severity::kWarning
+                                               : Severity::kOk;
+  return {{"torques", severity,
+           format("standing, %s carries most: %.1f N m, %.0f %% of its limit; %.0f %% are left",
+                  model.joints[worst].name, std::abs(torque[6 + worst]), 100.0 * load,
+                  100.0 * std::max(0.0, 1.0 - load)),
+           severity == Severity::kOk
+               ? ""
+               : "on one leg it is about twice as much: straighter knees in posture; masses and "
+                 "effort limits in the URDF"}};
+}
+
+}  // namespace
+
+Findings check_posture(const GaitdModel& model) {
+  Findings all;
+  for (const Findings& some :
+       {check_reach(model), check_stops(model), check_icp(model), check_torques(model)}) {
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+}  // namespace gaitd::doctor

@@ -1,0 +1,29 @@
+# What authors of plugins need, in the build tree and installed: the CMake package gaitd (headers,
+# static libraries without an ABI promise, gaitd_plugin()), and what `gaitctl plugin new` begins with.
+foreach(library interfaces dynamics qp walking)
+  if(NOT TARGET gaitd_${library})
+    return()
+  endif()
+  list(APPEND libraries gaitd_${library})
+  set_target_properties(gaitd_${library} PROPERTIES EXPORT_NAME ${library})
+endforeach()
+
+set(package ${CMAKE_BINARY_DIR}/lib/cmake/gaitd)
+file(CONFIGURE OUTPUT ${package}/gaitd-build.cmake CONTENT "set(gaitd_MARCH @GAITD_MARCH@)\n" @ONLY)
+foreach(file gaitd-config.cmake GaitdPlugin.cmake)
+  configure_file(cmake/${file} ${package}/${file} COPYONLY)
+endforeach()
+install(TARGETS ${libraries} EXPORT gaitd ARCHIVE DESTINATION lib)
+export(EXPORT gaitd NAMESPACE gaitd:: FILE ${package}/gaitd-targets.cmake)
+install(EXPORT gaitd NAMESPACE gaitd:: DESTINATION lib/cmake/gaitd FILE gaitd-targets.cmake)
+install(FILES ${package}/gaitd-build.cmake ${package}/gaitd-config.cmake
+        ${package}/GaitdPlugin.cmake DESTINATION lib/cmake/gaitd)
+install(DIRECTORY dynamics/include/gaitd qp/include/gaitd walking/include/gaitd DESTINATION include)
+
+set(share ${CMAKE_BINARY_DIR}/share/gaitd)
+file(MAKE_DIRECTORY ${share})
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/plugins ${share}/plugin-sources SYMBOLIC)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/cli/plugin_template ${share}/plugin-template SYMBOLIC)
+install(DIRECTORY plugins/ DESTINATION share/gaitd/plugin-sources
+        FILES_MATCHING PATTERN "*.h" PATTERN "*.cc" PATTERN test EXCLUDE)
+install(DIRECTORY cli/plugin_template/ DESTINATION share/gaitd/plugin-template)

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/telemetry/scene_topics.h"
+
+#include <google/protobuf/descriptor.pb.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "daemon/telemetry/scene_drawing.h"
+#include "foxglove.pb.h"
+#include "gaitd/dynamics/kinematics.h"
+#include "gaitd/dynamics/urdf.h"
+
+namespace gaitd::daemon {
+namespace {
+
+constexpr std::uint64_t kPeriod = 33'000'000;  // ns
+
+using google::protobuf::FileDescriptor;
+using google::protobuf::FileDescriptorSet;
+
+// The file of the messages after those that it imports.
+std::string schema_text() {
+  FileDescriptorSet set;
+  const FileDescriptor* file = foxglove::SceneUpdate::descriptor()->file();
+  for (int i = 0; i < file->dependency_count(); ++i) file->dependency(i)->CopyTo(set.add_file());
+  file->CopyTo(set.add_file());
+  return set.SerializeAsString();
+}
+
+void set_time(std::uint64_t time_ns, google::protobuf::Timestamp* stamp) {
+  stamp->set_seconds(static_cast<std::int64_t>(time_ns / 1'000'000'000));
+  stamp->set_nanos(static_cast<std::int32_t>(time_ns % 1'000'000'000));
+}
+
+}  // namespace
+
+struct SceneTopics::Impl {
+  Impl(GaitdModel robot, std::string urdf_text, SceneDrawing scene)
+      : model(std::move(robot)),
+        urdf(std::move(urdf_text)),
+        kinematics(model),
+        drawing(std::move(scene)),
+        q(Eigen::VectorXd::Zero(model.joint_count)),
+        qd(Eigen::VectorXd::Zero(model.joint_count)) {}
+
+  struct JointSignals {
+    int position = -1, velocity = -1, torque = -1;
+  };
+
+  // False where the log lacks the pose of the pelvis or a joint.
+  bool find_signals(const SignalTable& table);
+  void write_transforms(std::uint64_t time_ns, std::span<const double> values, McapWriter* file);
+  void write_joints(std::uint64_t time_ns, std::span<const double> values, McapWriter* file);
+  template <class Message>
+  void write_message(std::uint16_t channel, std::uint64_t time_ns, const Message& message,
+                     McapWriter* file) {
+    message.AppendToString(&file->begin_message(channel, time_ns));
+    file->end_message();
+  }
+
+  GaitdModel model;
+  std::string urdf;
+  dynamics::Kinematics kinematics;
+  SceneDrawing drawing;
+  Eigen::VectorXd q, qd;
+  std::array<int, 6> pelvis{};  // x y z roll pitch yaw
+  std::vector<JointSignals> joints;
+  std::uint16_t transforms_channel = 0, joints_channel = 0, scene_channel = 0, robot_channel = 0;
+  bool begun = false;  // in this file
+  std::uint64_t next = 0;
+};
+
+bool SceneTopics::Impl::find_signals(const SignalTable& table) {
+  constexpr std::array kPose = {"x", "y", "z", "roll", "pitch", "yaw"};
+  for (std::size_t i = 0; i < kPose.size(); ++i) {
+    pelvis[i] = find_signal(table, std::string("pelvis/") + kPose[i]);
+    if (pelvis[i] < 0) return false;
+  }
+  for (int i = 0; i < model.joint_count; ++i) {
+    const std::string joint = "joint/" + std::string(model.joints[i].name);
+    joints.push_back({find_signal(table, joint + "/position"),
+                      find_signal(table, joint + "/velocity"),
+                      find_signal(table, joint + "/torque")});
+    if (joints.back().position < 0 || joints.back().velocity < 0 || joints.back().torque < 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void SceneTopics::Impl::write_transforms(std::uint64_t time_ns, std::span<const double> values,
+                                         McapWriter* file) {
+  for (int i = 0; i < model.joint_count; ++i) q[i] = values[joints[i].position];
+  const Eigen::Quaterniond R_WP = Eigen::AngleAxisd(values[pelvis[5]], Eigen::Vector3d::UnitZ()) *
+                                  Eigen::AngleAxisd(values[pelvis[4]], Eigen::Vector3d::UnitY()) *
+                                  Eigen::AngleAxisd(values[pelvis[3]], Eigen::Vector3d::UnitX());
+  kinematics.update({values[pelvis[0]], values[pelvis[1]], values[pelvis[2]]}, R_WP,
+                    dynamics::Vector6d::Zero(), q, qd);
+  foxglove::FrameTransforms message;
+  for (int body = 0; body < model.body_count; ++body) {
+    const int parent = model.bodies[body].parent;
+    Eigen::Isometry3d X = kinematics.X_WB(body);
+    if (parent >= 0) X = kinematics.X_WB(parent).inverse() * X;
+    foxglove::FrameTransform* transform = message.add_transforms();
+    set_time(time_ns, transform->mutable_timestamp());
+    transform->set_parent_frame_id(parent < 0 ? kWorldFrame : model.bodies[parent].name);
+    transform->set_child_frame_id(model.bodies[body].name);
+    transform->mutable_translation()->set_x(X.translation().x());
+    transform->mutable_translation()->set_y(X.translation().y());
+    transform->mutable_translation()->set_z(X.translation().z());
+    const Eigen::Quaterniond R(X.linear());
+    transform->mutable_rotation()->set_x(R.x());
+    transform->mutable_rotation()->set_y(R.y());
+    transform->mutable_rotation()->set_z(R.z());
+    transform->mutable_rotation()->set_w(R.w());
+  }
+  write_message(transforms_channel, time_ns, message, file);
+}
+
+void SceneTopics::Impl::write_joints(std::uint64_t time_ns, std::span<const double> values,
+                                     McapWriter* file) {
+  foxglove::JointStates message;
+  set_time(time_ns, message.mutable_timestamp());
+  foxglove::JointState* state = message.add_joints();
+  set_time(time_ns, state->mutable_timestamp());
+  for (int i = 0; i < model.joint_count; ++i) {
+    state->add_name(model.joints[i].name);
+    state->add_position(values[joints[i].position]);
+    state->add_velocity(values[joints[i].velocity]);
+    state->add_effort(values[joints[i].torque]);
+  }
+  write_message(joints_channel, time_ns, message, file);
+}
+
+SceneTopics::SceneTopics() = default;
+SceneTopics::~SceneTopics() = default;
+
+std::unique_ptr<SceneTopics> SceneTopics::create(const std::map<std::string, std::string>& metadata,
+                                                 const SignalTable& table) {
+  const auto urdf = metadata.find("robot_urdf");
+  if (urdf == metadata.end()) return nullptr;
+  dynamics::UrdfOptions options;
+  if (const auto pelvis = metadata.find("pelvis"); pelvis != metadata.end()) {
+    options.root_link = pelvis->second;
+  }
+  const dynamics::UrdfResult robot = dynamics::load_urdf_text(urdf->second, "the log", options);
+  if (!robot.ok()) return nullptr;
+  std::unique_ptr<SceneTopics> topics(new SceneTopics);
+  topics->impl_ = std::make_unique<Impl>(robot.model, urdf->second, SceneDrawing(metadata, table));
+  return topics->impl_->find_signals(table) ? std::move(topics) : nullptr;
+}
+
+void SceneTopics::add_channels(McapWriter* file) {
+  const std::string text = schema_text();
+  const auto add = [&](const char* topic, const char* name) {
+    return file->add_channel(file->add_schema(name, "protobuf", text), topic, "protobuf", {});
+  };
+  impl_->transforms_channel = add(kTransformsTopic, "foxglove.FrameTransforms");
+  impl_->joints_channel = add(kJointsTopic, "foxglove.JointStates");
+  impl_->scene_channel = add(kSceneTopic, "foxglove.SceneUpdate");
+  impl_->robot_channel = add(kRobotTopic, "foxglove.RobotDescription");
+  impl_->begun = false;
+}
+
+void SceneTopics::write(std::uint64_t time_ns, std::span<const double> values, McapWriter* file) {
+  Impl& impl = *impl_;
+  // A reset simulation begins again at zero.
+  if (impl.begun && time_ns < impl.next && impl.next - time_ns <= kPeriod) return;
+  impl.next = time_ns + kPeriod;
+  foxglove::SceneUpdate scene;
+  if (!impl.begun) {
+    foxglove::RobotDescription description;
+    description.set_data(impl.urdf);
+    description.set_format("urdf");
+    impl.write_message(impl.robot_channel, time_ns, description, file);
+    impl.drawing.add_terrain(&scene);
+    impl.begun = true;
+  }
+  impl.write_transforms(time_ns, values, file);
+  impl.write_joints(time_ns, values, file);
+  impl.drawing.add_gait(values, &scene);
+  for (foxglove::SceneEntity& entity : *scene.mutable_entities()) {
+    set_time(time_ns, entity.mutable_timestamp());
+    entity.set_frame_id(kWorldFrame);
+  }
+  impl.write_message(impl.scene_channel, time_ns, scene, file);
+}
+
+}  // namespace gaitd::daemon
