@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "fixed_steps.h"
 #include "gaitd/walking/support.h"
@@ -29,6 +30,7 @@ class Adjuster {
     testing::set_parameter(layer, "gain_standing", 3.0);
     testing::set_parameter(layer, "margin", 0.01);
     testing::set_parameter(layer, "excursion", 0.03);
+    testing::set_parameter(layer, "delay", 0.0);
   }
   GaitdStepAdjustment process(const SyntheticWalk& w, int ticks = 30) {
     GaitdStepAdjustment out{};
@@ -140,6 +142,35 @@ TEST(FixedSteps, APendulumAtTheExchangeOfSupportHasItsCmp27MillimetresFromItsEcm
   const GaitdStepAdjustment out = Adjuster().process(w);
   ASSERT_NEAR(out.ecmp[0], 0.0, 1e-9);
   EXPECT_NEAR(std::abs(out.cmp[0] - out.ecmp[0]), expected, 1e-6);
+}
+
+// ICP error along x after `time` seconds when commands act `ticks` later (m); it begins at 1 cm.
+double error_after(double time, int ticks, double known_delay) {
+  SyntheticWalk w;
+  w.run_for(0.1);
+  Adjuster a;
+  testing::set_parameter(a.layer, "delay", known_delay);
+  testing::set_parameter(a.layer, "gain_standing", 20.0);
+  const double growth = std::exp(w.gait().omega * w.dt);
+  std::vector<double> on_their_way(ticks, 0.0);
+  double error = 0.01;
+  for (int i = 0; i < std::lround(time / w.dt); ++i) {
+    sdk::view(w.robot.icp) = sdk::view(w.plan.icp) + Vector2d(error, 0.0);
+    on_their_way.push_back(a.process(w, 1).ecmp[0] - w.plan.ecmp[0]);
+    const double acts = on_their_way[on_their_way.size() - 1 - ticks];
+    error = acts + growth * (error - acts);
+  }
+  return error;
+}
+
+TEST(FixedSteps, AKnownDelayIsPredictedAway) {
+  const double instant = error_after(0.1, 0, 0.0);
+  EXPECT_NEAR(instant, 0.01 * std::exp(-20.0 * 0.1), 2e-4);
+  // Until the first command acts the error grows; from there on it goes as without a delay.
+  const double growth = std::exp(3.0 * 0.015);
+  const double predicted = error_after(0.115, 15, 0.015);
+  EXPECT_NEAR(predicted, growth * instant, 1e-4);
+  EXPECT_GT(std::abs(error_after(0.115, 15, 0.0) - growth * instant), 3e-4);
 }
 
 TEST(FixedSteps, KappaIsClamped) {

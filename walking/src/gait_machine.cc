@@ -158,12 +158,20 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   state_.footholds[side] = foothold_of(model_, landed);
   state_.early_contact = early ? 1 : 0;
   queue_.pop();
-  path_offset_ = parameters_[Gait::kShiftKept] * shift_;
+  path_offset_ = kept(shift_);
   if (queue_.size() == 0) path_offset_.setZero();
   if (recovering_) close_after_recovery();
   time_shift_ = 0.0;
   apply_pending_mode();
   begin_transfer(robot, other_side(side));
+}
+
+// Coming back at once would take steps that are too long for the legs.
+Eigen::Vector3d GaitMachine::kept(const Eigen::Vector3d& shift) const {
+  const double length = shift.norm();
+  const double back =
+      std::min((1.0 - parameters_[Gait::kShiftKept]) * length, parameters_[Gait::kReturnLimit]);
+  return length > 0.0 ? Eigen::Vector3d(shift * (1.0 - back / length)) : shift;
 }
 
 Eigen::Quaterniond GaitMachine::heading() const {
@@ -267,7 +275,7 @@ void GaitMachine::publish_footsteps() {
     position += offset;
     if (i > 0) keep_in_region(state_.adjusted[i]);
     position.z() += height_offset_;
-    offset *= parameters_[Gait::kShiftKept];
+    offset = kept(offset);
     if (2 * i + 1 < StepTiming::kPhases) {
       state_.adjusted[i].transfer_duration += time_changes_[2 * i];
       state_.adjusted[i].swing_duration += time_changes_[2 * i + 1];

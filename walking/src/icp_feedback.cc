@@ -16,6 +16,7 @@ void IcpFeedback::reset() {
   state_.size = sizeof(state_);
   state_.kappa = 1.0;
   state_.direction[0] = 1.0;
+  commanded_.fill(Eigen::Vector2d::Zero());
 }
 
 void IcpFeedback::update_kappa(const GaitdStepAdjusterInput& in) {
@@ -35,8 +36,20 @@ void IcpFeedback::update_kappa(const GaitdStepAdjusterInput& in) {
   state_.kappa += blend * (kappa - state_.kappa);
 }
 
+Eigen::Vector2d IcpFeedback::predicted_error(const GaitdStepAdjusterInput& in) const {
+  Eigen::Vector2d error = view(in.robot->icp) - view(in.plan->icp);
+  const int ticks = std::min(static_cast<int>(std::lround(p_[Feedback::kDelay] / in.time.period)),
+                             kMaxOnTheirWay - 1);
+  const double growth = std::exp(in.gait->omega * in.time.period);
+  for (int ago = ticks; ago >= 1; --ago) {
+    const Eigen::Vector2d& u = commanded_[(newest_ + kMaxOnTheirWay + 1 - ago) % kMaxOnTheirWay];
+    error = u + growth * (error - u);
+  }
+  return error;
+}
+
 Eigen::Vector2d IcpFeedback::feedback(const GaitdStepAdjusterInput& in) {
-  const Eigen::Vector2d error = view(in.robot->icp) - view(in.plan->icp);
+  const Eigen::Vector2d error = predicted_error(in);
   const double omega = in.gait->omega;
   auto integral = view(state_.integral);
   const double step = p_[Feedback::kIntegralStanding] * in.time.period;
@@ -87,6 +100,8 @@ void IcpFeedback::update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& 
     cmp = inside + (length > allowed ? Eigen::Vector2d(beyond * (allowed / length)) : beyond);
   }
   const Eigen::Vector2d ecmp = ecmp_of(*in.robot, cmp);
+  newest_ = (newest_ + 1) % kMaxOnTheirWay;
+  commanded_[newest_] = ecmp - view(in.plan->ecmp);
 
   out = {};
   out.size = sizeof(out);

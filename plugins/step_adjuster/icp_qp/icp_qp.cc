@@ -54,14 +54,14 @@ void IcpQp::set_state(const GaitdStepAdjusterState& s) {
 }
 
 void IcpQp::begin_phase(const GaitdGaitState& gait) {
+  // The planned duration is what the phase began with; a swap keeps what was shifted since.
+  if (phase_ != kUnknownPhase || step_index_ != gait.step_index) time_shift_ = 0.0;
   phase_ = gait.phase;
   step_index_ = gait.step_index;
   const GaitdFootstep& step = gait.commanded[0];
   // A step before this one may have left the commanded way, another variant may have begun it.
   shift_ = start_shift_ =
       (view(gait.adjusted[0].pose.position) - view(step.pose.position)).head<2>();
-  time_shift_ = gait.phase_duration -
-                (phase_ == GAITD_PHASE_SWING ? step.swing_duration : step.transfer_duration);
 }
 
 Capture IcpQp::capture(const GaitdStepAdjusterInput& in) const {

@@ -61,6 +61,8 @@ class GaitMachine {
   // Level, half-way between the feet.
   Eigen::Quaterniond heading() const;
   void adjust(const GaitdStepAdjustment& adjustment);
+  // What the next foothold keeps of a shift (m).
+  Eigen::Vector3d kept(const Eigen::Vector3d& shift) const;
   // Standing, or on the way to it: whether only a step can catch the robot; begins that step.
   bool recover(double dt, const GaitdRobotState& robot);
   GaitdFootstep recovery_step(const GaitdRobotState& robot, int side) const;

@@ -22,9 +22,10 @@ enum class Feedback {
   kKappaMin,
   kKappaMax,
   kKappaFilter,
+  kDelay,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 11> kFeedbackParameters = {
+inline constexpr std::array<GaitdParameter, 12> kFeedbackParameters = {
     sdk::real_parameter("gain_parallel", "1/s", 0, 30, 4, "ICP feedback along its motion"),
     sdk::real_parameter("gain_orthogonal", "1/s", 0, 30, 3, "ICP feedback across its motion"),
     sdk::real_parameter("gain_standing", "1/s", 0, 30, 3, "ICP feedback when standing"),
@@ -39,11 +40,14 @@ inline constexpr std::array<GaitdParameter, 11> kFeedbackParameters = {
     sdk::real_parameter("kappa_min", "", 0.3, 1, 0.8, "clamp of kappa (theory section 1)"),
     sdk::real_parameter("kappa_max", "", 1, 3, 1.4, "clamp of kappa"),
     sdk::real_parameter("kappa_filter", "Hz", 0.1, 500, 10, "low-pass of kappa"),
+    sdk::real_parameter("delay", "s", 0, 0.02, 0.0045,
+                        "of sensors, commands and drives, over which the ICP is predicted"),
 };
 
 // Tracks the ICP reference by moving the CMP (theory section 3):
 //   r_eCMP = r_ref + (1 + k/w) (xi - xi_ref), k along and across the motion of the reference
-// The CMP that follows is kept inside the support polygon plus a bounded excursion.
+// The CMP that follows is kept inside the support polygon plus a bounded excursion. What is commanded
+// acts a known delay later: the error is the one of then, predicted with what is on its way.
 class IcpFeedback {
  public:
   explicit IcpFeedback(const GaitdModel& model) : model_(model) { reset(); }
@@ -67,10 +71,16 @@ class IcpFeedback {
  private:
   void update_kappa(const GaitdStepAdjusterInput& in);
   Eigen::Vector2d feedback(const GaitdStepAdjusterInput& in);
+  // The ICP error when a command of now acts:
+  //   e(t + d) = exp(w d) e - w int_0^d exp(w (d - s)) u(t - d + s) ds,  u = r_eCMP - r_ref
+  Eigen::Vector2d predicted_error(const GaitdStepAdjusterInput& in) const;
 
   const GaitdModel model_;
   sdk::Parameters<Feedback> p_{kFeedbackParameters};
   GaitdStepAdjusterState state_{};
+  static constexpr int kMaxOnTheirWay = 128;
+  std::array<Eigen::Vector2d, kMaxOnTheirWay> commanded_;  // u of the last ticks (m)
+  int newest_ = 0;
 };
 
 }  // namespace gaitd::walking

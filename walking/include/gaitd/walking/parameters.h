@@ -30,6 +30,7 @@ enum class Gait {
   kMaxStepTurn,
   kMaxStepTilt,
   kShiftKept,
+  kReturnLimit,
   kStepTiming,
   kTimingKnee,
   kTimingDrop,
@@ -41,7 +42,7 @@ enum class Gait {
   kRecoveryMargin,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 29> kGaitParameters = {
+inline constexpr std::array<GaitdParameter, 30> kGaitParameters = {
     real_parameter("omega", "1/s", 0, 10, 0,
                    "natural frequency of the ICP; 0: sqrt(g / nominal CoM height)"),
     real_parameter("swing_duration", "s", 0.2, 10, 0.6, "of footsteps that give none"),
@@ -74,6 +75,8 @@ inline constexpr std::array<GaitdParameter, 29> kGaitParameters = {
     real_parameter("max_step_tilt", "rad", 0, 1, 0.4, "roll or pitch of a foothold"),
     real_parameter("shift_kept", "", 0, 1, 0.5,
                    "part of the shift of an adjusted foothold that the next one keeps"),
+    real_parameter("return_limit", "m", 0.01, 2, 0.15,
+                   "by which each step comes back to the commanded way at most"),
     boolean_parameter("step_timing", true,
                       "walk-straight: durations are changed where the legs would be too short"),
     real_parameter("timing_knee", "rad", 0, 1, 0.2, "wanted bend of the knees for it"),
@@ -81,7 +84,7 @@ inline constexpr std::array<GaitdParameter, 29> kGaitParameters = {
                    "how far the hip may come down from mid-stance for it"),
     real_parameter("timing_roll", "rad", 0, 1.5, 0.9,
                    "to which a trailing foot may roll over its toes for it"),
-    real_parameter("timing_change", "", 0, 0.9, 0.25,
+    real_parameter("timing_change", "", 0, 0.9, 0.6,
                    "largest change of a duration, over the duration"),
     boolean_parameter("recovery", true, "a standing robot steps by itself rather than fall"),
     real_parameter("recovery_swing", "s", 0.2, 2, 0.4, "swing of a step that catches the robot"),

@@ -30,6 +30,9 @@ class StepTiming {
   using Changes = std::array<double, kPhases>;  // s, against the durations of the footsteps
 
   explicit StepTiming(const GaitdModel& model);
+  // Nothing is kept from one call to the next.
+  StepTiming(const StepTiming& other) : StepTiming(other.model_) {}
+  StepTiming& operator=(const StepTiming&) = delete;
 
   // For a transfer at its start with the CoM at `com` (m, W). All zero when everything is within
   // reach as it is; as far as it goes when nothing makes it so.
@@ -39,7 +42,7 @@ class StepTiming {
                 const Changes& changes);
 
  private:
-  static constexpr int kLegs = 2 * kPhases;        // trailing and leading, at the end of each phase
+  static constexpr int kLegs = 2 * kPhases;  // trailing and leading, at the end of each phase
   static constexpr int kUnknowns = kPhases + kLegs;  // relative changes, slacks
   using Excess = Eigen::Matrix<double, kLegs, 1>;
 
