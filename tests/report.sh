@@ -13,6 +13,11 @@ expect 0 gaitctl report walk.mcap -o walk.html
 if grep -qE '(src|href)="?https?:' walk.html; then fail "the page loads something from elsewhere"; fi
 expect 0 node "$GAITD_SOURCE/tests/report_page.mjs" "$playwright" "$scratch/walk.html"
 
+# A minute of log opens in time.
+expect 0 gaitctl run estimators --log long.mcap >/dev/null
+expect 0 gaitctl report long.mcap -o long.html
+expect 0 node "$GAITD_SOURCE/tests/report_page.mjs" "$playwright" "$scratch/long.html"
+
 # A log that was cut off at any byte opens up to there.
 size=$(stat -c %s walk.mcap)
 for share in 95 60 20; do

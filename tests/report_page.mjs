@@ -28,10 +28,21 @@ page.on('pageerror', (error) => errors.push(String(error)));
 page.on('request', (request) => /^(file|data|blob):/.test(request.url()) ||
     errors.push(`request of ${request.url()}`));
 
+const session = await context.newCDPSession(page);
+await session.send('Performance.enable', {timeDomain: 'threadTicks'});
 const began = Date.now();
 await page.goto(pathToFileURL(page_file).href);
 await page.waitForFunction(() => window.gaitd?.player.frames > 1);
 console.log(`opened in ${Date.now() - began} ms`);
+// What a busy machine and a software renderer make of it is said, not judged: the processor time of
+// the page itself is.
+const {metrics} = await session.send('Performance.getMetrics');
+const seconds = metrics.find(({name}) => name === 'TaskDuration').value;
+const built = await page.evaluate(() => gaitd.built);
+const length = await page.evaluate(() => gaitd.log.time[gaitd.log.rows - 1]);
+console.log(`a log of ${length.toFixed(0)} s took ${seconds.toFixed(2)} s of processor time, ` +
+            `parsed and built in ${built.toFixed(0)} ms`);
+check(seconds < 3, `the page took ${seconds} s of processor time to open`);
 check(!errors.length, errors.join('; '));
 
 // The drawn pelvis is where the log says, at any time.

@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -14,6 +16,7 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <thread>
 
 #include "cli/child.h"
 #include "cli/failure.h"
@@ -29,6 +32,8 @@ namespace fs = std::filesystem;
 // As in the page: cli/report/page/src/plots.js.
 constexpr std::array kPlots = {"icp-path", "icp-x",  "icp-y",           "com-height", "knees",
                                "torques",  "forces", "step-adjustment", "tick-times"};
+
+constexpr std::chrono::seconds kBrowserTime(300);  // for one picture, on a busy machine
 
 struct Arguments {
   std::string log;
@@ -50,6 +55,20 @@ fs::path find_browser() {
   return {};
 }
 
+// False if it had to be killed.
+bool wait_for_child(pid_t pid, std::chrono::seconds most) {
+  const auto end = std::chrono::steady_clock::now() + most;
+  while (waitpid(pid, nullptr, WNOHANG) == 0) {
+    if (std::chrono::steady_clock::now() > end) {
+      kill(pid, SIGKILL);
+      waitpid(pid, nullptr, 0);
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return true;
+}
+
 // One picture per plot. Empty, or why not.
 std::string draw_plots(const fs::path& page, const fs::path& folder) {
   const fs::path browser = find_browser();
@@ -66,7 +85,8 @@ std::string draw_plots(const fs::path& page, const fs::path& folder) {
          "file://" + fs::absolute(page).string() + "#plot=" + plot},
         "/dev/null", "/dev/null");
     if (pid < 0) return "cannot start " + browser.string() + ": " + std::strerror(errno);
-    waitpid(pid, nullptr, 0);
+    const bool ended = wait_for_child(pid, kBrowserTime);
+    if (!ended) return browser.string() + " did not end while it drew " + picture.string();
     if (!fs::exists(picture, error)) return browser.string() + " made no " + picture.string();
   }
   return "";

@@ -78,5 +78,5 @@ function frame(now) {
   ++player.frames;
   requestAnimationFrame(frame);
 }
-requestAnimationFrame(frame);
+if (!only) requestAnimationFrame(frame);
 Object.assign(window, {gaitd: {log, player, plots, scene, built: performance.now() - began}});  // for the console of the browser
