@@ -83,7 +83,7 @@ int replay(const Context& context, const std::string& file, const std::vector<st
   std::string error;
   const auto log = daemon::LogReader::open(file, &error);
   if (!log) return fail(context, kFailed, "log replay", error);
-  const daemon::ReplayOptions options{daemon::Paths::detect().plugin_folders(), set};
+  const daemon::ReplayOptions options{daemon::Paths::detect().plugin_folders(), set, {}, {}};
   const auto report = daemon::replay(*log, options, &error);
   if (!report) return fail(context, kFailed, "log replay", error);
   std::cout << (context.json ? json_text(report_json(file, *report)) : report_text(file, *report));

@@ -65,7 +65,7 @@ cat >"$scratch/slow.yaml" <<CONFIG
 schema: gaitd.config/1
 robot: atlas
 backend: simbody
-realtime: {overrun: safe-stop, overrun_run: 0.01}
+realtime: {overrun: stop, overrun_run: 0.01}
 CONFIG
 start_daemon --config "$scratch/slow.yaml" --clock realtime --log "$scratch/slow.mcap" \
   --set "toe_off.variant=$layers/toe_off.so" --set toe_off.fault=5 --set toe_off.fault_time=1.0

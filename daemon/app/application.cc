@@ -33,6 +33,8 @@ void log_plugin(int level, std::string_view plugin, std::string_view message) {
   spdlog::log(kLevels[std::clamp(level, 0, 3)], "{}: {}", plugin, message);
 }
 
+constexpr std::chrono::seconds kTellOverruns{10};
+
 nlohmann::json settings_json(const Settings& settings) {
   nlohmann::json all;
   for (const Settings::Entry& entry : settings.effective()) all[entry.key] = to_json(*entry.value);
@@ -312,6 +314,10 @@ nlohmann::json Application::status() const {
     s["layers"][layer]["layer"] = layer_name(layer);
     s["layers"][layer]["variant"] = swaps_->variant(layer);
   }
+  {
+    const std::scoped_lock lock(realtime_mutex_);
+    add_times(tick_watch_->report(), realtime_, &s);
+  }
   const Telemetry::LogStatus log = telemetry_->log_status();
   s["log"] = {{"file", log.file},
               {"part", log.part},
@@ -342,6 +348,7 @@ void Application::prepare_swaps() {
 }
 
 bool Application::start_server() {
+  tick_watch_ = std::make_unique<TickWatch>(config_.period);
   bridge_ = std::make_unique<CommandBridge>();
   bridge_->show_effect_first([this] { return telemetry_->newest_tick(); });
   Methods methods;
@@ -393,6 +400,15 @@ bool Application::prepare() {
   return start_telemetry() && start_server();
 }
 
+bool Application::report_overruns(std::uint64_t* told) const {
+  const TickWatch::Report report = tick_watch_->report();
+  if (report.overruns == *told) return false;
+  spdlog::warn("{} overruns; late in tick {}: {}, {:.0f} us of {:.0f}", report.overruns - *told,
+               report.late.tick, late_name(report.late.what), report.late.time, report.late.budget);
+  *told = report.overruns;
+  return true;
+}
+
 // Says on the terminal what other threads cannot: faults, when they come and go, and where the log
 // goes on or why it ended.
 void Application::watch_telemetry(const std::atomic<bool>& running) const {
@@ -400,8 +416,12 @@ void Application::watch_telemetry(const std::atomic<bool>& running) const {
   std::vector<double> values;
   std::uint32_t last_faults = 0;
   Telemetry::LogStatus last_log = telemetry_->log_status();
+  std::uint64_t overruns_told = 0;
+  auto next_told = std::chrono::steady_clock::now();
   while (running) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    const auto now = std::chrono::steady_clock::now();
+    if (now >= next_told && report_overruns(&overruns_told)) next_told = now + kTellOverruns;
     const Telemetry::LogStatus log = telemetry_->log_status();
     if (log.part != last_log.part) spdlog::info("log: full, goes on in {}", log.file);
     if (log.error != last_log.error) {
@@ -424,11 +444,23 @@ void Application::watch_telemetry(const std::atomic<bool>& running) const {
   }
 }
 
+bool Application::become_realtime() {
+  const std::scoped_lock lock(realtime_mutex_);
+  enter_realtime(config_.realtime, &realtime_);
+  for (const std::string& line : realtime_.got) spdlog::info("real time: {}", line);
+  for (const std::string& line : realtime_.degraded) spdlog::warn("real time, degraded: {}", line);
+  if (realtime_.degraded.empty() || !config_.realtime.require) return true;
+  spdlog::error("--require-rt: not running degraded");
+  return false;
+}
+
 int Application::run() {
   const GaitdBackendInstance& backend = backend_->instance();
-  RealtimeReport realtime;
   const bool paced = config_.clock == GAITD_CLOCK_REALTIME;
-  if (paced) lock_memory(config_.realtime, &realtime);
+  if (paced) {
+    const std::scoped_lock lock(realtime_mutex_);
+    lock_memory(config_.realtime, &realtime_);
+  }
   if (backend.vtable->start(backend.self) != GAITD_OK) {
     spdlog::error("backend {}: start failed; see the messages above", config_.backend);
     return 1;
@@ -437,30 +469,20 @@ int Application::run() {
   options.clock = config_.clock;
   options.period = config_.period;
   options.arm = truth_;  // a robot comes up disarmed, a simulated one ready to use
-  options.safe_stop_on_overrun = config_.realtime.overrun == OverrunPolicy::kSafeStop;
+  options.overrun = config_.realtime.overrun;
   options.overrun_run = config_.realtime.overrun_run;
   loop_ = std::make_unique<ControlLoop>(options, robot_->model, pipeline_.get(), backend,
                                         telemetry_.get(), bridge_.get(), player_.get(),
-                                        &swaps_->port());
+                                        &swaps_->port(), tick_watch_.get());
   running_loop_ = loop_.get();
   if (stop_requested_) loop_->stop();
   LoopReport report;
-  bool degraded = false;
+  bool allowed = true;
   std::atomic<bool> running{true};
   std::thread watch([&] { watch_telemetry(running); });
   std::thread control([&] {
-    if (paced) {
-      enter_realtime(config_.realtime, &realtime);
-      for (const std::string& line : realtime.got) spdlog::info("real time: {}", line);
-      for (const std::string& line : realtime.degraded)
-        spdlog::warn("real time, degraded: {}", line);
-      degraded = !realtime.degraded.empty();
-      if (degraded && config_.realtime.require) {
-        spdlog::error("--require-rt: not running degraded");
-        return;
-      }
-    }
-    report = loop_->run();
+    if (paced) allowed = become_realtime();
+    if (allowed) report = loop_->run();
   });
   control.join();
   swaps_->stop();
@@ -481,7 +503,7 @@ int Application::run() {
   spdlog::info("{:.3f} s in {} ticks, {:.2f} times real time; overruns {}, late sensors {}; {}",
                simulated, report.ticks, factor, report.overruns, report.late_backend,
                kEnds[static_cast<int>(report.end)]);
-  return log_lost || (degraded && config_.realtime.require) ? 1 : 0;
+  return log_lost || !allowed ? 1 : 0;
 }
 
 void Application::request_stop() {

@@ -3,10 +3,12 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "daemon/app/realtime.h"
 #include "daemon/config/daemon_config.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/scenario.h"
@@ -60,6 +62,9 @@ class Application {
   bool start_server();
   std::string default_log_file() const;
   void watch_telemetry(const std::atomic<bool>& running) const;
+  bool report_overruns(std::uint64_t* told) const;  // false: there are no more
+  // On the control thread. False: not what is required.
+  bool become_realtime();
   void report_issues(const Issues& issues) const;
   // Where the value that holds for a key was written.
   Location place_of(std::string_view key) const;
@@ -84,6 +89,9 @@ class Application {
   std::unique_ptr<CommandBridge> bridge_;
   std::unique_ptr<SwapService> swaps_;
   std::unique_ptr<Pipeline> pipeline_;
+  std::unique_ptr<TickWatch> tick_watch_;
+  mutable std::mutex realtime_mutex_;
+  RealtimeReport realtime_;
   std::unique_ptr<ControlLoop> loop_;
   // The server answers, and signals come, before there is a loop to stop.
   std::atomic<ControlLoop*> running_loop_{nullptr};

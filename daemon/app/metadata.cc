@@ -138,4 +138,28 @@ json status_of(const Telemetry& telemetry) {
   return status;
 }
 
+void add_times(const TickWatch::Report& report, const RealtimeReport& realtime, json* status) {
+  const auto add_figures = [](const TimeHistogram::Figures& f, json* to) {
+    (*to)["median_us"] = f.count == 0 ? json() : json(f.median);
+    (*to)["p99_us"] = f.count == 0 ? json() : json(f.p99);
+    (*to)["max_us"] = f.count == 0 ? json() : json(f.max);
+  };
+  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
+    json& entry = (*status)["layers"][layer];
+    add_figures(report.layers[layer].time, &entry);
+    entry["budget_us"] = report.layers[layer].budget;
+    entry["over_budget"] = report.layers[layer].over;
+  }
+  add_figures(report.total, &(*status)["whole_tick"]);
+  add_figures(report.wake_up, &(*status)["wake_up"]);
+  (*status)["overruns"] = report.overruns;
+  const TickWatch::Late& late = report.late;
+  (*status)["late"] = late.what < 0 ? json()
+                                    : json({{"what", late_name(late.what)},
+                                            {"tick", late.tick},
+                                            {"time_us", late.time},
+                                            {"budget_us", late.budget}});
+  (*status)["realtime"] = {{"got", realtime.got}, {"degraded", realtime.degraded}};
+}
+
 }  // namespace gaitd::daemon

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "daemon/config/robot.h"
+#include "daemon/app/realtime.h"
+#include "daemon/control/tick_watch.h"
 #include "daemon/telemetry/log_writer.h"
 #include "daemon/telemetry/telemetry.h"
 #include "gaitd/abi/types.h"
@@ -19,5 +21,8 @@ void add_robot_metadata(const GaitdModel& model, LogMetadata* metadata);
 
 // The snapshot that `status` answers with, from the newest tick that telemetry has seen.
 nlohmann::json status_of(const Telemetry& telemetry);
+// Adds where the time of the ticks went since the start, and what of real time there is.
+void add_times(const TickWatch::Report& report, const RealtimeReport& realtime,
+               nlohmann::json* status);
 
 }  // namespace gaitd::daemon

@@ -47,6 +47,10 @@ void lock_memory(const RealtimeConfig& config, RealtimeReport* report) {
 
 void enter_realtime(const RealtimeConfig& config, RealtimeReport* report) {
   touch_stack();
+  report->got.push_back(std::string("built for ") + GAITD_BUILD + ", denormals are flushed");
+  if (std::string(GAITD_BUILD).find("Release") == std::string::npos) {
+    report->degraded.push_back("not a release build: build with the preset release");
+  }
   sched_param param{};
   param.sched_priority = config.priority;
   if (const int e = pthread_setschedparam(pthread_self(), SCHED_FIFO, &param); e == 0) {

@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<std::string_view, 3> kBackends = {"simbody", "socketcan", "mock"};
 constexpr std::array<std::string_view, 2> kClocks = {"realtime", "lockstep"};
 constexpr std::array<std::string_view, 3> kProfiles = {"simulation", "hardware", "auto"};
-constexpr std::array<std::string_view, 2> kOverrunPolicies = {"report", "safe-stop"};
+constexpr std::array<std::string_view, 3> kOverrunPolicies = {"skip", "catch_up", "stop"};
 constexpr std::array<std::string_view, 2> kCompressions = {"none", "zstd"};
 constexpr int kMaxProcessor = 1023;
 

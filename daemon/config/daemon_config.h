@@ -18,15 +18,20 @@ namespace gaitd::daemon {
 // Names of the layers in the order of GAITD_LAYER_*: the scopes of their parameters.
 using sdk::kLayerNames;
 
-enum class OverrunPolicy { kReport, kSafeStop };
+// What follows when a tick is not done before the next one should begin, with the realtime clock.
+enum class OverrunPolicy {
+  kSkip,     // the ticks that were missed are left out
+  kCatchUp,  // they follow at once, unless they are more than overrun_run
+  kStop,     // left out; in a row for overrun_run they are the fault `overrun`
+};
 
 struct RealtimeConfig {
   int priority = 80;          // SCHED_FIFO, 1..99
   std::vector<int> affinity;  // processors; empty: any
   bool lock_memory = true;
   bool require = false;                            // --require-rt: refuse to run degraded
-  OverrunPolicy overrun = OverrunPolicy::kReport;  // one tick over the period
-  double overrun_run = 0.01;  // s of overruns in a row that lead to a safe stop
+  OverrunPolicy overrun = OverrunPolicy::kSkip;
+  double overrun_run = 0.01;  // s
 };
 
 enum class LogCompression { kNone, kZstd };

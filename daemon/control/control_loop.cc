@@ -17,6 +17,8 @@
 namespace gaitd::daemon {
 namespace {
 
+constexpr double kTellOverruns = 1.0;  // s between two events about overruns
+
 std::int64_t now_ns() {
   timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
@@ -27,7 +29,8 @@ std::int64_t now_ns() {
 
 ControlLoop::ControlLoop(const LoopOptions& options, const GaitdModel& model, Pipeline* pipeline,
                          const GaitdBackendInstance& backend, Telemetry* telemetry,
-                         CommandBridge* bridge, ScenarioPlayer* scenario, SwapPort* swaps)
+                         CommandBridge* bridge, ScenarioPlayer* scenario, SwapPort* swaps,
+                         TickWatch* watch)
     : options_(options),
       model_(model),
       pipeline_(pipeline),
@@ -36,6 +39,7 @@ ControlLoop::ControlLoop(const LoopOptions& options, const GaitdModel& model, Pi
       bridge_(bridge),
       scenario_(scenario),
       swaps_(swaps),
+      watch_(watch),
       command_(std::make_unique<Command>()) {}
 
 LoopReport ControlLoop::run() {
@@ -74,6 +78,7 @@ LoopReport ControlLoop::run() {
 
 ControlLoop::Outcome ControlLoop::tick() {
   const TickGuard guard;
+  const Stopwatch watch;
   TickData& data = pipeline_->data();
   const GaitdStatus read = backend_.vtable->read(backend_.self, &data.readings);
   if (read == GAITD_NOT_READY) return Outcome::kNotReady;
@@ -87,6 +92,8 @@ ControlLoop::Outcome ControlLoop::tick() {
   }
   pipeline_->run(tick_);
   const bool written = backend_.vtable->write(backend_.self, &data.commands) == GAITD_OK;
+  data.times.total_us = watch.microseconds();
+  watch_->add(tick_, data.times, pipeline_->layers().budgets());
   data.has_truth = backend_.vtable->truth != nullptr &&
                    backend_.vtable->truth(backend_.self, &data.truth) == GAITD_OK;
   record();
@@ -248,6 +255,17 @@ void ControlLoop::report_changes() {
                          d.time.tick, d.time.time, std::string_view(text, length));
 }
 
+void ControlLoop::tell_overrun() {
+  const int late = watch_->overrun();
+  const double time = static_cast<double>(tick_) * options_.period;
+  if (time < next_told_) return;
+  next_told_ = time + kTellOverruns;
+  char text[96];
+  const int length = std::snprintf(text, sizeof(text), R"({"overruns":%lld,"late":"%s"})",
+                                   static_cast<long long>(report_.overruns), late_name(late));
+  telemetry_->push_event(EventKind::kNote, tick_, time, std::string_view(text, length));
+}
+
 void ControlLoop::wait_for_next_period() {
   const std::int64_t period = std::llround(1e9 * options_.period);
   const std::int64_t before = now_ns();
@@ -255,11 +273,13 @@ void ControlLoop::wait_for_next_period() {
   const bool overrun = before > next_wake_ns_;
   if (overrun) {
     ++report_.overruns;
-    // Skip what was missed: a burst of catching up would run on old sensors.
-    next_wake_ns_ += (before - next_wake_ns_) / period * period + period;
+    tell_overrun();
+    const bool catch_up = options_.overrun == OverrunPolicy::kCatchUp &&
+                          1e-9 * static_cast<double>(before - next_wake_ns_) < options_.overrun_run;
+    if (!catch_up) next_wake_ns_ += (before - next_wake_ns_) / period * period + period;
   }
   time_overrun_ = overrun ? time_overrun_ + options_.period : 0.0;
-  if (options_.safe_stop_on_overrun && time_overrun_ > options_.overrun_run) {
+  if (options_.overrun == OverrunPolicy::kStop && time_overrun_ > options_.overrun_run) {
     raise(kFaultOverrun, "overrun");
   }
   const timespec wake{static_cast<time_t>(next_wake_ns_ / 1000000000),

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <memory>
 
+#include "daemon/config/daemon_config.h"
 #include "daemon/control/pipeline.h"
 #include "daemon/control/scenario_player.h"
 #include "daemon/control/swap_port.h"
+#include "daemon/control/tick_watch.h"
 #include "daemon/server/command_bridge.h"
 #include "daemon/telemetry/telemetry.h"
 
@@ -17,8 +19,8 @@ struct LoopOptions {
   int clock = GAITD_CLOCK_LOCKSTEP;
   double period = 0.001;  // s
   bool arm = true;        // by itself at the first tick: a simulated robot
-  bool safe_stop_on_overrun = false;
-  double overrun_run = 0.01;  // s of overruns in a row that count
+  OverrunPolicy overrun = OverrunPolicy::kSkip;
+  double overrun_run = 0.01;  // s, see OverrunPolicy
 };
 
 // What the loop found about time, for reports.
@@ -37,7 +39,7 @@ class ControlLoop {
  public:
   ControlLoop(const LoopOptions& options, const GaitdModel& model, Pipeline* pipeline,
               const GaitdBackendInstance& backend, Telemetry* telemetry, CommandBridge* bridge,
-              ScenarioPlayer* scenario, SwapPort* swaps);
+              ScenarioPlayer* scenario, SwapPort* swaps, TickWatch* watch);
 
   // Runs until stop() or the end of the scenario. Call on a thread of its own.
   LoopReport run();
@@ -55,6 +57,7 @@ class ControlLoop {
   void record();
   void report_changes();
   void wait_for_next_period();
+  void tell_overrun();
 
   const LoopOptions options_;
   const GaitdModel& model_;
@@ -64,6 +67,7 @@ class ControlLoop {
   CommandBridge* bridge_;
   ScenarioPlayer* scenario_;
   SwapPort* swaps_;
+  TickWatch* watch_;
 
   std::atomic<bool> stop_{false};
   std::unique_ptr<Command> command_;  // scratch: too large for the stack
@@ -72,6 +76,7 @@ class ControlLoop {
   int swaps_awaited_ = 0;  // lockstep: of the scenario, that are being loaded
   std::int64_t next_wake_ns_ = 0;
   double time_overrun_ = 0.0;
+  double next_told_ = 0.0;  // s, when an overrun is told again
   bool write_failed_ = false;
   SafetyState last_state_ = SafetyState::kDisarmed;
   std::uint32_t last_faults_ = 0;

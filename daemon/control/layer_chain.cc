@@ -37,6 +37,14 @@ LayerInstance& LayerChain::in_use(int layer) {
   return *with_slot(*this, layer, [](auto& slot) { return &slot.in_use(); });
 }
 
+TickWatch::Budgets LayerChain::budgets() const {
+  TickWatch::Budgets budgets;
+  for (int i = 0; i < GAITD_LAYER_COUNT; ++i) {
+    budgets[i] = with_slot(*this, i, [](const auto& slot) { return slot.budget_us(); });
+  }
+  return budgets;
+}
+
 void LayerChain::reset() {
   std::apply([](auto&... slot) { (slot.reset(), ...); }, slots_);
   failure_ = {};

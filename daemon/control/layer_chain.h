@@ -7,6 +7,7 @@
 
 #include "daemon/control/layer_slot.h"
 #include "daemon/control/tick_data.h"
+#include "daemon/control/tick_watch.h"
 #include "daemon/host/loaded_plugin.h"
 
 namespace gaitd::daemon {
@@ -38,6 +39,8 @@ class LayerChain {
 
   const Failure& failure() const { return failure_; }
   LayerInstance& in_use(int layer);
+  // What the layers may take, as their plugins declare it, in a swap both together. [rt]
+  TickWatch::Budgets budgets() const;
   // All of them, or those that run under control only.
   void reset();
   void reset_controllers();

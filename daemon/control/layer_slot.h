@@ -2,13 +2,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <utility>
 
 #include "daemon/control/output_blend.h"
+#include "daemon/control/output_fade.h"
 #include "daemon/control/stopwatch.h"
-#include "daemon/control/swap.h"
+#include "daemon/control/swap_journal.h"
 #include "daemon/host/check_output.h"
 #include "gaitd/sdk/layer.h"
 
@@ -45,7 +45,7 @@ class LayerSlot {
       shadow(in, out);
     } else {
       if (phase_ == Phase::kProbation) error = prove(in, out, error);
-      fade(out, in.time.period);
+      fade_.apply(in.time.period, out);
     }
     if (error == nullptr) {
       last_good_ = out;
@@ -61,36 +61,34 @@ class LayerSlot {
   // `controlled`: the layer runs in every tick. If not, there is nothing to compare it with, and it
   // is taken at once.
   void begin(const SwapOrder& order, bool controlled) {
-    const SwapReport request{
+    const SwapReport swap{
         .request = order.request, .layer = kLayer, .rollback = order.candidate == nullptr};
-    if (swapping() && request.rollback) {
+    if (swapping() && swap.rollback) {
       roll_back("it was asked for", false);
-      request_ = request;
-      request_.rolled_back_already = true;
-      return report(SwapStep::kRolledBack);
+      journal_.swap() = swap;
+      journal_.swap().rolled_back_already = true;
+      return journal_.tell(SwapStep::kRolledBack);
     }
     if (swapping()) {
       return refuse(order, "another swap of this layer is under way; wait until it is done");
     }
-    request_ = request;
-    if (request.rollback) return exchange_with_previous(controlled);
+    journal_.swap() = swap;
+    if (swap.rollback) return exchange_with_previous(controlled);
     beside_ = {std::unique_ptr<LoadedLayer>(order.candidate), order.table, order.variant};
     elapsed_ = 0.0;
     if (!controlled) {
       std::swap(in_use_, beside_);
-      report(SwapStep::kSwitched);
+      journal_.tell(SwapStep::kSwitched);
       return accept();
     }
-    if (!hand_over(in_use_, beside_)) return refuse("it does not take the state of the layer");
+    if (!begin_from(in_use_, beside_)) return refuse("it does not take the state of the layer");
     phase_ = Phase::kShadow;
-    report(SwapStep::kShadow);
+    journal_.tell(SwapStep::kShadow);
   }
   // Does not even begin; a swap that is under way goes on.
   void refuse(const SwapOrder& order, const char* why) {
-    const SwapReport under_way = request_;
-    request_ = {.request = order.request, .layer = kLayer, .why = why};
-    report(SwapStep::kRefused, order.candidate);
-    request_ = under_way;
+    journal_.tell({.request = order.request, .layer = kLayer, .why = why}, SwapStep::kRefused,
+                  order.candidate);
   }
   bool swapping() const { return phase_ != Phase::kSteady; }
   bool has_previous() const { return previous_.layer != nullptr; }
@@ -111,7 +109,7 @@ class LayerSlot {
     in_use_.layer->reset();
     if (beside_.layer) beside_.layer->reset();
     last_good_ = {};
-    fade_left_ = 0.0;
+    fade_.end();
   }
   GaitdStatus set_parameter(int index, double value) {
     if (beside_.layer && beside_.table == in_use_.table) {
@@ -120,18 +118,18 @@ class LayerSlot {
     return in_use_.layer->set_parameter(index, value);
   }
   LayerInstance& in_use() { return in_use_; }
-
+  // What the plugins that run declare as their worst case. [rt]
+  double budget_us() const { return budget_of(in_use_) + budget_of(beside_); }
   // What happened, in order, each once.
-  bool take_report(SwapReport* report) {
-    if (report_count_ == 0) return false;
-    *report = reports_[0];
-    std::copy(reports_.begin() + 1, reports_.begin() + report_count_--, reports_.begin());
-    return true;
-  }
+  bool take_report(SwapReport* report) { return journal_.take(report); }
 
  private:
   enum class Phase { kSteady, kShadow, kProbation };
   static constexpr double kLongestWait = 10.0;  // s, for toe-off to end
+
+  static double budget_of(const LayerInstance& instance) {
+    return instance.layer ? instance.layer->descriptor().worst_case_us : 0.0;
+  }
 
   const char* call(LayerInstance& instance, const Input& in, Output& out) {
     const GaitdStatus status = instance.layer->process(&in, &out);
@@ -146,7 +144,7 @@ class LayerSlot {
   }
   const char* too_long() {
     if (!std::exchange(too_long_, false)) return nullptr;
-    request_.wall_time = true;
+    journal_.swap().wall_time = true;
     return "it takes longer than the period of the tick";
   }
 
@@ -155,7 +153,7 @@ class LayerSlot {
     if (error == nullptr) error = too_long();
     if (error != nullptr) return refuse(error);
     const double difference = output_difference(model_, out, beside_output_);
-    request_.difference = std::max(request_.difference, difference);
+    journal_.swap().difference = std::max(journal_.swap().difference, difference);
     if (difference > rules_.difference_limit) {
       return refuse("its output is too far from that of the layer in use");
     }
@@ -170,9 +168,9 @@ class LayerSlot {
     std::swap(in_use_, beside_);
     phase_ = Phase::kProbation;
     elapsed_ = 0.0;
-    fade_left_ = rules_.fade;
+    fade_.begin(last_good_, rules_.fade);
     doubt_ = nullptr;
-    report(SwapStep::kSwitched);
+    journal_.tell(SwapStep::kSwitched);
   }
 
   // The newcomer is in use, the one before beside it: what it says counts if the newcomer fails.
@@ -180,7 +178,7 @@ class LayerSlot {
     const char* why = error != nullptr ? error : too_long();
     if (why == nullptr) why = doubt_;
     const char* error_before = call(beside_, in, beside_output_);
-    if (fade_left_ > 0.0) faded_ = error_before == nullptr ? beside_output_ : last_good_;
+    if (fade_.active()) fade_.follow(error_before == nullptr ? beside_output_ : last_good_);
     if (why != nullptr) {
       roll_back(why, true);
       if (error_before == nullptr) out = beside_output_;
@@ -191,61 +189,54 @@ class LayerSlot {
     return nullptr;
   }
 
-  void fade(Output& out, double dt) {
-    if (fade_left_ <= 0.0) return;
-    fade_left_ -= dt;
-    const double share = 1.0 - std::max(0.0, fade_left_) / std::max(rules_.fade, dt);
-    cross_fade(faded_, share, out);
-  }
-
   void accept() {
     phase_ = Phase::kSteady;
-    fade_left_ = 0.0;
-    report(SwapStep::kDone, previous_.layer.release());
+    fade_.end();
+    journal_.tell(SwapStep::kDone, previous_.layer.release());
     previous_ = std::move(beside_);
     beside_ = {};
   }
   void refuse(const char* why) {
     phase_ = Phase::kSteady;
-    request_.why = why;
-    report(SwapStep::kRefused, beside_.layer.release());
+    journal_.swap().why = why;
+    journal_.tell(SwapStep::kRefused, beside_.layer.release());
     beside_ = {};
   }
   void roll_back(const char* why, bool on_its_own) {
-    request_.why = why;
+    journal_.swap().why = why;
     if (phase_ == Phase::kShadow) return refuse(why);
     std::swap(in_use_, beside_);
     if (!on_its_own) hand_over(beside_, in_use_);
     phase_ = Phase::kSteady;
-    begin_fade_from_last();
-    report(SwapStep::kRolledBack, beside_.layer.release());
+    fade_.begin(last_good_, rules_.fade);
+    journal_.tell(SwapStep::kRolledBack, beside_.layer.release());
     beside_ = {};
   }
   // `gaitctl plugin rollback` after the probation.
   void exchange_with_previous(bool controlled) {
     if (!has_previous()) {
-      request_.why = "there is no layer before this one";
-      return report(SwapStep::kRefused);
+      journal_.swap().why = "there is no layer before this one";
+      return journal_.tell(SwapStep::kRefused);
     }
     if (controlled) {
-      if (!hand_over(in_use_, previous_)) {
-        request_.why = "the one before does not take the state of the layer";
-        return report(SwapStep::kRefused);
+      if (!begin_from(in_use_, previous_)) {
+        journal_.swap().why = "the one before does not take the state of the layer";
+        return journal_.tell(SwapStep::kRefused);
       }
-      begin_fade_from_last();
+      fade_.begin(last_good_, rules_.fade);
     }
     std::swap(in_use_, previous_);
-    report(SwapStep::kRolledBack);
-  }
-  void begin_fade_from_last() {
-    faded_ = last_good_;
-    fade_left_ = rules_.fade;
+    journal_.tell(SwapStep::kRolledBack);
   }
 
+  // To one that ran beside: what it keeps for itself, such as filters of measurements, goes on.
   bool hand_over(LayerInstance& from, LayerInstance& to) {
     State state{};
-    return from.layer->get_state(&state) == GAITD_OK && to.layer->reset() == GAITD_OK &&
-           to.layer->set_state(&state) == GAITD_OK;
+    return from.layer->get_state(&state) == GAITD_OK && to.layer->set_state(&state) == GAITD_OK;
+  }
+  // To one that did not.
+  bool begin_from(LayerInstance& from, LayerInstance& to) {
+    return to.layer->reset() == GAITD_OK && hand_over(from, to);
   }
 
   void take_back(Output& out) {
@@ -260,28 +251,19 @@ class LayerSlot {
     }
   }
 
-  void report(SwapStep step, LoadedLayer* retired = nullptr) {
-    request_.step = step;
-    request_.retired = retired;
-    reports_[report_count_++] = request_;
-  }
-
   const GaitdModel& model_;
   const SwapRules& rules_;
   LayerInstance in_use_;
   LayerInstance beside_;    // the candidate, in probation the one before
   LayerInstance previous_;  // after probation, for a rollback
   Phase phase_ = Phase::kSteady;
-  double elapsed_ = 0.0;    // s, in the phase
-  double fade_left_ = 0.0;  // s
+  double elapsed_ = 0.0;  // s, in the phase
   const char* doubt_ = nullptr;
   bool too_long_ = false;
-  SwapReport request_;
-  std::array<SwapReport, 4> reports_;  // a tick makes at most three
-  int report_count_ = 0;
+  SwapJournal journal_;
   Output last_good_{};
   Output beside_output_{};
-  Output faded_{};  // what the output comes from while it cross-fades
+  OutputFade<Output> fade_;
 };
 
 }  // namespace gaitd::daemon

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "daemon/control/command_note.h"
-#include "daemon/control/stopwatch.h"
 #include "daemon/parameters/swap_parameters.h"
 
 namespace gaitd::daemon {
@@ -156,7 +155,6 @@ void Pipeline::begin_control() {
 }
 
 void Pipeline::run(std::int64_t tick) {
-  const Stopwatch watch;
   TickData& d = data_;
   d.time = {tick, static_cast<double>(tick) * period_, period_};
   monitor_.check(period_, safety_.parameters(), d);
@@ -167,7 +165,6 @@ void Pipeline::run(std::int64_t tick) {
   const bool ok = controlled && control(period_);
   if (!controlled) layers_.give_up_swaps("the robot is not under control any more");
   safety_.write(period_, ok, d);
-  d.times.total_us = watch.microseconds();
 }
 
 bool Pipeline::control(double dt) {

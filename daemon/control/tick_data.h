@@ -30,7 +30,7 @@ inline constexpr std::array<const char*, 10> kFaultNames = {
 
 // Wall times of one tick. Reported, never acted on in lockstep.
 struct TickTimes {
-  double total_us = 0.0;
+  double total_us = 0.0;  // from reading the sensors to writing the commands
   std::array<double, GAITD_LAYER_COUNT> layer_us{};
   double jitter_us = 0.0;
 };

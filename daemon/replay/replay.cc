@@ -64,7 +64,7 @@ class Player {
   Player(const LogReader& log, RecordedRobot* robot)
       : log_(log), robot_(*robot), inputs_(collect(log)) {}
 
-  bool play(ReplayReport* report, std::string* error);
+  bool play(const ReplayOptions& options, ReplayReport* report, std::string* error);
 
  private:
   bool begin_tick(std::int64_t tick, std::string* error);
@@ -138,7 +138,7 @@ void Player::compare(std::int64_t tick, ReplayReport* report) {
   }
 }
 
-bool Player::play(ReplayReport* report, std::string* error) {
+bool Player::play(const ReplayOptions& options, ReplayReport* report, std::string* error) {
   const SignalTable& table = log_.signals();
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!stage_of(table[i].name).name.empty()) compared_.push_back(static_cast<int>(i));
@@ -164,9 +164,11 @@ bool Player::play(ReplayReport* report, std::string* error) {
     // After the commands: the reset of a simulation clears what it finds, as on the control thread.
     if (!sensors.next(&data.readings)) break;
     data.has_truth = has_truth;
+    if (options.before_tick) options.before_tick(robot_.model(), tick, pipeline);
     pipeline.run(tick);
     record_signals(robot_.model(), data, replayed_);
     compare(tick, report);
+    if (options.after_tick) options.after_tick(data);
     ++report->ticks;
   }
   return true;
@@ -187,7 +189,7 @@ std::optional<ReplayReport> replay(const LogReader& log, const ReplayOptions& op
   ReplayReport report;
   std::string why;
   const auto robot = RecordedRobot::load(log, options, &report.notes, &why);
-  if (robot == nullptr || !Player(log, robot.get()).play(&report, &why)) return failed(why);
+  if (robot == nullptr || !Player(log, robot.get()).play(options, &report, &why)) return failed(why);
   std::stable_sort(report.differences.begin(), report.differences.end(),
                    [](const SignalDifference& a, const SignalDifference& b) {
                      if (a.tick != b.tick) return a.tick < b.tick;

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "daemon/control/pipeline.h"
 #include "daemon/telemetry/log_reader.h"
 
 namespace gaitd::daemon {
@@ -14,6 +16,10 @@ namespace gaitd::daemon {
 struct ReplayOptions {
   std::vector<std::filesystem::path> plugin_folders;
   std::vector<std::string> set;  ///< KEY=VALUE, over what was recorded: then it will differ
+  /// For those who look closer; may be empty. The first is called when the commands and swaps of a
+  /// tick were taken and its sensors are there.
+  std::function<void(const GaitdModel&, std::int64_t tick, Pipeline&)> before_tick;
+  std::function<void(const TickData&)> after_tick;
 };
 
 /// A signal that is not what was recorded, bit by bit.

@@ -437,6 +437,27 @@ TYPED_TEST(StateEstimator, AnotherInstanceContinuesFromItsState) {
   EXPECT_LT(e.tilt, 5e-3);
 }
 
+// What ran beside another one goes on with its own filters: no rate jumps when it takes over.
+TYPED_TEST(StateEstimator, KeepsTheFiltersOfTheJointsWhenItTakesAState) {
+  Bench<TypeParam> b(1.0, kNominal);
+  b.run_for(2.0);
+  TypeParam alone = b.layer;
+  GaitdStateEstimatorState state{};
+  b.layer.get_state(state);
+  b.layer.set_state(state);
+  b.sense();
+  ASSERT_EQ(b.process(alone), GAITD_OK);
+  const GaitdRobotState expected = b.state;
+  ASSERT_EQ(b.process(b.layer), GAITD_OK);
+  for (int i = 0; i < atlas().joint_count; ++i) {
+    EXPECT_EQ(b.state.joint_position[i], expected.joint_position[i]) << i;
+    EXPECT_EQ(b.state.joint_velocity[i], expected.joint_velocity[i]) << i;
+  }
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(b.state.pelvis_twist[k], expected.pelvis_twist[k], 1e-9) << k;
+  }
+}
+
 TYPED_TEST(StateEstimator, StateGoesInAndComesOutTheSame) {
   Bench<TypeParam> b(1.0, kNominal);
   b.run_for(1.0);

@@ -47,7 +47,7 @@ TEST(DaemonConfig, ReadsWhatDiffersFromTheDefaults) {
       folder.write("gaitd.yaml",
                    "schema: gaitd.config/1\nbackend: socketcan\nclock: lockstep\nperiod: 0.004\n"
                    "toe_off: {variant: icp_criteria}\nstep_adjuster/icp_qp: {dead_band: 0.02}\n"
-                   "realtime: {affinity: [2, 3], overrun: safe-stop}\nlog: {compression: none}\n");
+                   "realtime: {affinity: [2, 3], overrun: stop}\nlog: {compression: none}\n");
   Settings settings;
   Issues issues;
   ASSERT_TRUE(load_config_file(file, &settings, &issues)) << issues.error_text();
@@ -61,7 +61,7 @@ TEST(DaemonConfig, ReadsWhatDiffersFromTheDefaults) {
   EXPECT_EQ(config.period, 0.002);
   EXPECT_EQ(config.variants[GAITD_LAYER_TOE_OFF], "icp_criteria");
   EXPECT_EQ(config.realtime.affinity, (std::vector<int>{2, 3}));
-  EXPECT_EQ(config.realtime.overrun, OverrunPolicy::kSafeStop);
+  EXPECT_EQ(config.realtime.overrun, OverrunPolicy::kStop);
   EXPECT_EQ(config.log.compression, LogCompression::kNone);
 }
 

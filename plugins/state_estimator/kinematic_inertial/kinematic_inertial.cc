@@ -67,7 +67,7 @@ void KinematicInertial::get_state(GaitdStateEstimatorState& s) const {
 }
 
 void KinematicInertial::set_state(const GaitdStateEstimatorState& s) {
-  reset();
+  // The filters of joints, rates and forces go on: what they follow was measured here too.
   initialised_ = s.initialised != 0;
   time_since_start_ = 2.0 * kAveragingTime;
   position_ = view(s.pelvis_position);
@@ -76,9 +76,11 @@ void KinematicInertial::set_state(const GaitdStateEstimatorState& s) {
   gyro_bias_ = view(s.gyro_bias);
   accelerometer_bias_ = view(s.accelerometer_bias);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    feet_[side].contact = s.contact[side];
-    feet_[side].anchor = view(s.anchor[side]);
-    feet_[side].anchor_orientation = sdk::from_yaw(s.anchor_yaw[side]);
+    Foot& foot = feet_[side];
+    foot = {.normal_force = foot.normal_force};
+    foot.contact = s.contact[side];
+    foot.anchor = view(s.anchor[side]);
+    foot.anchor_orientation = sdk::from_yaw(s.anchor_yaw[side]);
   }
 }
 

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// The control pipeline with the shipped layers, fed with the sensors of a made-up walk.
+#include "daemon/control/pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/conformance/sample_walk.h"
+#include "daemon/host/layers.h"
+#include "daemon/parameters/scopes.h"
+#include "walking/test/atlas.h"
+
+namespace gaitd::daemon {
+namespace {
+
+using testing::atlas;
+constexpr double kPeriod = 0.001;  // s
+constexpr const char* kVariants[] = {"kinematic_inertial", "heel_to_toe", "icp_qp", "icp_criteria",
+                                     "nullspace_qp"};
+
+std::vector<double> defaults(std::span<const GaitdParameter> table) {
+  std::vector<double> values;
+  for (const GaitdParameter& parameter : table) values.push_back(parameter.default_value);
+  return values;
+}
+
+class Bench {
+ public:
+  // `planner`: a library instead of the shipped one, with these parameters.
+  explicit Bench(const std::string& planner = "", std::vector<double> values = {})
+      : walk(std::make_unique<SampleWalk>(atlas())) {
+    LayerChain::Layers layers;
+    for (int i = 0; i < GAITD_LAYER_COUNT; ++i) {
+      const bool other = i == GAITD_LAYER_ICP_PLANNER && !planner.empty();
+      LoadedLayer::Request request;
+      request.path = other ? planner
+                           : std::string(GAITD_PLUGIN_DIR "/") + std::string(layer_name(i)) + "/" +
+                                 kVariants[i] + ".so";
+      request.layer = i;
+      request.model = &atlas();
+      request.parameters = other ? values : std::vector<double>{};
+      request.probe = false;
+      Refusal refusal;
+      layers[i] = LoadedLayer::load(request, &refusal);
+      EXPECT_NE(layers[i], nullptr) << refusal.text();
+      const GaitdPluginDescriptor& d = layers[i]->descriptor();
+      const std::span<const GaitdParameter> table{d.parameters, d.parameter_count};
+      parameters.add(i, layer_name(i), d.id, table, defaults(table));
+    }
+    for (const DaemonScope& scope : daemon_scopes()) {
+      parameters.add(scope.owner, scope.name, "", scope.table, defaults(scope.table));
+    }
+    pipeline =
+        std::make_unique<Pipeline>(atlas(), std::move(layers), GaitdStart{}, &parameters, kPeriod);
+  }
+  // The robot stands still for as long as it is asked to, whatever it is commanded.
+  void run_for(double seconds) {
+    if (tick == 0) walk->tick();
+    for (int i = 0; i < seconds / kPeriod; ++i, ++tick) {
+      pipeline->data().sensors = walk->inputs().sensors;
+      pipeline->run(tick);
+    }
+  }
+  CommandReply execute(CommandType type) {
+    Command command;
+    command.type = type;
+    return pipeline->execute(command);
+  }
+  SafetyState state() const { return pipeline->safety().state(); }
+
+  LiveParameters parameters;
+  std::unique_ptr<SampleWalk> walk;
+  std::unique_ptr<Pipeline> pipeline;
+  std::int64_t tick = 0;
+};
+
+TEST(Pipeline, StandsWhenArmedAndTakesAWalkThen) {
+  Bench b;
+  b.run_for(0.1);
+  EXPECT_EQ(b.state(), SafetyState::kDisarmed);
+  const CommandReply early = b.execute(CommandType::kWalk);
+  EXPECT_FALSE(early.accepted);
+  EXPECT_NE(std::string(early.message.data()).find("arm it"), std::string::npos);
+  EXPECT_TRUE(b.execute(CommandType::kArm).accepted);
+  b.run_for(5.0);
+  ASSERT_EQ(b.state(), SafetyState::kStanding);
+  const TickData& d = b.pipeline->data();
+  EXPECT_EQ(d.faults, 0u);
+  EXPECT_EQ(d.wbc.info.status, GAITD_WBC_SOLVED);
+  EXPECT_GT(d.times.layer_us[GAITD_LAYER_WHOLE_BODY_CONTROLLER], 0.0);
+  Command walk;
+  walk.type = CommandType::kWalk;
+  walk.request = 41;
+  walk.walk.steps = 4;
+  const CommandReply reply = b.pipeline->execute(walk);
+  EXPECT_TRUE(reply.accepted) << reply.message.data();
+  EXPECT_EQ(reply.request, 41u);
+  b.run_for(0.05);
+  EXPECT_EQ(b.state(), SafetyState::kWalking);
+  EXPECT_EQ(d.gait.phase, GAITD_PHASE_TRANSFER);
+}
+
+TEST(Pipeline, AFailingLayerIsAFaultThatLatchesAndDampsTheJoints) {
+  // The scripted planner fails from tick 4500 on, when the robot stands.
+  Bench b(SCRIPTED_PLANNER, {0.0, 1.0, 4500.0});
+  ASSERT_TRUE(b.execute(CommandType::kArm).accepted);
+  b.run_for(4.4);
+  ASSERT_EQ(b.state(), SafetyState::kStanding);
+  b.run_for(0.2);
+  EXPECT_EQ(b.state(), SafetyState::kFault);
+  EXPECT_NE(b.pipeline->data().faults & kFaultLayer, 0u);
+  EXPECT_EQ(b.pipeline->layers().failure().layer, GAITD_LAYER_ICP_PLANNER);
+  EXPECT_STREQ(b.pipeline->layers().failure().what, "GAITD_ERROR");
+  for (int i = 0; i < atlas().joint_count; ++i) {
+    EXPECT_EQ(b.pipeline->data().commands.joints[i].mode, GAITD_JOINT_MODE_DAMPING) << i;
+  }
+  EXPECT_FALSE(b.execute(CommandType::kWalk).accepted);
+}
+
+TEST(Pipeline, SameInputsGiveTheSameBitsAndSoAfterAReset) {
+  Bench a;
+  Bench b;
+  for (Bench* one : {&a, &b}) {
+    ASSERT_TRUE(one->execute(CommandType::kArm).accepted);
+    one->run_for(5.0);
+  }
+  const auto same = [&] {
+    return std::memcmp(&a.pipeline->data().commands, &b.pipeline->data().commands,
+                       sizeof(GaitdJointCommands)) == 0;
+  };
+  EXPECT_TRUE(same());
+  b.pipeline->reset();
+  EXPECT_EQ(b.state(), SafetyState::kReadying);
+  b.tick = 0;
+  b.walk = std::make_unique<SampleWalk>(atlas());
+  b.run_for(5.0);
+  EXPECT_EQ(b.state(), SafetyState::kStanding);
+  EXPECT_TRUE(same());
+}
+
+TEST(Pipeline, SetsParametersOfLayersAndOfItsOwnAndTellsTheOldValue) {
+  Bench b;
+  std::string error;
+  for (const char* key : {"gait.swing_height", "whole_body_controller.torque_scale"}) {
+    const int index = b.parameters.find(key, &error);
+    ASSERT_GE(index, 0) << error;
+    Command command;
+    command.type = CommandType::kSetParameter;
+    command.parameter_index = index;
+    command.parameter_value = 0.2;
+    const double before = b.parameters.value(index);
+    const CommandReply reply = b.pipeline->execute(command);
+    EXPECT_TRUE(reply.accepted) << reply.message.data();
+    EXPECT_EQ(reply.old_value, before);
+    EXPECT_EQ(b.parameters.value(index), 0.2);
+  }
+}
+
+TEST(Pipeline, OnHardwareSwapsOnlyWhenTheConfigurationAllowsIt) {
+  Bench b;
+  b.pipeline->layers().rules().simulation = false;
+  b.pipeline->begin_swap({.request = 3, .layer = GAITD_LAYER_TOE_OFF});
+  SwapReport report;
+  ASSERT_TRUE(b.pipeline->take_swap_report(&report));
+  EXPECT_EQ(report.step, SwapStep::kRefused);
+  EXPECT_STREQ(report.why, "swap.on_hardware is false");
+}
+
+}  // namespace
+}  // namespace gaitd::daemon
