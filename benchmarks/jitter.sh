@@ -2,7 +2,7 @@
 # How late gaitd wakes up in real time, beside cyclictest (package rt-tests) in the same minutes: pairs of
 # runs, one after the other, with clients that ask for the status 100 times a second, a log being written and a
 # swap every 5 s. Prints both distributions of each pair, and the median of the ratios of p99.
-#   tests/jitter.sh [SECONDS] [PAIRS]          60 and 5 unless given
+#   benchmarks/jitter.sh [SECONDS] [PAIRS]          60 and 5 unless given
 # $GAITD_BUILD is the build, build/release by default. Exit code 0 if the ratio is at most 2.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -1,80 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <benchmark/benchmark.h>
-
-#include <cstdint>
-#include <string>
-#include <vector>
+// The whole-body quadratic program on recorded sequences, warm from problem to problem, cold at the
+// first: as recorded, and with torque limits that bind.
+#include <algorithm>
+#include <utility>
 
 #include "gaitd/qp/dense_solver.h"
-#include "random_problem.h"
+#include "measure.h"
 #include "recorded_problems.h"
+#include "walk_problems.h"
 
-namespace gaitd::qp {
+namespace gaitd::benchmarks {
 namespace {
 
-using testing::read_recorded;
-using testing::RecordedProblem;
-
-constexpr Dimensions kMax{112, 40, 96};
-
-// One problem of a recorded sequence per iteration, in order. Arguments: sequence, warm start,
-// tightened limits.
-void BM_Recorded(benchmark::State& state) {
-  const char* name = testing::kRecordedSequences[state.range(0)];
-  std::vector<RecordedProblem> sequence = read_recorded(name);
-  if (sequence.empty()) {
-    state.SkipWithError("no data");
-    return;
-  }
-  if (state.range(2) != 0) {
-    for (RecordedProblem& recorded : sequence) testing::tighten(&recorded);
-  }
-  Options options;
-  options.warm_start = state.range(1) != 0;
-  DenseSolver solver(kMax);
-  std::size_t k = 0;
-  long changes = 0;
+// Shows the problems with `unknowns`; 0: all of them.
+void solve(benchmark::State& state, const QpSequence& problems, int unknowns) {
+  qp::DenseSolver solver(kMaxProblem);
+  double residual = 0.0;
+  std::vector<double> changes(problems.size());
   for (auto _ : state) {
-    const Result result = solver.solve(sequence[k].problem.view(), options);
-    benchmark::DoNotOptimize(result.x.data());
-    changes += result.iterations;
-    if (!result.solved()) state.SkipWithError("not solved");
-    k = (k + 1) % sequence.size();
+    const double before = calibration();
+    const std::vector<double> least = least_of_five(
+        static_cast<int>(problems.size()), [&] { solver.reset_warm_start(); },
+        [&](int k) {
+          const qp::Result result = solver.solve(problems[k].view());
+          residual = std::max(residual, result.residuals.scaled.max());
+          changes[k] = result.iterations;
+        });
+    std::vector<double> shown;
+    double all_changes = 0.0;
+    for (std::size_t k = 0; k < problems.size(); ++k) {
+      if (unknowns != 0 && problems[k].g.size() != unknowns) continue;
+      shown.push_back(least[k]);
+      all_changes += changes[k];
+    }
+    show(state, distribution(shown), before);
+    state.counters["changes"] = all_changes / static_cast<double>(shown.size());
   }
-  state.SetLabel(std::string(name) + (options.warm_start ? " warm" : " cold") +
-                 (state.range(2) != 0 ? " tight" : ""));
-  state.counters["changes"] =
-      benchmark::Counter(static_cast<double>(changes), benchmark::Counter::kAvgIterations);
+  state.counters["kkt"] = residual;
 }
-BENCHMARK(BM_Recorded)->ArgsProduct({{0, 1, 2}, {1, 0}, {0, 1}})->Unit(benchmark::kMicrosecond);
 
-// Random problems, cold. Arguments: n, kind of Hessian (0 dense, 1 block diagonal).
-void BM_RandomCold(benchmark::State& state) {
-  std::vector<testing::SolvedProblem> problems;
-  for (std::uint64_t seed = 0; seed < 32; ++seed) {
-    testing::Random random(seed);
-    testing::RandomProblemSpec spec;
-    spec.size = {static_cast<int>(state.range(0)), 6, 30};
-    spec.hessian = static_cast<testing::HessianKind>(state.range(1));
-    problems.push_back(make_random_problem(spec, &random));
-  }
-  Options options;
-  options.warm_start = false;
-  DenseSolver solver(kMax);
-  std::size_t k = 0;
-  long changes = 0;
-  for (auto _ : state) {
-    const Result result = solver.solve(problems[k].problem.view(), options);
-    benchmark::DoNotOptimize(result.x.data());
-    changes += result.iterations;
-    k = (k + 1) % problems.size();
-  }
-  state.counters["changes"] =
-      benchmark::Counter(static_cast<double>(changes), benchmark::Counter::kAvgIterations);
+using Load = QpSequence (*)(const std::string&);
+
+void add_sequence(const std::string& name, const std::string& sequence, Load load, int unknowns) {
+  add("qp/" + name, [=](benchmark::State& state) { solve(state, load(sequence), unknowns); });
+  add("qp/" + name + "/torques_bind", [=](benchmark::State& state) {
+    QpSequence problems = load(sequence);
+    const double scale = binding_scale(problems);
+    scale_torque_limits(scale, &problems);
+    solve(state, problems, unknowns);
+    state.counters["scale"] = scale;
+  });
 }
-BENCHMARK(BM_RandomCold)->ArgsProduct({{52, 68, 100}, {0, 1}})->Unit(benchmark::kMicrosecond);
+
+QpSequence walk(const std::string& name) { return walk_problems(name); }
 
 }  // namespace
-}  // namespace gaitd::qp
 
-BENCHMARK_MAIN();
+void add_qp_benchmarks() {
+  for (const char* name : qp::testing::kRecordedSequences) {
+    add_sequence(name, name, recorded_problems, 0);
+  }
+  // Atlas: 36 accelerations and four forces for each of 8, 4 or 5 contact points.
+  constexpr std::pair<const char*, int> kSituations[] = {
+      {"double_support", 68}, {"single_support", 52}, {"toe_off", 56}};
+  for (const char* name : kRecordedWalks) {
+    const QpSequence problems = walk(name);
+    for (const auto& [situation, unknowns] : kSituations) {
+      const auto fits = [n = unknowns](const auto& problem) { return problem.g.size() == n; };
+      if (std::none_of(problems.begin(), problems.end(), fits)) continue;
+      add_sequence(std::string(name) + "/" + situation, name, walk, unknowns);
+    }
+  }
+}
+
+}  // namespace gaitd::benchmarks

@@ -235,7 +235,7 @@ void InverseDynamicsQp::add_limits(const GaitdRobotState& robot, const GaitdObje
   }
 }
 
-void InverseDynamicsQp::solve(int max_iterations) {
+qp::Problem InverseDynamicsQp::problem() const {
   qp::Problem problem;
   problem.H = H_.topLeftCorner(size_, size_);
   problem.g = g_.head(size_);
@@ -246,9 +246,13 @@ void InverseDynamicsQp::solve(int max_iterations) {
   problem.u = u_;
   problem.lb = lb_.head(size_);
   problem.ub = ub_.head(size_);
+  return problem;
+}
+
+void InverseDynamicsQp::solve(int max_iterations) {
   qp::Options options;
   options.max_iterations = max_iterations;
-  result_ = solver_.solve(problem, options);
+  result_ = solver_.solve(problem(), options);
   if (!result_.solved()) return;
   for (int i = 0; i < nv_; ++i) acceleration_[i] = result_.x[i];
   for (int i = 0; i < rho_count_; ++i) rho_[i] = result_.x[nv_ + i];

@@ -67,6 +67,8 @@ class InverseDynamicsQp {
   // Everything that the tasks taken by begin() claim: rows of weight zero claim nothing.
   void claim(const GaitdObjectives& objectives, NullSpaceProjector& projector) const;
 
+  // What solve() solves, as begin() and what was added made it. The views hold until begin().
+  qp::Problem problem() const;
   void solve(int max_iterations);
   // Torques, references and figures of the last solve, for a tick of `dt` seconds. The references
   // of the drives are integrated from the solved accelerations and leak towards the measured state

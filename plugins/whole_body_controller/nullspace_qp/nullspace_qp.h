@@ -43,6 +43,8 @@ class NullspaceQp {
   void reset() { qp_.reset(); }
   void get_state(GaitdWholeBodyControllerState& s) const { qp_.get_state(s); }
   void set_state(const GaitdWholeBodyControllerState& s) { qp_.set_state(s); }
+  // As the last process() left it.
+  const InverseDynamicsQp& problem() const { return qp_; }
 
  private:
   void add_privileged(const GaitdObjectives& objectives);
