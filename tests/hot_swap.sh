@@ -1,5 +1,5 @@
-# Layers are exchanged while the robot walks: by scenarios and by hand; bad ones leave it walking on
-# the layer that it had, and the caller with the reason.
+# Layers are exchanged while the robot walks (see rt_path.sh too); bad ones leave it walking on the layer
+# that it had, and the caller with the reason.
 source "$(dirname "$0")/common.sh"
 cd "$scratch"
 bad=$GAITD_BUILD/tests/bad_plugins
@@ -28,51 +28,6 @@ play() {
   ((code == 0)) || { cat "$1.out"; fail "$1: exit code $code"; }
 }
 events() { gaitctl --json log info "$1.mcap" | tr -d ' \n'; }
-
-# At the tick of a swap no torque is further from what the layer before would have commanded than 5 %
-# of the limit of its joint: the same walk without the swap is the same up to there, bit by bit.
-awk 'match($0, /<joint name="[^"]*"/) { name = substr($0, RSTART + 13, RLENGTH - 14) }
-     match($0, /effort="[^"]*"/) { print name, substr($0, RSTART + 8, RLENGTH - 9) }' \
-  "$GAITD_SOURCE/robots/atlas/atlas.urdf" >limits
-torques() {
-  gaitctl log export "$1.mcap" --signals 'tick,joint/*/torque_desired' -o "$1.csv"
-}
-# torque_step NAME TICK BOUND: over the limit of the joint, the worst.
-torque_step() {
-  awk -F, -v tick="$2" -v bound="$3" '
-    FILENAME == "limits" { split($0, word, " "); limit[word[1]] = word[2]; next }
-    FNR == 1 { for (i = 1; i <= NF; ++i) { split($i, part, "/"); joint[i] = part[2] } next }
-    FILENAME == "alone.csv" { alone[$1] = $0; next }
-    $1 < tick && $0 != alone[$1] { print "differs before the swap, in tick " $1; exit 1 }
-    $1 == tick {
-      split(alone[$1], before, ",")
-      for (i = 2; i <= NF; ++i) {
-        step = ($i - before[i]) / limit[joint[i]]; if (step < 0) step = -step
-        if (step > worst) { worst = step; name = joint[i] }
-      }
-      print "torque step", worst + 0, "of the limit", name; found = 1
-      exit worst > bound
-    }
-    END { if (!found) exit 1 }' limits alone.csv "$1.csv"
-}
-scenario alone 2.6 0
-play alone
-torques alone
-# 1.85 s is in a transfer, 2.3 s in a swing; the switch comes 0.2 s after the command.
-for at in 1.65 2.1; do
-  tick=$(awk -v at="$at" 'BEGIN { printf "%d", 1000 * at + 200.5 }')
-  for swap in whole_body_controller/com_height_qp icp_planner/single_cmp toe_off/never \
-    state_estimator/invariant_ekf step_adjuster/fixed_steps; do
-    name=${swap%%/*}-$tick
-    [[ $name == toe_off-2300 ]] && continue # it waits: toe-off is active there
-    scenario "$name" 2.6 0 "at: $at, swap: {layer: ${swap%%/*}, to: ${swap#*/}}"
-    play "$name"
-    torques "$name"
-    printf '%s: ' "$name"
-    torque_step "$name" "$tick" 0.05 || fail "$name: see above"
-    [[ $(events "$name") == *'"step":"switched","tick":'$tick* ]] || fail "$name: no swap at $tick"
-  done
-done
 
 # What does not load, or fails beside the layer in use, never comes into use.
 scenario refused 3 5 \

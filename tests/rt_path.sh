@@ -1,5 +1,6 @@
 # Within a tick nothing is allocated, no page is met for the first time, and nothing can block: over a
-# walk of a minute with a push, commands, parameters and two swaps, and in real time with clients.
+# walk of a minute with a push, commands and a hundred swaps, and in real time, with clients. The torques
+# take no step at a swap.
 source "$(dirname "$0")/common.sh"
 cd "$scratch"
 guard=$GAITD_BUILD/tests/rt_guard.so
@@ -18,27 +19,42 @@ guarded() {
     --socket "$1.sock" --log "$1.mcap" >"$1.txt" 2>&1 || { cat "$1.txt"; fail "$1 does not run"; }
 }
 
-cat >walk.yaml <<'SCENARIO'
-schema: gaitd.scenario/1
-name: minute
-robot: atlas
-duration: 64
-seed: 1
-mode: walk-straight
-sensors: {noise: nominal}
-commands:
-  - {at: 1.0, walk: {steps: 66, length: 0.3}}
+# The walk of the scenario swaps, with a push, commands, and clients that ask and command.
+sed '/^expect:/,$d' "$GAITD_SOURCE/sim/scenarios/swaps.yaml" >walk.yaml
+cat >>walk.yaml <<'SCENARIO'
   - {at: 6.0, param: {gait.swing_height: 0.12}}
-  - {at: 8.0, swap: {layer: whole_body_controller, to: com_height_qp}}
-  - {at: 14.0, swap: {layer: icp_planner, to: single_cmp}}
-  - {at: 20.0, mode: walk-bent}
-  - {at: 30.0, pause: true}
-  - {at: 34.0, resume: true}
+  - {at: 53.0, mode: walk-bent}
+  - {at: 55.0, mode: walk-straight}
 disturbances:
   - {link: utorso, force: [0, 60, 0], duration: 0.1, when: {time: 10.0}}
+sensors: {noise: nominal}
 SCENARIO
+touch asking
+for height in 0.115 0.12 0.125; do
+  while [[ -e asking ]]; do
+    gaitctl --socket walk.sock status >/dev/null 2>&1 || true
+    gaitctl --socket walk.sock param set gait.swing_height "$height" >/dev/null 2>&1 || true
+    sleep 0.3
+  done &
+done
 guarded walk walk.yaml
-clean walk 60000
+rm asking
+wait
+clean walk 55000
+
+# It is replayed to the bit, and at no swap is a torque further from what the layer before would have
+# commanded in that tick than 5 % of the limit of its joint.
+expect 0 gaitctl log replay walk.mcap
+"$GAITD_BUILD/tests/swap_steps" walk.mcap >steps.txt
+awk '{ ++count[$2, $3]; ++all; if ($5 > worst) { worst = $5; line = $0 } }
+     END {
+       print all + 0, "swaps; the largest torque step, over the limit of the joint:", line
+       split("state_estimator icp_planner step_adjuster toe_off whole_body_controller", layer, " ")
+       for (i in layer) if (count[layer[i], "swing"] < 5 || count[layer[i], "transfer"] < 5) {
+         print layer[i] ": too few in swings or transfers"; few = 1
+       }
+       exit worst > 0.05 || all != 100 || few
+     }' steps.txt || { cat steps.txt; fail "see above"; }
 
 # The guard sees what it has to see: an exception takes memory.
 export GAITD_TEST_FAULT=3 GAITD_TEST_FAULT_TIME=0
