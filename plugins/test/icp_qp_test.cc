@@ -18,13 +18,16 @@ using Eigen::Vector2d;
 using testing::atlas;
 using testing::SyntheticWalk;
 
-GaitdStepAdjustment process(IcpQp& layer, const SyntheticWalk& w) {
+GaitdStepAdjustment process(IcpQp& layer, const SyntheticWalk& w, const GaitdRobotState& robot) {
   GaitdStepAdjustment out{};
   const GaitdToeOff toe_off{};
   const GaitdStepAdjusterInput in{
-      sizeof(in), 0, testing::layer_time(w.dt), &w.robot, &w.gait(), &w.plan, &toe_off};
+      sizeof(in), 0, testing::layer_time(w.dt), &robot, &w.gait(), &w.plan, &toe_off};
   EXPECT_EQ(layer.process(in, out), GAITD_OK);
   return out;
+}
+GaitdStepAdjustment process(IcpQp& layer, const SyntheticWalk& w) {
+  return process(layer, w, w.robot);
 }
 
 SyntheticWalk in_swing(double fraction = 0.5) {
@@ -36,11 +39,12 @@ SyntheticWalk in_swing(double fraction = 0.5) {
   return w;
 }
 
-GaitdStepAdjustment with_error(SyntheticWalk w, double x, double y) {
+GaitdStepAdjustment with_error(const SyntheticWalk& w, double x, double y) {
   IcpQp layer(atlas());
-  w.robot.icp[0] += x;
-  w.robot.icp[1] += y;
-  return process(layer, w);
+  GaitdRobotState robot = w.robot;
+  robot.icp[0] += x;
+  robot.icp[1] += y;
+  return process(layer, w, robot);
 }
 
 Vector2d foothold(const SyntheticWalk& w, const GaitdStepAdjustment& out) {

@@ -103,7 +103,7 @@ TEST_F(Slot, HandsTheStateOverTwiceAndResetsOnlyWhatDidNotRun) {
   begin(planner(0.2));
   ticks(3 + 10);
   EXPECT_EQ(out_.offset[0], 0.1);       // of the one before
-  EXPECT_EQ(out_.time_remaining, 1.0);  // resets: at the begin of the shadow
+  EXPECT_EQ(out_.time_remaining, 2.0);  // resets: when loaded, and at the begin of the shadow
 }
 
 TEST_F(Slot, RefusesWhatFailsBesideTheOneInUse) {

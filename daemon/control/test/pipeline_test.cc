@@ -61,7 +61,20 @@ class Bench {
   void run_for(double seconds) {
     if (tick == 0) walk->tick();
     for (int i = 0; i < seconds / kPeriod; ++i, ++tick) {
-      pipeline->data().sensors = walk->inputs().sensors;
+      GaitdSensors& sensors = pipeline->data().readings;
+      sensors = walk->inputs().sensors;
+      // Nothing that is measured repeats itself.
+      const double wobble = 1e-5 * static_cast<double>(tick % 7);
+      const auto sequence = static_cast<std::uint32_t>(tick);
+      for (auto& joint : sensors.joints) joint.info.sequence = sequence;
+      for (auto& imu : sensors.imus) {
+        imu.info.sequence = sequence;
+        imu.specific_force[0] += wobble;
+      }
+      for (auto& foot : sensors.feet) {
+        foot.info.sequence = sequence;
+        foot.force[2] += wobble;
+      }
       pipeline->run(tick);
     }
   }
