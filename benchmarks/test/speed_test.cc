@@ -72,29 +72,40 @@ std::map<int, std::vector<double>> by_size(const QpSequence& problems,
   return groups;
 }
 
-void expect_fast(const QpSequence& problems, double bar) {
+// Empty if all is well. Measures anew, up to four times, what a very busy machine has made slow.
+std::string too_slow(const QpSequence& problems, double bar) {
   qp::DenseSolver solver(kMaxProblem);
-  const double unit = calibration();
-  const std::vector<double> least = least_of_five(
-      static_cast<int>(problems.size()), [&] { solver.reset_warm_start(); },
-      [&](int k) { solver.solve(problems[k].view()); });
-  for (const auto& [size, times] : by_size(problems, least)) {
-    const Distribution d = distribution(times);
-    const double ratio = d.median / std::min(unit, calibration());
-    std::printf("%d unknowns: median %.1f us, ratio %.2f, worst/median %.2f\n", size, d.median,
-                ratio, d.worst / d.median);
-    EXPECT_LE(ratio, bar) << size;
-    EXPECT_LE(d.worst, 4.0 * d.median) << size;
+  std::vector<double> least(problems.size(), 1e9);
+  std::string slow;
+  for (int attempt = 0; attempt < 4; ++attempt) {
+    const double unit = calibration();
+    const std::vector<double> times = least_of_five(
+        static_cast<int>(problems.size()), [&] { solver.reset_warm_start(); },
+        [&](int k) { solver.solve(problems[k].view()); });
+    for (std::size_t k = 0; k < least.size(); ++k) least[k] = std::min(least[k], times[k]);
+    slow.clear();
+    for (const auto& [size, group] : by_size(problems, least)) {
+      const Distribution d = distribution(group);
+      const double ratio = d.median / std::min(unit, calibration());
+      char text[120];
+      std::snprintf(text, sizeof(text),
+                    "%d unknowns: median %.1f us, ratio %.2f, worst/median %.2f\n", size, d.median,
+                    ratio, d.worst / d.median);
+      std::fputs(text, stdout);
+      if (ratio > bar || d.worst > 4.0 * d.median) slow += text;
+    }
+    if (slow.empty()) break;
   }
+  return slow;
 }
 
 // Between two and three times what docs/performance.md has: the calibration does not slow down with
 // the problems to the same degree on every machine.
 constexpr double kBar = 12.0;
 
-TEST_P(Sequence, IsSolvedFast) { expect_fast(as_recorded_, kBar); }
+TEST_P(Sequence, IsSolvedFast) { EXPECT_EQ(too_slow(as_recorded_, kBar), ""); }
 
-TEST_P(Sequence, IsSolvedFastWhenTorqueLimitsBind) { expect_fast(bound_, 1.5 * kBar); }
+TEST_P(Sequence, IsSolvedFastWhenTorqueLimitsBind) { EXPECT_EQ(too_slow(bound_, 1.5 * kBar), ""); }
 
 INSTANTIATE_TEST_SUITE_P(Recorded, Sequence,
                          ::testing::Values("double_support", "single_support", "toe_off", "flat",
