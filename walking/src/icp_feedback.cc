@@ -16,7 +16,7 @@ void IcpFeedback::reset() {
   state_.size = sizeof(state_);
   state_.kappa = 1.0;
   state_.direction[0] = 1.0;
-  commanded_.fill(Eigen::Vector2d::Zero());
+  commanded_count_ = 0;
 }
 
 void IcpFeedback::update_kappa(const GaitdStepAdjusterInput& in) {
@@ -39,10 +39,11 @@ void IcpFeedback::update_kappa(const GaitdStepAdjusterInput& in) {
 Eigen::Vector2d IcpFeedback::predicted_error(const GaitdStepAdjusterInput& in) const {
   Eigen::Vector2d error = view(in.robot->icp) - view(in.plan->icp);
   const int ticks = std::min(static_cast<int>(std::lround(p_[Feedback::kDelay] / in.time.period)),
-                             kMaxOnTheirWay - 1);
+                             commanded_count_);
   const double growth = std::exp(in.gait->omega * in.time.period);
   for (int ago = ticks; ago >= 1; --ago) {
-    const Eigen::Vector2d& u = commanded_[(newest_ + kMaxOnTheirWay + 1 - ago) % kMaxOnTheirWay];
+    const int at = (newest_ + kMaxOnTheirWay + 1 - ago) % kMaxOnTheirWay;
+    const Eigen::Vector2d u = commanded_[at] - view(in.plan->ecmp);
     error = u + growth * (error - u);
   }
   return error;
@@ -101,7 +102,8 @@ void IcpFeedback::update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& 
   }
   const Eigen::Vector2d ecmp = ecmp_of(*in.robot, cmp);
   newest_ = (newest_ + 1) % kMaxOnTheirWay;
-  commanded_[newest_] = ecmp - view(in.plan->ecmp);
+  commanded_[newest_] = ecmp;
+  commanded_count_ = std::min(commanded_count_ + 1, kMaxOnTheirWay);
 
   out = {};
   out.size = sizeof(out);

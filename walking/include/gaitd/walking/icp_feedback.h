@@ -79,8 +79,9 @@ class IcpFeedback {
   sdk::Parameters<Feedback> p_{kFeedbackParameters};
   GaitdStepAdjusterState state_{};
   static constexpr int kMaxOnTheirWay = 128;
-  std::array<Eigen::Vector2d, kMaxOnTheirWay> commanded_;  // u of the last ticks (m)
+  std::array<Eigen::Vector2d, kMaxOnTheirWay> commanded_;  // r_eCMP of the last ticks (m)
   int newest_ = 0;
+  int commanded_count_ = 0;
 };
 
 }  // namespace gaitd::walking

@@ -87,7 +87,7 @@ inline constexpr std::array<GaitdParameter, 30> kGaitParameters = {
     real_parameter("timing_change", "", 0, 0.9, 0.6,
                    "largest change of a duration, over the duration"),
     boolean_parameter("recovery", true, "a standing robot steps by itself rather than fall"),
-    real_parameter("recovery_swing", "s", 0.2, 2, 0.4, "swing of a step that catches the robot"),
+    real_parameter("recovery_swing", "s", 0.2, 2, 0.45, "swing of a step that catches the robot"),
     real_parameter("recovery_transfer", "s", 0.05, 1, 0.06, "transfer before it"),
     real_parameter("recovery_margin", "m", -0.1, 0.1, -0.02,
                    "ICP inside the edge of the feet at which the robot still steps; negative: past it"),
