@@ -454,7 +454,8 @@ TYPED_TEST(StateEstimator, KeepsTheFiltersOfTheJointsWhenItTakesAState) {
     EXPECT_EQ(b.state.joint_velocity[i], expected.joint_velocity[i]) << i;
   }
   for (int k = 0; k < 3; ++k) {
-    EXPECT_NEAR(b.state.pelvis_twist[k], expected.pelvis_twist[k], 1e-9) << k;
+    // A filter begins anew with the uncertainty of its state.
+    EXPECT_NEAR(b.state.pelvis_twist[k], expected.pelvis_twist[k], 1e-6) << k;
   }
 }
 
