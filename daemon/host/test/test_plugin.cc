@@ -154,7 +154,8 @@ GaitdStatus backend_init(void*, const GaitdModel*, const char* config, double, i
     [](void*, const GaitdDisturbance*) -> GaitdStatus { return GAITD_OK; },
     ok,
     ok,
-    destroy};
+    destroy,
+    nullptr};
 
 struct AtLoad {
   AtLoad() {
