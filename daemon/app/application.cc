@@ -325,9 +325,9 @@ nlohmann::json Application::health() const {
   if (backend.vtable->health == nullptr || backend.vtable->health(backend.self, &h) != GAITD_OK) {
     return nullptr;
   }
-  return {{"healthy", h.conditions == 0}, {"text", h.text},           {"late", h.late},
-          {"missing", h.missing},         {"duplicate", h.duplicate}, {"stale", h.stale},
-          {"lost", h.lost},               {"unsent", h.unsent}};
+  return {
+      {"healthy", h.conditions == 0}, {"text", h.text},   {"late", h.late}, {"missing", h.missing},
+      {"duplicate", h.duplicate},     {"stale", h.stale}, {"lost", h.lost}, {"unsent", h.unsent}};
 }
 
 // Every joint as its sensors show it, for checks of signs and offsets.

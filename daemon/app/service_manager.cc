@@ -21,7 +21,8 @@ ServiceManager::ServiceManager() {
   if (path[0] == '@') address.sun_path[0] = '\0';  // an abstract name
   socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (socket_ < 0) return;
-  if (connect(socket_, reinterpret_cast<sockaddr*>(&address), static_cast<socklen_t>(length)) != 0) {
+  if (connect(socket_, reinterpret_cast<sockaddr*>(&address), static_cast<socklen_t>(length)) !=
+      0) {
     close(socket_);
     socket_ = -1;
   }

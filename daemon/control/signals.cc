@@ -99,6 +99,7 @@ void visit_gait(V& v, const TickData& d) {
          {"disarmed", "readying", "standing", "walking", "stopping", "fault", "testing"},
          "safety/state");
   v.integer(d.faults, "safety/faults");
+  v.integer(d.health, "safety/health");
   v.word(d.gait.mode, {"stand", "walk-straight", "walk-bent"}, "gait/mode");
   v.word(d.gait.phase, {"stand", "transfer", "swing"}, "gait/phase");
   v.word(d.gait.support, {"left", "right", "both"}, "gait/support");

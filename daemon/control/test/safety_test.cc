@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <functional>
 #include <memory>
+#include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -378,6 +381,19 @@ TEST(Safety, EveryFaultBitHasAName) {
                             kFaultOverrun | kFaultReadying | kFaultMotor | kFaultBus |
                             kFaultHeartbeat;
   EXPECT_EQ(all, (1u << kFaultNames.size()) - 1u);
+}
+
+TEST(Safety, EveryFaultHasARowInTheSafetyPage) {
+  std::ifstream file(GAITD_SOURCE_DIR "/docs/safety.md");
+  std::set<std::string> rows;
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("| `")) continue;
+    std::istringstream names(line.substr(0, line.find('|', 1)));
+    for (std::string name; std::getline(names, name, '`') && std::getline(names, name, '`');) {
+      rows.insert(name);
+    }
+  }
+  EXPECT_EQ(rows, std::set<std::string>(kFaultNames.begin(), kFaultNames.end()));
 }
 
 }  // namespace
