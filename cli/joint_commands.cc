@@ -58,8 +58,9 @@ int list(const Context& context) {
   }
   std::vector<std::vector<std::string>> rows;
   for (const json& joint : answer.value("joints", json::array())) {
-    rows.push_back({joint.value("name", ""), number(joint["position"]), number(joint["position_min"]),
-                    number(joint["position_max"]), number(joint["torque"])});
+    rows.push_back({joint.value("name", ""), number(joint["position"]),
+                    number(joint["position_min"]), number(joint["position_max"]),
+                    number(joint["torque"])});
   }
   std::cout << table({"joint", "position", "min", "max rad", "torque N m"}, rows);
   return kDone;
@@ -72,10 +73,9 @@ int test(const Context& context, const Arguments& arguments) {
   const auto client = connect(context, command);
   if (!client) return kNoDaemon;
   const json before = find_joint(client.get(), arguments.joint);
-  const daemon::RpcResult started = client->call(
-      "joint.test", {{"joint", arguments.joint},
-                     {"amplitude", arguments.amplitude},
-                     {"duration", arguments.duration}});
+  const daemon::RpcResult started = client->call("joint.test", {{"joint", arguments.joint},
+                                                                {"amplitude", arguments.amplitude},
+                                                                {"duration", arguments.duration}});
   if (const auto* error = std::get_if<daemon::RpcError>(&started)) {
     return fail(context, command, "joint.test", *error);
   }

@@ -90,7 +90,7 @@ std::vector<std::string> status_screen(const json& status) {
       "",
       "state      " + text(at(status, "state")),
       "faults     " + faults(status),
-      "hardware   " + health(at(status, "health")),
+      "health     " + health(at(status, "health")),
       "gait       " + gait(status),
       "step       " + steps(status),
       "ICP error  " + number(at(status, "icp_error"), 1, 1e-3) + " mm",

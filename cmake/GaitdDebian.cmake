@@ -20,6 +20,8 @@ install(DIRECTORY ${gaitd_etc}/network DESTINATION /usr/share/doc/gaitd/examples
         EXCLUDE_FROM_ALL)
 gaitd_system_files(/usr/share/doc/gaitd ${PROJECT_SOURCE_DIR}/cmake/package/copyright)
 
+# cpack packs what is built, it does not build the tests first.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY TRUE)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME gaitd)
 set(CPACK_PACKAGE_VENDOR gaitd)

@@ -15,10 +15,10 @@
 namespace gaitd::cli {
 
 struct FakeRobotOptions {
-  double period = 0.001;        // s, of the plant for each cycle of commands
-  double motor_timeout = 0.1;   // s, that the registers say
-  double stall_time = 0.1;      // s of wall time without a command, then a motor switches off
-  double patience = 1.0;        // s of wall time, then commands that miss are not waited for
+  double period = 0.001;       // s, of the plant for each cycle of commands
+  double motor_timeout = 0.1;  // s, that the registers say
+  double stall_time = 0.1;     // s of wall time without a command, then a motor switches off
+  double patience = 1.0;       // s of wall time, then commands that miss are not waited for
   std::vector<Fault> faults;
 };
 
@@ -47,8 +47,8 @@ class FakeRobot {
     int lose = 0;  // every so many commands, 0: none
     int64_t commands = 0;
     uint8_t error = 0;
-    double range = 0;    // PMAX that the register says
-    double timeout = 0;  // s, likewise
+    double range = 0;         // PMAX that the register says
+    double timeout = 0;       // s, likewise
     double last_command = 0;  // s, wall
     bool damping = false;
     GaitdJointCommand command{};
@@ -56,8 +56,9 @@ class FakeRobot {
   struct BusState {
     std::unique_ptr<can::CanBus> bus;
     std::vector<can::Frame> frames;
-    bool heard = true;  // it took part in one of the last cycles
-    double up_again = 0;
+    bool heard = true;    // it took part in one of the last cycles
+    double up_again = 0;  // s, wall
+    bool off = false;     // bus-off: nothing goes in or out
   };
 
   bool apply(const Fault& fault, std::string* error);
@@ -71,6 +72,7 @@ class FakeRobot {
   void answer_sensors(const GaitdSensors& sensors);
   void watch_stalls();
   void set_interface(int bus, bool up);
+  void set_bus_off(int bus, bool off);
   double plant_time() const;
   void event(const std::string& what);
 

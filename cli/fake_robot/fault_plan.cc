@@ -7,9 +7,9 @@
 namespace gaitd::cli {
 namespace {
 
-constexpr std::array<const char*, 12> kKinds = {"silent", "error", "off",   "lose",
-                                                "duplicate", "imu", "foot", "estop",
-                                                "heartbeat", "down", "range", "timeout"};
+constexpr std::array<const char*, 13> kKinds = {
+    "silent", "error",     "off",  "lose",    "duplicate", "imu",    "foot",
+    "estop",  "heartbeat", "down", "bus-off", "range",     "timeout"};
 
 bool read_number(const std::string& text, double* value) {
   const char* end = text.data() + text.size();

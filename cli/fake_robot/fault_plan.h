@@ -19,6 +19,7 @@ enum class FaultKind {
   kEstop,      // the e-stop is pressed; value: released after so many s, 0: never
   kHeartbeat,  // the e-stop falls silent
   kDown,       // the interface of a bus goes down; value: up again after so many s, 0: never
+  kBusOff,     // the controller of a bus goes bus-off; value: restarted after so many s, 0: never
   kRange,      // from the start: PMAX of a motor is value
   kTimeout,    // from the start: TIMEOUT of a motor is value s
 };

@@ -4,6 +4,7 @@
 #include FAULTY_HEADER
 
 #include <time.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -55,7 +56,7 @@ class FaultyLayer : public FAULTY_CLASS {
         std::raise(SIGSEGV);
         break;
       case Fault::kHang:
-        spend(3600.0);
+        pause();  // for ever
         break;
       default:
         break;

@@ -18,7 +18,7 @@ walk() {
   wait_state walking 600
   wait_state standing 1200
   [[ $(field faults) == none ]] || fail "faults: $(field faults)"
-  gaitctl status | grep -E 'hardware|pelvis'
+  gaitctl status | grep -E '^(health|pelvis)'
   stop_gaitd
   stop_robot
   expect_json robot.json "r['pelvis'][0] > 1.35 and abs(r['pelvis'][1]) < 0.1 and r['lowest_pelvis'] > 0.75"

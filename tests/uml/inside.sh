@@ -26,7 +26,8 @@ batch() { exec chrt --batch 0 "$@"; }
 # start_robot ARGUMENTS...: the fake robot, which leaves robot.json when it ends.
 start_robot() {
   rm -f "$scratch/robot.json"
-  batch gaitd-fake-robot --report "$scratch/robot.json" --stall-time 60 --patience "${patience:-30}" "$@" >"$scratch/robot.txt" 2>&1 &
+  batch gaitd-fake-robot --report "$scratch/robot.json" --stall-time "${stall_time:-60}" \
+    --patience "${patience:-30}" "$@" >"$scratch/robot.txt" 2>&1 &
   robot=$!
   for _ in {1..3000}; do
     grep -q ready "$scratch/robot.txt" && return

@@ -35,18 +35,20 @@ uml_start_or_skip() {
     (cd "$uml/root" && find . | cpio -o -H newc 2>/dev/null | gzip) >"$uml/initrd.gz"
   fi
   flock -u 9
+  [[ $uml/boots -nt $uml/initrd.gz ]] && return
   # Some sandboxes forbid ptrace, which User-Mode Linux needs.
   printf 'exit 0\n' >"$scratch/hello.sh"
   uml_kernel 300 mode=chroot script="$scratch/hello.sh" result="$scratch" >"$scratch/hello.txt" 2>&1 || true
   [[ -f $scratch/code ]] || skip "User-Mode Linux does not boot here: $(tail -n 3 "$scratch/hello.txt")"
   rm "$scratch/code"
+  touch "$uml/boots"
 }
 
 # uml_kernel SECONDS ARGUMENTS...
 uml_kernel() {
   local seconds=$1
   shift
-  ulimit -n "$(ulimit -H -n)"  # every file open inside is one outside
+  ulimit -n "$(ulimit -H -n)" # every file open inside is one outside
   TMPDIR=/dev/shm timeout --kill-after=5 "$seconds" linux.uml mem=1G initrd="$uml/initrd.gz" \
     con=null con0=fd:0,fd:1 quiet umid="gaitd$$" uml_dir="$scratch/" "$@" </dev/null
 }

@@ -71,14 +71,13 @@ std::unique_ptr<CanBus> CanBus::open(const std::string& interface, bool fd,
   }
   const can_err_mask_t errors = CAN_ERR_MASK;
   const int stamping = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
-  const bool ready =
-      setsockopt(socket, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
-                 static_cast<socklen_t>(filters.size() * sizeof(can_filter))) == 0 &&
-      set(socket, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors) &&
-      set(socket, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1) &&
-      set(socket, SOL_SOCKET, SO_TIMESTAMPING, stamping) &&
-      set(socket, SOL_SOCKET, SO_RXQ_OVFL, 1) &&
-      bind(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0;
+  const bool ready = setsockopt(socket, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
+                                static_cast<socklen_t>(filters.size() * sizeof(can_filter))) == 0 &&
+                     set(socket, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors) &&
+                     set(socket, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1) &&
+                     set(socket, SOL_SOCKET, SO_TIMESTAMPING, stamping) &&
+                     set(socket, SOL_SOCKET, SO_RXQ_OVFL, 1) &&
+                     bind(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0;
   if (!ready) return fail("the socket cannot be set up", "check the kernel's CAN support");
   return bus;
 }

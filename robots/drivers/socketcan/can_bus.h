@@ -20,9 +20,9 @@ struct BusEvents {
   bool bus_off = false;
   bool restarted = false;
   bool passive = false;
-  bool active = false;     // again, after passive
+  bool active = false;  // again, after passive
   bool interface_down = false;
-  uint32_t lost = 0;       // frames that the kernel dropped since the last call
+  uint32_t lost = 0;  // frames that the kernel dropped since the last call
 };
 
 struct Received {

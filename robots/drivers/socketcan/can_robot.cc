@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "can_robot.h"
 
-#include <poll.h>
 #include <time.h>
 
 #include <algorithm>
@@ -9,24 +8,12 @@
 #include <cstdio>
 #include <utility>
 
+#include "routes.h"
 #include "sensor_frames.h"
 
 namespace gaitd::can {
 namespace {
 
-// What an identifier belongs to: kind and index in one number.
-enum Route : int16_t {
-  kNobody = 0,
-  kMotor = 0x1000,
-  kImu = 0x2000,
-  kFoot = 0x3000,
-  kEstop = 0x4000,
-  kCycleOver = 0x5000
-};
-constexpr int16_t kKind = 0x7000, kIndex = 0x0FFF;
-
-constexpr int kPatience = 3;          // cycles in which a bus takes no commands until it is a fault
-constexpr int kSwitchOnCycles = 5;    // until a motor has to say that it is on
 constexpr double kDownProbe = 0.1;    // s between attempts on a bus that is down
 constexpr double kClearInterval = 1;  // s between attempts to clear the error of a motor
 
@@ -76,185 +63,6 @@ CanRobot::CanRobot(Wiring wiring, const GaitdModel& model, const RobotOptions& o
   for (size_t i = 0; i < imus_.size(); ++i) route_sensor(wiring_.imus[i], kImuFrames, kImu, i);
   for (size_t i = 0; i < feet_.size(); ++i) route_sensor(wiring_.feet[i], kFootFrames, kFoot, i);
   if (wiring_.estop.bus >= 0) buses_[wiring_.estop.bus].routes[wiring_.estop.id] = kEstop;
-}
-
-void CanRobot::wait_and_receive(double seconds) {
-  std::array<pollfd, kMaxBuses> descriptors;
-  const size_t count = buses_.size();
-  for (size_t i = 0; i < count; ++i) descriptors[i] = {buses_[i].bus->descriptor(), POLLIN, 0};
-  const double left = std::max(0.0, seconds);
-  const timespec wait{static_cast<time_t>(left), static_cast<long>(1e9 * (left - std::floor(left)))};
-  if (ppoll(descriptors.data(), count, &wait, nullptr) <= 0) return;
-  for (size_t i = 0; i < count; ++i) {
-    if (descriptors[i].revents != 0) receive(static_cast<int>(i));
-  }
-}
-
-void CanRobot::receive() {
-  for (size_t i = 0; i < buses_.size(); ++i) receive(static_cast<int>(i));
-}
-
-void CanRobot::receive(int bus) {
-  BusState& state = buses_[bus];
-  BusEvents events;
-  bool heard = false;
-  for (;;) {
-    const int count = state.bus->receive(received_.data(), &events);
-    for (int i = 0; i < count; ++i) take(bus, received_[i]);
-    heard = heard || count > 0;
-    if (count < CanBus::kBatch) break;
-  }
-  if (events.lost > 0) lost_ += events.lost;
-  if (events.passive) state.passive = true;
-  if (events.active || events.restarted) state.passive = false;
-  if (events.bus_off || events.interface_down) {
-    switch_off_bus(bus);
-  } else if (heard) {
-    state.down = false;  // somebody answers again; its motors stay off
-  }
-}
-
-void CanRobot::take(int bus, const Received& received) {
-  const int16_t route = buses_[bus].routes[received.frame.id & 0x7FF];
-  const int index = route & kIndex;
-  switch (route & kKind) {
-    case kMotor:
-      take_reply(index, received);
-      return;
-    case kImu:
-      take_sensor(&imus_[index / kImuFrames], index % kImuFrames,
-                  index % kImuFrames == 0 ? kRateUnit : kAccelerationUnit, received);
-      return;
-    case kFoot:
-      take_sensor(&feet_[index / kFootFrames], index % kFootFrames,
-                  index % kFootFrames == 0 ? kForceUnit : kMomentUnit, received);
-      return;
-    case kEstop:
-      estop_pressed_ = decode_estop(received.frame);
-      estop_cycle_ = cycle_;
-      return;
-    case kCycleOver:
-      buses_[bus].cycle_over = true;
-      return;
-    default:
-      break;
-  }
-  if (received.frame.id != 0) return;
-  const int16_t cheetah = buses_[bus].cheetahs[received.frame.data[0]];
-  if (cheetah != kNobody) take_reply(cheetah & kIndex, received);
-}
-
-void CanRobot::take_reply(int index, const Received& received) {
-  const Motor& motor = wiring_.motors[index];
-  MotorState& state = motors_[index];
-  const auto reply = decode_reply(received.frame, motor.dialect, motor.ranges);
-  const uint32_t mask = motor.dialect == Dialect::kDamiao ? 0xF : 0xFF;
-  if (!reply || reply->motor != (motor.id & mask)) {
-    ++counters_[index].stale;  // of another motor, or of a register request
-    return;
-  }
-  if (state.awaiting) {
-    state.awaiting = false;
-  } else if (state.owed > 0) {
-    --state.owed;
-    ++counters_[index].late;
-  } else {
-    ++counters_[index].duplicate;
-  }
-  if (received.stamp_ns < state.stamp_ns) {
-    ++counters_[index].stale;
-    return;
-  }
-  state.position = motor.joint_position(reply->position);
-  state.velocity = motor.joint_velocity(reply->velocity);
-  state.torque = motor.joint_torque(reply->torque);
-  state.error = reply->error;
-  state.stamp_ns = received.stamp_ns;
-  state.cycle = cycle_;
-  ++state.sequence;
-  state.valid = true;
-}
-
-void CanRobot::take_sensor(SenderState* sender, int frame, double unit, const Received& received) {
-  double value[3];
-  sender->counter[frame] = decode_vector(received.frame, unit, value);
-  std::copy(value, value + 3, sender->value[frame].begin());
-  if (frame != 1 || sender->counter[0] != sender->counter[1]) return;
-  sender->valid = true;
-  ++sender->sequence;
-  sender->stamp_ns = received.stamp_ns;
-  sender->cycle = cycle_;
-}
-
-bool CanRobot::faulty(int index) const {
-  const MotorState& state = motors_[index];
-  if (state.error > static_cast<uint8_t>(MotorError::kOn)) return true;
-  return state.enabled && state.cycles_enabled > kSwitchOnCycles &&
-         state.error == static_cast<uint8_t>(MotorError::kOff);
-}
-
-void CanRobot::switch_off_bus(int bus) {
-  buses_[bus].down = true;
-  for (size_t i = 0; i < motors_.size(); ++i) {
-    if (wiring_.motors[i].bus == bus) motors_[i].enabled = false;
-  }
-}
-
-// By the thread that reads; what it finds stays until the next read.
-void CanRobot::find_conditions() {
-  uint32_t found = 0;
-  for (size_t i = 0; i < motors_.size(); ++i) {
-    if (!faulty(static_cast<int>(i))) continue;
-    if ((found & GAITD_HEALTH_MOTOR) == 0) {
-      bad_motor_ = static_cast<int>(i);
-      bad_error_ = motors_[i].error;
-    }
-    found |= GAITD_HEALTH_MOTOR;
-  }
-  for (size_t i = 0; i < buses_.size(); ++i) {
-    if (buses_[i].passive) found |= GAITD_HEALTH_WARNING;
-    const bool down = buses_[i].down || buses_[i].unsent_in_row >= kPatience;
-    if (down) found |= GAITD_HEALTH_BUS;
-    if (down || buses_[i].passive) bad_bus_ = static_cast<int>(i);
-  }
-  if (wiring_.estop.bus >= 0) {
-    const double silence = static_cast<double>(cycle_ - estop_cycle_) * options_.period;
-    if (estop_pressed_) found |= GAITD_HEALTH_ESTOP;
-    if (wiring_.heartbeat > 0 && silence > wiring_.heartbeat) found |= GAITD_HEALTH_HEARTBEAT;
-  }
-  conditions_ = found;
-}
-
-void CanRobot::health(GaitdHealth* health) const {
-  *health = {};
-  health->size = sizeof(*health);
-  health->conditions = conditions_;
-  health->lost = lost_;
-  health->unsent = unsent_;
-  for (size_t i = 0; i < motors_.size(); ++i) {
-    health->late += counters_[i].late;
-    health->missing += counters_[i].missing;
-    health->duplicate += counters_[i].duplicate;
-    health->stale += counters_[i].stale;
-  }
-  char* text = health->text;
-  constexpr size_t kSize = sizeof(health->text);
-  const int motor = bad_motor_;
-  const int bus = bad_bus_;
-  if ((health->conditions & GAITD_HEALTH_MOTOR) != 0 && motor >= 0) {
-    std::snprintf(text, kSize, "motor of %s: %s", names_[wiring_.motors[motor].joint].c_str(),
-                  motor_error_text(bad_error_));
-  } else if ((health->conditions & GAITD_HEALTH_BUS) != 0 && bus >= 0) {
-    std::snprintf(text, kSize, "bus %s (%s) is off or down", wiring_.buses[bus].name.c_str(),
-                  wiring_.buses[bus].interface.c_str());
-  } else if ((health->conditions & GAITD_HEALTH_ESTOP) != 0) {
-    std::snprintf(text, kSize, "the e-stop is pressed");
-  } else if ((health->conditions & GAITD_HEALTH_HEARTBEAT) != 0) {
-    std::snprintf(text, kSize, "the e-stop is silent");
-  } else if ((health->conditions & GAITD_HEALTH_WARNING) != 0 && bus >= 0) {
-    std::snprintf(text, kSize, "bus %s (%s) is error-passive", wiring_.buses[bus].name.c_str(),
-                  wiring_.buses[bus].interface.c_str());
-  }
 }
 
 GaitdSignalInfo CanRobot::info(bool valid, uint32_t sequence, int64_t stamp_ns, int64_t cycle,
@@ -314,11 +122,12 @@ GaitdStatus CanRobot::read(GaitdSensors* sensors) {
 
 Frame CanRobot::command_frame(const Motor& motor, const GaitdJointCommand& c) const {
   MotorCommand command;
-  command.torque = motor.motor_torque(std::clamp(c.torque, -motor.torque_limit, motor.torque_limit));
-  command.position = motor.motor_position(
-      std::clamp(c.position, motor.position_min, motor.position_max));
-  command.velocity = motor.motor_velocity(
-      std::clamp(c.velocity, -motor.velocity_limit, motor.velocity_limit));
+  command.torque =
+      motor.motor_torque(std::clamp(c.torque, -motor.torque_limit, motor.torque_limit));
+  command.position =
+      motor.motor_position(std::clamp(c.position, motor.position_min, motor.position_max));
+  command.velocity =
+      motor.motor_velocity(std::clamp(c.velocity, -motor.velocity_limit, motor.velocity_limit));
   command.stiffness = motor.motor_gain(c.stiffness);
   command.damping = motor.motor_gain(c.damping);
   return encode_command(motor.id, motor.ranges, command);
@@ -371,7 +180,8 @@ GaitdStatus CanRobot::write(const GaitdJointCommands& commands) {
   }
   const auto probe = std::max<int64_t>(1, static_cast<int64_t>(kDownProbe / options_.period));
   for (size_t i = 0; i < buses_.size(); ++i) {
-    // While a bus is down commands would wait in its queue: only now and then one that switches off.
+    // While a bus is down commands would wait in its queue: only now and then one that switches
+    // off.
     if (!buses_[i].down || cycle_ % probe == 0) send(static_cast<int>(i));
   }
   return all_finite ? GAITD_OK : GAITD_INVALID_ARGUMENT;

@@ -22,11 +22,11 @@ struct RobotOptions {
 };
 
 // A motor is switched on by the first torque command and off by stop(), by an error of its own and
-// by its bus going down; until it is switched on, damping commands keep it off. It goes on only by a
-// torque command again, which the daemon sends only after an operator armed it.
+// by its bus going down; until it is switched on, damping commands keep it off. It goes on only by
+// a torque command again, which the daemon sends only after an operator armed it.
 //
-// read(), write() and health() neither block nor allocate; health() may be called by any thread, the
-// others by one at a time.
+// read(), write() and health() neither block nor allocate; health() may be called by any thread,
+// the others by one at a time.
 class CanRobot {
  public:
   using Log = std::function<void(int level, const std::string& line)>;
@@ -53,7 +53,7 @@ class CanRobot {
     uint32_t owed = 0;  // replies of earlier cycles that may still come
     uint32_t sequence = 0;
     int64_t stamp_ns = 0;
-    int64_t cycle = 0;  // of the last reply
+    int64_t cycle = 0;                              // of the last reply
     double position = 0, velocity = 0, torque = 0;  // of the joint
   };
   struct Counters {

@@ -38,8 +38,8 @@ bool CanRobot::open(std::vector<std::string>* errors) {
     std::vector<uint32_t> ids;
     bool cheetahs = false;
     for (const Motor& motor : wiring_.motors) {
-      cheetahs = cheetahs || (motor.bus == static_cast<int>(i) &&
-                              motor.dialect == Dialect::kMiniCheetah);
+      cheetahs =
+          cheetahs || (motor.bus == static_cast<int>(i) && motor.dialect == Dialect::kMiniCheetah);
     }
     for (uint32_t id = 0; id < buses_[i].routes.size(); ++id) {
       if (buses_[i].routes[id] != 0 || (id == 0 && cheetahs)) ids.push_back(id);
@@ -106,8 +106,10 @@ std::string CanRobot::check_motor(const Motor& motor) {
       return "no answer; check power, wiring, and the registers CAN_ID and MST_ID of the motor";
     }
     if (std::abs(value.real() - row.expected) > 1e-4 * row.expected) {
-      add(std::string("expected ") + row.name + " " + text_of(row.expected) + " as robot.yaml says, "
-          "the motor has " + text_of(value.real()) + ": correct one of them");
+      add(std::string("expected ") + row.name + " " + text_of(row.expected) +
+          " as robot.yaml says, "
+          "the motor has " +
+          text_of(value.real()) + ": correct one of them");
     }
   }
   if (!read_register(motor, Register::kTimeout, &value)) return "no answer for TIMEOUT";
@@ -137,8 +139,9 @@ void CanRobot::check_registers(std::vector<std::string>* errors) {
     const std::string error = check_motor(motor);
     if (error.empty()) continue;
     char where[160];
-    std::snprintf(where, sizeof(where), "motor of %s (bus %s, id 0x%03X): ",
-                  names_[motor.joint].c_str(), wiring_.buses[motor.bus].name.c_str(), motor.id);
+    std::snprintf(where, sizeof(where),
+                  "motor of %s (bus %s, id 0x%03X): ", names_[motor.joint].c_str(),
+                  wiring_.buses[motor.bus].name.c_str(), motor.id);
     errors->push_back(where + error);
   }
   if (unchecked > 0) {

@@ -69,17 +69,21 @@ Frame register_frame(uint32_t id, const RegisterValue& value) {
 }  // namespace
 
 const char* motor_error_text(uint8_t error) {
-  constexpr std::array<const char*, 16> kTexts = {
-      "off",       "on",           "error 2",      "error 3",     "error 4",   "error 5",
-      "error 6",   "error 7",      "over-voltage", "under-voltage", "over-current",
-      "drive too hot", "rotor too hot", "communication lost", "overload", "drive fault"};
+  constexpr std::array<const char*, 16> kTexts = {"off",           "on",
+                                                  "error 2",       "error 3",
+                                                  "error 4",       "error 5",
+                                                  "error 6",       "error 7",
+                                                  "over-voltage",  "under-voltage",
+                                                  "over-current",  "drive too hot",
+                                                  "rotor too hot", "communication lost",
+                                                  "overload",      "drive fault"};
   return error < kTexts.size() ? kTexts[error] : "unknown error";
 }
 
 uint32_t to_code(double value, double minimum, double maximum, int bits) {
   const double top = (1u << bits) - 1;
-  const double inside = std::isnan(value) ? 0.5 * (minimum + maximum)
-                                          : std::clamp(value, minimum, maximum);
+  const double inside =
+      std::isnan(value) ? 0.5 * (minimum + maximum) : std::clamp(value, minimum, maximum);
   // Without the small share a value that came from a code may fall to the code below.
   constexpr double kShare = 1e-6;
   return static_cast<uint32_t>((inside - minimum) * top / (maximum - minimum) + kShare);

@@ -55,8 +55,8 @@ struct MotorReply {
   double position = 0;
   double velocity = 0;
   double torque = 0;
-  uint8_t error = 0;            // MotorError; kOn where the dialect has none
-  int mosfet_temperature = 0;   // degrees Celsius, 0 where the dialect has none
+  uint8_t error = 0;           // MotorError; kOn where the dialect has none
+  int mosfet_temperature = 0;  // degrees Celsius, 0 where the dialect has none
   int rotor_temperature = 0;
 };
 

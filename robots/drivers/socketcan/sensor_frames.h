@@ -10,10 +10,10 @@
 
 namespace gaitd::can {
 
-inline constexpr double kRateUnit = 0.001;   // rad/s
+inline constexpr double kRateUnit = 0.001;          // rad/s
 inline constexpr double kAccelerationUnit = 0.005;  // m/s^2
-inline constexpr double kForceUnit = 0.2;    // N
-inline constexpr double kMomentUnit = 0.02;  // N m
+inline constexpr double kForceUnit = 0.2;           // N
+inline constexpr double kMomentUnit = 0.02;         // N m
 
 // Frames of one sensor have consecutive ids.
 inline constexpr int kImuFrames = 2;   // angular rate, specific force

@@ -52,8 +52,9 @@ std::string configure(Backend* backend, const GaitdModel& model, const std::stri
   if (root.has("can")) {
     wiring = gaitd::can::parse_wiring(root.at("can").dump(), model, period, &errors);
   } else {
-    errors.push_back("can: expected the wiring of the robot, got nothing; add a can: section to its "
-                     "robot.yaml");
+    errors.push_back(
+        "can: expected the wiring of the robot, got nothing; add a can: section to its "
+        "robot.yaml");
   }
   std::string text;
   for (const std::string& line : errors) text += (text.empty() ? "" : "\n") + line;

@@ -168,9 +168,9 @@ class WiringReader {
       }
     }
     for (const auto& [name, value] : joints.object().items()) {
-      const bool known = std::any_of(
-          model_.joints, model_.joints + model_.joint_count,
-          [&name = name](const GaitdJoint& joint) { return name == joint.name; });
+      const bool known =
+          std::any_of(model_.joints, model_.joints + model_.joint_count,
+                      [&name = name](const GaitdJoint& joint) { return name == joint.name; });
       if (!known) joints.error(joints.path(name), "a joint of the model", name);
     }
   }
@@ -243,8 +243,7 @@ class WiringReader {
     const json nothing = json::object();
     JsonReader map(root->has(key) ? root->at(key) : nothing, root->path(key), errors_);
     for (int i = 0; i < count; ++i) {
-      const std::string name =
-          imus ? model_.imus[i].name : (i == GAITD_LEFT ? "left" : "right");
+      const std::string name = imus ? model_.imus[i].name : (i == GAITD_LEFT ? "left" : "right");
       if (!map.has(name.c_str())) {
         map.error(map.path(name), "its bus and identifier", nullptr);
         continue;
@@ -289,7 +288,8 @@ double bus_load(const Wiring& wiring, int bus, double period) {
   double busy = 0;
   for (const Motor& motor : wiring.motors) {
     if (motor.bus != bus) continue;
-    busy += frame_time(rates, 8) + frame_time(rates, motor.dialect == Dialect::kMiniCheetah ? 6 : 8);
+    busy +=
+        frame_time(rates, 8) + frame_time(rates, motor.dialect == Dialect::kMiniCheetah ? 6 : 8);
   }
   for (const Sender& imu : wiring.imus) {
     if (imu.bus == bus) busy += kImuFrames * frame_time(rates, 8);

@@ -52,8 +52,8 @@ TEST(CanBus, SendsABatchAndReceivesOnlyWhatItIsFor) {
     const char* interface = fd ? "vcan0" : "vcan1";
     auto sender = open_bus(interface, fd, {});
     auto receiver = open_bus(interface, fd, {0x11, 0x13});
-    EXPECT_EQ(3, send_all(sender.get(), {make_frame(0x11, 1), make_frame(0x12, 2),
-                                         make_frame(0x13, 3)}));
+    EXPECT_EQ(
+        3, send_all(sender.get(), {make_frame(0x11, 1), make_frame(0x12, 2), make_frame(0x13, 3)}));
     const Result got = receive_all(receiver.get());
     ASSERT_EQ(2u, got.frames.size());
     EXPECT_EQ(0x11u, got.frames[0].frame.id);

@@ -35,8 +35,8 @@ struct Bench {
     motor.position_min = -1;
     motor.position_max = 1;
     wiring.motors.push_back(motor);
-    robot = std::make_unique<CanRobot>(wiring, model, RobotOptions{},
-                                       [](int, const std::string&) {});
+    robot =
+        std::make_unique<CanRobot>(wiring, model, RobotOptions{}, [](int, const std::string&) {});
     std::vector<std::string> errors;
     std::thread starting([&] { EXPECT_TRUE(robot->start(&errors)); });
     while (wire.take().empty()) {
@@ -141,6 +141,36 @@ TEST(CanRobot, AfterBusOffOnlySwitchesOffUntilTorqueIsCommandedAgain) {
   EXPECT_EQ(0u, b.read());
   EXPECT_EQ(Special::kDisable, decode_special(b.cycle(GAITD_JOINT_MODE_DAMPING)));
   EXPECT_EQ(Special::kEnable, decode_special(b.cycle(GAITD_JOINT_MODE_TORQUE, 4)));
+}
+
+TEST(CanRobot, ErrorPassiveIsAWarningUntilTheBusIsActiveAgain) {
+  Bench b;
+  b.wire.say("sp128000");
+  EXPECT_EQ(uint32_t{GAITD_HEALTH_WARNING}, b.read());
+  b.wire.say("sa000000");
+  EXPECT_EQ(0u, b.read());
+}
+
+TEST(CanRobot, ABusThatTakesNoCommandsForThreeCyclesIsAFaultAndNothingIsSentTwice) {
+  Bench b;
+  const auto unsent = [&] {
+    GaitdHealth h;
+    b.robot->health(&h);
+    return h.unsent;
+  };
+  b.cycle(GAITD_JOINT_MODE_TORQUE, 4);
+  // Nobody reads the wire: first its buffer fills up, then the transmit queue.
+  uint32_t cycles = 0;
+  for (; b.read() == 0 && cycles < 100'000; ++cycles) {
+    EXPECT_LT(unsent(), 3u);
+    b.write(GAITD_JOINT_MODE_TORQUE, 4);
+  }
+  EXPECT_EQ(uint32_t{GAITD_HEALTH_BUS}, b.read());
+  EXPECT_EQ(3u, unsent());
+  EXPECT_EQ(cycles - unsent(), b.wire.take().size());
+  b.write(GAITD_JOINT_MODE_DAMPING, 0);
+  EXPECT_EQ(0u, b.read());
+  EXPECT_EQ(1u, b.wire.take().size());
 }
 
 }  // namespace

@@ -137,9 +137,9 @@ TEST(SensorFrames, EveryCodeSurvives) {
   for (int code = -32767; code <= 32767; ++code) {
     const double value[3] = {code * kForceUnit, -code * kForceUnit, 0};
     double back[3];
-    EXPECT_EQ(code & 0xFFFF, decode_vector(encode_vector(1, value, kForceUnit,
-                                                         static_cast<uint16_t>(code)),
-                                           kForceUnit, back));
+    EXPECT_EQ(code & 0xFFFF,
+              decode_vector(encode_vector(1, value, kForceUnit, static_cast<uint16_t>(code)),
+                            kForceUnit, back));
     ASSERT_DOUBLE_EQ(value[0], back[0]);
     ASSERT_DOUBLE_EQ(value[1], back[1]);
   }

@@ -78,8 +78,8 @@ class Slcan {
       frame.id = id;
       frame.length = static_cast<uint8_t>(length);
       for (unsigned i = 0; i < length; ++i) {
-        frame.data[i] = static_cast<uint8_t>(
-            std::strtoul(text_.substr(5 + 2 * i, 2).c_str(), nullptr, 16));
+        frame.data[i] =
+            static_cast<uint8_t>(std::strtoul(text_.substr(5 + 2 * i, 2).c_str(), nullptr, 16));
       }
       frames.push_back(frame);
     }

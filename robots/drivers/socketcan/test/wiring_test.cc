@@ -30,12 +30,13 @@ json make_wiring(int joints, double data_bitrate) {
   json wiring = {{"schema", "gaitd.can/1"},
                  {"defaults", {{"gear", 8}, {"ranges", {{"position", 20}, {"velocity", 100}}}}},
                  {"buses", {{"one", {{"interface", "can0"}}}}},
-                 {"feet", {{"left", {{"bus", "one"}, {"id", "0x300"}}},
-                           {"right", {{"bus", "one"}, {"id", "0x310"}}}}}};
+                 {"feet",
+                  {{"left", {{"bus", "one"}, {"id", "0x300"}}},
+                   {"right", {{"bus", "one"}, {"id", "0x310"}}}}}};
   if (data_bitrate > 0) wiring["buses"]["one"]["data_bitrate"] = data_bitrate;
   for (int i = 0; i < joints; ++i) {
-    wiring["joints"]["j" + std::to_string(i)] = {{"bus", "one"}, {"id", 1 + i},
-                                                 {"reply_id", 0x40 + i}};
+    wiring["joints"]["j" + std::to_string(i)] = {
+        {"bus", "one"}, {"id", 1 + i}, {"reply_id", 0x40 + i}};
   }
   return wiring;
 }
@@ -62,7 +63,7 @@ TEST(BusLoad, RefusesMoreJointsThanABusCanCarry) {
   const struct {
     double data_bitrate, period;
     int joints;
-  } rows[] = {{0, 0.001, 2}, {0, 0.002, 5},    {0, 0.004, 11},
+  } rows[] = {{0, 0.001, 2},   {0, 0.002, 5},    {0, 0.004, 11},
               {5e6, 0.001, 7}, {5e6, 0.002, 14}, {5e6, 0.004, 28}};
   for (const auto& row : rows) {
     for (const int joints : {row.joints, row.joints + 1}) {
@@ -93,15 +94,18 @@ TEST(Wiring, MapsJointsToMotorsAndBack) {
   }
   // The same power on both sides, and the same torque of a spring.
   EXPECT_DOUBLE_EQ(3.0 * 2.0, motor.motor_torque(3.0) * motor.motor_velocity(2.0));
-  const double spring = motor.motor_gain(640.0) *
-                        (motor.motor_position(0.5) - motor.motor_position(0.4));
+  const double spring =
+      motor.motor_gain(640.0) * (motor.motor_position(0.5) - motor.motor_position(0.4));
   EXPECT_NEAR(640.0 * 0.1, motor.joint_torque(spring), 1e-9);
 }
 
 TEST(Wiring, ReadsDefaultsAndWhatAJointSaysOtherwise) {
   json text = make_wiring(2, 5e6);
-  text["joints"]["j1"].update({{"sign", -1}, {"offset", 0.1}, {"gear", 9.0},
-                               {"ranges", {{"torque", 33}, {"velocity", 110}}}, {"limits", {{"torque", 40}}}});
+  text["joints"]["j1"].update({{"sign", -1},
+                               {"offset", 0.1},
+                               {"gear", 9.0},
+                               {"ranges", {{"torque", 33}, {"velocity", 110}}},
+                               {"limits", {{"torque", 40}}}});
   Wiring wiring;
   EXPECT_EQ("", errors_of(text, 2, 0.001, &wiring));
   ASSERT_EQ(2u, wiring.motors.size());
@@ -133,8 +137,8 @@ TEST(Wiring, ReportsEveryMistakeAtOnce) {
 }
 
 TEST(Wiring, RefusesAJointThatItsMotorCannotShow) {
-  for (const auto& [key, value] : std::map<std::string, double>{
-           {"position", 15.0}, {"velocity", 95.0}, {"torque", 9.0}}) {
+  for (const auto& [key, value] :
+       std::map<std::string, double>{{"position", 15.0}, {"velocity", 95.0}, {"torque", 9.0}}) {
     json text = make_wiring(1, 5e6);
     text["defaults"]["ranges"][key] = value;
     EXPECT_NE(std::string::npos, errors_of(text, 1, 0.001).find("ranges." + key)) << key;
