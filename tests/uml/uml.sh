@@ -65,7 +65,7 @@ cd $scratch
 source $here/inside.sh
 source $here/$1
 INSIDE
-  uml_kernel "$2" mode=chroot script="$scratch/inside.sh" result="$scratch" 2>&1 | grep -v '^SELinux' || true
+  uml_kernel "$2" mode=chroot script="$scratch/inside.sh" result="$scratch" 2>&1 | grep --line-buffered -v '^SELinux' || true
   [[ -f $scratch/code ]] && code=$(cat "$scratch/code")
   [[ $code == 0 ]] || fail "$1 ended with $code inside User-Mode Linux"
 }
