@@ -85,21 +85,30 @@ void FakeRobot::answer() {
 
 void FakeRobot::answer_sensors(const GaitdSensors& sensors) {
   const auto counter = static_cast<uint16_t>(cycle_);
+  // The last code of a sensor never rests, as in a real one: who repeats himself is taken as
+  // frozen.
+  const auto wobble = [this](const double(&value)[3], double unit, double(&out)[3]) {
+    std::copy(value, value + 3, out);
+    out[0] += static_cast<double>(cycle_ % 2) * unit;
+  };
   for (size_t i = 0; i < wiring_.imus.size(); ++i) {
     const can::Sender& sender = wiring_.imus[i];
     const GaitdImuSensor& imu = sensors.imus[sender.index];
     if (imu_silent_[i]) continue;
     auto& frames = buses_[sender.bus].frames;
     frames.push_back(can::encode_vector(sender.id, imu.angular_rate, can::kRateUnit, counter));
-    frames.push_back(
-        can::encode_vector(sender.id + 1, imu.specific_force, can::kAccelerationUnit, counter));
+    double force[3];
+    wobble(imu.specific_force, can::kAccelerationUnit, force);
+    frames.push_back(can::encode_vector(sender.id + 1, force, can::kAccelerationUnit, counter));
   }
   for (size_t i = 0; i < wiring_.feet.size(); ++i) {
     const can::Sender& sender = wiring_.feet[i];
     const GaitdFootForceSensor& foot = sensors.feet[sender.index];
     if (foot_silent_[i]) continue;
     auto& frames = buses_[sender.bus].frames;
-    frames.push_back(can::encode_vector(sender.id, foot.force, can::kForceUnit, counter));
+    double force[3];
+    wobble(foot.force, can::kForceUnit, force);
+    frames.push_back(can::encode_vector(sender.id, force, can::kForceUnit, counter));
     frames.push_back(can::encode_vector(sender.id + 1, foot.moment, can::kMomentUnit, counter));
   }
   const auto interval =

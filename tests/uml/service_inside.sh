@@ -5,6 +5,12 @@ cd /tmp
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin
 # say TEXT: with the s since this script began.
 say() { echo "$SECONDS s: $1"; }
+# Motors that switched themselves off need a while until their errors are cleared.
+arm() {
+  wait_for '[[ $(field health) == *"healthy yes"* ]]' 120
+  gaitctl --json arm >/result/arm.txt 2>&1 &
+  wait_for '[[ $(state) == readying ]]' 120
+}
 say "systemd is up after $(cut -d. -f1 /proc/uptime) s"
 
 # wait_for COMMAND SECONDS
@@ -96,23 +102,20 @@ systemctl restart gaitd
 [[ $(state) == disarmed ]] || fail "after a restart: '$(state)', expected disarmed"
 
 # Crash, with torque on the motors: they switch off by themselves, gaitd comes back disarmed.
-gaitctl --json arm >/dev/null 2>&1 &
-wait_for '[[ $(state) == readying ]]' 60
+arm
 kill -SEGV "$(show MainPID)"
 wait_for '(($(restarts) == 1)) && [[ $(state) == disarmed ]]' 300
 say "crash: restarted into disarmed"
 
 # The control thread hangs with torque on the motors, the others go on: the watchdog.
-gaitctl --json arm >/dev/null 2>&1 &
-wait_for '[[ $(state) == readying ]]' 60
+arm
 gaitctl param set state_estimator.fault 8 >/dev/null 2>&1 &
 wait_for '[[ $(show Result) == watchdog ]]' 300
 wait_for '(($(restarts) == 2)) && [[ $(state) == disarmed ]]' 300
 say "hang: killed by the watchdog, restarted into disarmed"
 
 # Stop, with torque on the motors: they are switched off, not left to their timeout.
-gaitctl --json arm >/dev/null 2>&1 &
-wait_for '[[ $(state) == readying ]]' 60
+arm
 systemctl stop gaitd
 [[ $(show Result) == success ]] || fail "stop: $(show Result)"
 stop_robot
