@@ -14,6 +14,7 @@
 #include "cli/daemon_commands.h"
 #include "cli/doctor/doctor_command.h"
 #include "cli/failure.h"
+#include "cli/joint_commands.h"
 #include "cli/log_commands.h"
 #include "cli/man_text.h"
 #include "cli/param_commands.h"
@@ -46,6 +47,7 @@ int run(int argc, char** argv) {
   app.footer("Exit codes: 0 done, 1 refused or failed, 2 usage, 3 no daemon.");
   add_daemon_commands(&app, &context);
   add_plugin_commands(&app, &context);
+  add_joint_commands(&app, &context);
   add_param_commands(&app, &context);
   add_watch_command(&app, &context);
   add_run_command(&app, &context);

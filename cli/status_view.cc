@@ -68,6 +68,18 @@ std::string log(const json& log) {
          " ticks dropped";
 }
 
+// Of a robot; a simulation has none.
+std::string health(const json& health) {
+  if (!health.is_object()) return "-";
+  std::string counts;
+  for (const char* name : {"late", "missing", "duplicate", "stale", "lost", "unsent"}) {
+    const json count = at(health, name);
+    if (count.is_number() && count != 0) counts += std::string(", ") + name + " " + count.dump();
+  }
+  const bool healthy = at(health, "healthy") == true;
+  return (healthy ? "healthy" : text(at(health, "text"))) + counts;
+}
+
 }  // namespace
 
 std::vector<std::string> status_screen(const json& status) {
@@ -78,6 +90,7 @@ std::vector<std::string> status_screen(const json& status) {
       "",
       "state      " + text(at(status, "state")),
       "faults     " + faults(status),
+      "health     " + health(at(status, "health")),
       "gait       " + gait(status),
       "step       " + steps(status),
       "ICP error  " + number(at(status, "icp_error"), 1, 1e-3) + " mm",

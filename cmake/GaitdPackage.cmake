@@ -13,12 +13,19 @@ file(CONFIGURE OUTPUT ${package}/gaitd-build.cmake CONTENT "set(gaitd_MARCH @GAI
 foreach(file gaitd-config.cmake GaitdPlugin.cmake)
   configure_file(cmake/${file} ${package}/${file} COPYONLY)
 endforeach()
-install(TARGETS ${libraries} EXPORT gaitd ARCHIVE DESTINATION lib)
+install(TARGETS ${libraries} EXPORT gaitd ARCHIVE DESTINATION lib COMPONENT dev)
 export(EXPORT gaitd NAMESPACE gaitd:: FILE ${package}/gaitd-targets.cmake)
-install(EXPORT gaitd NAMESPACE gaitd:: DESTINATION lib/cmake/gaitd FILE gaitd-targets.cmake)
+install(EXPORT gaitd NAMESPACE gaitd:: DESTINATION lib/cmake/gaitd FILE gaitd-targets.cmake
+        COMPONENT dev)
+include(CMakePackageConfigHelpers)
+write_basic_package_version_file(${package}/gaitd-config-version.cmake
+                                 COMPATIBILITY SameMinorVersion)
 install(FILES ${package}/gaitd-build.cmake ${package}/gaitd-config.cmake
-        ${package}/GaitdPlugin.cmake DESTINATION lib/cmake/gaitd)
-install(DIRECTORY dynamics/include/gaitd qp/include/gaitd walking/include/gaitd DESTINATION include)
+        ${package}/gaitd-config-version.cmake ${package}/GaitdPlugin.cmake
+        DESTINATION lib/cmake/gaitd COMPONENT dev)
+foreach(folder interfaces dynamics qp walking)
+  install(DIRECTORY ${folder}/include/gaitd DESTINATION include COMPONENT dev)
+endforeach()
 
 set(share ${CMAKE_BINARY_DIR}/share/gaitd)
 file(MAKE_DIRECTORY ${share})

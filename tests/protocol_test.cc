@@ -168,6 +168,9 @@ TEST_F(Protocol, EveryExampleIsAnsweredAsThePageSays) {
     EXPECT_EQ(expected["id"], example.request["id"]);
     expected.erase("jsonrpc");
     expected.erase("id");
+    if (example.request["method"] == "joint.test" && expected.contains("result")) {
+      ASSERT_TRUE(std::holds_alternative<json>(client_->call("disarm", nullptr)));
+    }
     const json real = answer_to(example.request);
     EXPECT_EQ(difference(expected, real, ""), "") << real;
     if (expected.contains("error") && real.contains("error")) {

@@ -14,6 +14,7 @@
 #include "daemon/app/check_config.h"
 #include "daemon/app/metadata.h"
 #include "daemon/app/realtime.h"
+#include "daemon/app/service_manager.h"
 #include "daemon/config/command_parse.h"
 #include "daemon/control/command_json.h"
 #include "daemon/control/impedance.h"
@@ -94,6 +95,9 @@ void Application::read_configuration(Issues* all) {
                         suggestion(config_.robot, paths_.robots()));
   } else {
     robot_ = load_robot(robot_file->string(), config_.profile, &settings_, &issues);
+    if (const NodePtr wiring = settings_.find("can"); wiring && robot_) {
+      robot_->can = load_wiring(wiring, robot_file->parent_path().string(), &issues);
+    }
   }
   if (scenario_ && robot_) {
     check_scenario(*scenario_, robot_->model, &issues);
@@ -157,7 +161,7 @@ Application::LayerRequests Application::choose_layers(Issues* all) {
   if (!backend || !read_plugin_file(*backend, GAITD_LAYER_BACKEND, &refusal)) {
     issues.add_text(place_of("backend"), "backend", backend ? refusal.text() : error);
   }
-  settings_.subtree("sim");  // the backend checks it
+  for (const char* scope : {"sim", "socketcan"}) settings_.subtree(scope);  // the backend checks it
   settings_.report_unknown(&issues);
   return requests;
 }
@@ -195,6 +199,25 @@ bool Application::load_layers(const LayerRequests& requests) {
   return true;
 }
 
+// What the backend checks itself: the world of a simulation, the wiring of a robot.
+nlohmann::json Application::backend_config() {
+  const auto overlay = [this](const char* scope, nlohmann::json* config) {
+    const NodePtr more = settings_.subtree(scope);
+    const nlohmann::json values = more != nullptr ? to_json(*more) : nlohmann::json();
+    if (values.is_object()) config->update(values);
+  };
+  nlohmann::json config = nlohmann::json::object();
+  if (config_.backend == "socketcan") {
+    if (robot_->can) config["can"] = to_json(*robot_->can);
+    overlay("socketcan", &config);
+    return config;
+  }
+  if (scenario_) config = scenario_->simulator_config();
+  if (!scenario_ && config_.backend == "simbody") config["terrain"] = {{"ground_z", 0.0}};
+  overlay("sim", &config);
+  return config;
+}
+
 bool Application::load_backend() {
   const PluginDirectory directory(paths_.plugin_folders());
   std::string error;
@@ -209,13 +232,7 @@ bool Application::load_backend() {
     spdlog::error("{}", refusal.text());
     return false;
   }
-  nlohmann::json world = scenario_ ? scenario_->simulator_config() : nlohmann::json::object();
-  if (!scenario_ && config_.backend == "simbody") world["terrain"] = {{"ground_z", 0.0}};
-  if (const NodePtr more = settings_.subtree("sim"); more != nullptr) {
-    const nlohmann::json overlay = to_json(*more);
-    if (overlay.is_object()) world.update(overlay);
-  }
-  error = backend_->init(robot_->model, world.dump(), config_.period, config_.clock);
+  error = backend_->init(robot_->model, backend_config().dump(), config_.period, config_.clock);
   if (!error.empty()) {
     spdlog::error("{}", error);
     return false;
@@ -303,6 +320,38 @@ bool Application::start_telemetry() {
   return true;
 }
 
+// What a robot says of itself; null for a simulation.
+nlohmann::json Application::health() const {
+  const GaitdBackendInstance& backend = backend_->instance();
+  GaitdHealth h{};
+  if (backend.vtable->health == nullptr || backend.vtable->health(backend.self, &h) != GAITD_OK) {
+    return nullptr;
+  }
+  return {
+      {"healthy", h.conditions == 0}, {"text", h.text},   {"late", h.late}, {"missing", h.missing},
+      {"duplicate", h.duplicate},     {"stale", h.stale}, {"lost", h.lost}, {"unsent", h.unsent}};
+}
+
+// Every joint as its sensors show it, for checks of signs and offsets.
+nlohmann::json Application::joints() const {
+  std::vector<double> values;
+  const bool ticked = telemetry_->latest(values);
+  nlohmann::json joints = nlohmann::json::array();
+  for (int i = 0; i < robot_->model.joint_count; ++i) {
+    const GaitdJoint& joint = robot_->model.joints[i];
+    nlohmann::json row = {{"name", joint.name},
+                          {"position_min", joint.position_min},
+                          {"position_max", joint.position_max}};
+    for (const char* what : {"position", "velocity", "torque"}) {
+      const std::string signal = std::string("joint/") + joint.name + "/" + what;
+      const int at = find_signal(telemetry_->table(), signal);
+      row[what] = ticked && at >= 0 ? nlohmann::json(values[at]) : nlohmann::json();
+    }
+    joints.push_back(row);
+  }
+  return {{"joints", joints}};
+}
+
 nlohmann::json Application::status() const {
   nlohmann::json s = status_of(*telemetry_);
   s["robot"] = robot_->name;
@@ -318,6 +367,7 @@ nlohmann::json Application::status() const {
     const std::scoped_lock lock(realtime_mutex_);
     add_times(tick_watch_->report(), realtime_, &s);
   }
+  s["health"] = health();
   const Telemetry::LogStatus log = telemetry_->log_status();
   s["log"] = {{"file", log.file},
               {"part", log.part},
@@ -365,6 +415,7 @@ bool Application::start_server() {
   prepare_swaps();
   swaps_->add_methods(&methods);
   methods.add_snapshot("status", [this] { return status(); });
+  methods.add_snapshot("joint.list", [this] { return joints(); });
   methods.add_snapshot("version", [] {
     return nlohmann::json{
         {"version", GAITD_VERSION},
@@ -413,6 +464,8 @@ bool Application::report_overruns(std::uint64_t* told) const {
 // goes on or why it ended.
 void Application::watch_telemetry(const std::atomic<bool>& running) const {
   const int signal = find_signal(telemetry_->table(), "safety/faults");
+  const int state = find_signal(telemetry_->table(), "safety/state");
+  ServiceManager manager;
   std::vector<double> values;
   std::uint32_t last_faults = 0;
   Telemetry::LogStatus last_log = telemetry_->log_status();
@@ -428,13 +481,15 @@ void Application::watch_telemetry(const std::atomic<bool>& running) const {
       spdlog::error("{}; the log ends here, the robot goes on", log.error);
     }
     last_log = log;
-    if (signal < 0 || !telemetry_->latest(values)) continue;
+    if (signal < 0 || state < 0 || !telemetry_->latest(values)) continue;
     const auto faults = static_cast<std::uint32_t>(values[signal]);
-    if (faults == last_faults) continue;
     std::string names;
     for (std::size_t i = 0; i < kFaultNames.size(); ++i) {
       if ((faults >> i & 1u) != 0) names += std::string(" ") + kFaultNames[i];
     }
+    manager.update(telemetry_->newest_tick(),
+                   kSafetyStateNames[static_cast<std::size_t>(values[state])] + names);
+    if (faults == last_faults) continue;
     if (faults != 0) {
       spdlog::error("fault:{}; the joints are damped until `gaitctl reset`", names);
     } else {
@@ -442,6 +497,7 @@ void Application::watch_telemetry(const std::atomic<bool>& running) const {
     }
     last_faults = faults;
   }
+  manager.stopping();
 }
 
 bool Application::become_realtime() {

@@ -56,6 +56,7 @@ class Application {
   void read_configuration(Issues* issues);
   LayerRequests choose_layers(Issues* issues);
   bool load_layers(const LayerRequests& requests);
+  nlohmann::json backend_config();
   bool load_backend();
   bool start_telemetry();
   void prepare_swaps();
@@ -69,6 +70,8 @@ class Application {
   // Where the value that holds for a key was written.
   Location place_of(std::string_view key) const;
   nlohmann::json status() const;
+  nlohmann::json health() const;
+  nlohmann::json joints() const;
   LogMetadata metadata() const;
 
   const Options options_;

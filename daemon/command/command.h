@@ -24,9 +24,16 @@ enum class CommandType : std::uint8_t {
   kStop,   // finish the current step, close the feet, stand
   kAbort,  // drop the footsteps ahead, put the foot down, stand
   kSetParameter,
-  kPush,      // simulation only
-  kSimReset,  // simulation only: back to the start pose
-  kSwap,      // of a layer, by a scenario
+  kPush,       // simulation only
+  kSimReset,   // simulation only: back to the start pose
+  kSwap,       // of a layer, by a scenario
+  kJointTest,  // one joint, a small motion there and back, while disarmed
+};
+
+struct JointTest {
+  int joint = 0;
+  double amplitude = 0.05;  // rad
+  double duration = 2.0;    // s
 };
 
 struct Command {
@@ -40,6 +47,7 @@ struct Command {
   int footstep_count = 0;
   std::array<GaitdFootstep, walking::kMaxFootstepsPerCommand> footsteps;
   GaitdDisturbance push;
+  JointTest joint_test;
   int parameter_index = -1;  // into the rows of LiveParameters
   double parameter_value = 0.0;
   int swap_layer = -1;              // GAITD_LAYER_*

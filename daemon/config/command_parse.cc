@@ -154,6 +154,21 @@ void read_push(MapReader* map, const GaitdModel* model, GaitdDisturbance* push) 
   push->duration = map->number("duration", {1e-4, 60.0, "s"}).value_or(0.0);
 }
 
+void read_joint_test(MapReader* map, const GaitdModel* model, JointTest* test) {
+  map->require({"joint"});
+  const auto name = map->text("joint");
+  if (name && model) {
+    test->joint = joint_index(*model, *name);
+    if (test->joint < 0) {
+      std::vector<std::string> names(model->joint_count);
+      for (int i = 0; i < model->joint_count; ++i) names[i] = model->joints[i].name;
+      map->fail("joint", "a joint of the robot", *name, suggestion(*name, names));
+    }
+  }
+  test->amplitude = map->number("amplitude", {-0.3, 0.3, "rad"}).value_or(test->amplitude);
+  test->duration = map->number("duration", {0.5, 20.0, "s"}).value_or(test->duration);
+}
+
 }  // namespace
 
 const std::vector<std::string>& command_methods() {
@@ -190,6 +205,9 @@ std::optional<Command> parse_command(std::string_view method, const NodePtr& par
   } else if (method == "sim.push") {
     command.type = CommandType::kPush;
     read_push(&map, model, &command.push);
+  } else if (method == "joint.test") {
+    command.type = CommandType::kJointTest;
+    read_joint_test(&map, model, &command.joint_test);
   } else {
     found.add_text(
         map.where(), path,

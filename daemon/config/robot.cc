@@ -157,8 +157,18 @@ std::optional<Robot> load_robot(const std::string& file, Profile profile, Settin
   const NodePtr document = load_yaml_file(file, &found);
   std::optional<Robot> robot;
   if (document) robot = read_robot(document, file, profile, dynamics::load_urdf, settings, &found);
+  if (robot) {
+    const std::string folder = std::filesystem::path(file).parent_path().string();
+    robot->can = load_wiring(robot->can, folder, &found);
+  }
   issues->append(found);
   return found.ok() ? robot : std::nullopt;
+}
+
+NodePtr load_wiring(const NodePtr& value, const std::string& folder, Issues* issues) {
+  if (!value || value->kind != NodeKind::kScalar) return value;
+  return load_yaml_file((std::filesystem::path(folder) / value->text).lexically_normal().string(),
+                        issues);
 }
 
 std::optional<Robot> read_robot(const NodePtr& document, const std::string& file, Profile profile,
@@ -193,6 +203,7 @@ std::optional<Robot> read_robot(const NodePtr& document, const std::string& file
   }
   read_parameters(root.map("parameters"), SettingSource::kRobot, settings, &found);
   read_profiles(root.map("profiles"), profile, &geometry, settings, &robot);
+  robot.can = root.node("can");
   root.finish();
 
   // Figures only mean something when everything that goes into them is right.

@@ -40,6 +40,7 @@ struct Robot {
   std::string urdf;  // path of the URDF file
   GaitdModel model{};
   ImpedanceProfile impedance;  // of the chosen profile
+  NodePtr can;                 // wiring of the motors, for the backend to check; null without
 };
 
 // Reads robots/<name>/robot.yaml and the URDF it names, fills the model, and puts the parameters of
@@ -55,5 +56,9 @@ using UrdfLoader = std::function<dynamics::UrdfResult(const std::string& path,
                                                       const dynamics::UrdfOptions& options)>;
 std::optional<Robot> read_robot(const NodePtr& document, const std::string& file, Profile profile,
                                 const UrdfLoader& load, Settings* settings, Issues* issues);
+
+// The wiring of a robot: a map, or the name of a file that holds it, relative to `folder`. Null and
+// an issue when it cannot be read.
+NodePtr load_wiring(const NodePtr& value, const std::string& folder, Issues* issues);
 
 }  // namespace gaitd::daemon

@@ -24,6 +24,13 @@ void visit(Footstep& step, Field&& field) {
   field("landing_region", step.landing_region);
 }
 
+template <class Test, class Field>
+void visit_joint_test(Test& test, Field&& field) {
+  field("joint", test.joint);
+  field("amplitude", test.amplitude);
+  field("duration", test.duration);
+}
+
 template <class Walk, class Field>
 void visit_walk(Walk& walk, Field&& field) {
   field("steps", walk.steps);
@@ -85,6 +92,9 @@ std::string input_text(const Command& c, int parameter_owner, int parameter_plac
       out["force"] = c.push.force;
       out["duration"] = c.push.duration;
       break;
+    case CommandType::kJointTest:
+      visit_joint_test(c.joint_test, Write{&out});
+      break;
     case CommandType::kSetParameter:
       out["owner"] = parameter_owner;
       out["place"] = parameter_place;
@@ -102,6 +112,7 @@ bool read_input(const json& in, Command* c, int* parameter_owner, int* parameter
     c->type = static_cast<CommandType>(in.at("type").get<int>());
     if (c->type == CommandType::kMode) c->mode = in.at("mode").get<int>();
     if (c->type == CommandType::kWalk) visit_walk(c->walk, Read{&in});
+    if (c->type == CommandType::kJointTest) visit_joint_test(c->joint_test, Read{&in});
     if (c->type == CommandType::kFootsteps) {
       c->replace = in.at("replace").get<bool>();
       for (const json& step : in.at("footsteps")) {

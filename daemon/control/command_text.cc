@@ -10,9 +10,9 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr const char* kNames[] = {"arm",   "disarm",    "estop",    "reset",     "mode",
-                                  "walk",  "footsteps", "pause",    "resume",    "stop",
-                                  "abort", "param.set", "sim.push", "sim.reset", "plugin.swap"};
+constexpr const char* kNames[] = {
+    "arm",    "disarm", "estop", "reset",     "mode",     "walk",      "footsteps",   "pause",
+    "resume", "stop",   "abort", "param.set", "sim.push", "sim.reset", "plugin.swap", "joint.test"};
 
 class Writer {
  public:
@@ -64,6 +64,10 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
   if (c.type == CommandType::kSwap) {
     w.add(R"(,"layer":"%s","to":)", sdk::kLayerNames[c.swap_layer].data());
     w.add_quoted(c.swap_to.data());
+  }
+  if (c.type == CommandType::kJointTest) {
+    w.add(R"(,"joint":%d,"amplitude":%.17g,"duration":%.17g)", c.joint_test.joint,
+          c.joint_test.amplitude, c.joint_test.duration);
   }
   if (!reply.accepted) {
     w.add(R"(,"reason":)");

@@ -90,6 +90,10 @@ ControlLoop::Outcome ControlLoop::tick() {
     }
     return Outcome::kBackendFailed;
   }
+  GaitdHealth health{};
+  const auto get_health = backend_.vtable->health;
+  const bool known = get_health != nullptr && get_health(backend_.self, &health) == GAITD_OK;
+  data.health = known ? health.conditions : 0;
   pipeline_->run(tick_);
   const bool written = backend_.vtable->write(backend_.self, &data.commands) == GAITD_OK;
   data.times.total_us = watch.microseconds();
@@ -226,11 +230,9 @@ void ControlLoop::report_changes() {
   if (d.safety == last_state_ && d.faults == last_faults_) return;
   last_state_ = d.safety;
   last_faults_ = d.faults;
-  constexpr const char* kStates[] = {"disarmed", "readying", "standing",
-                                     "walking",  "stopping", "fault"};
   char text[kMaxEventText];
   int length = std::snprintf(text, sizeof(text), R"({"state":"%s","faults":[)",
-                             kStates[static_cast<int>(d.safety)]);
+                             kSafetyStateNames[static_cast<int>(d.safety)]);
   const char* comma = "";
   for (std::size_t i = 0; i < kFaultNames.size(); ++i) {
     if ((d.faults >> i & 1u) == 0) continue;

@@ -207,7 +207,7 @@ CommandReply Pipeline::execute(const Command& command) {
       why = data_.robot.valid != 0 && !safety_.upright(data_.robot)
                 ? "arm: the robot is not upright; set it on its feet (simulation: `gaitctl sim "
                   "reset`), then arm"
-                : safety_.arm();
+                : safety_.arm(data_);
       break;
     case CommandType::kDisarm:
       why = safety_.disarm();
@@ -217,6 +217,9 @@ CommandReply Pipeline::execute(const Command& command) {
       break;
     case CommandType::kReset:
       why = safety_.clear();
+      break;
+    case CommandType::kJointTest:
+      why = safety_.test_joint(data_, command.joint_test);
       break;
     case CommandType::kMode:
       refusal = gait_.set_mode(command.mode);

@@ -82,15 +82,12 @@ bool Safety::upright(const GaitdRobotState& robot) const { return !tilted(robot)
 
 void Safety::check(const TickData& d, bool estimate_ok) {
   if (state_ == SafetyState::kDisarmed || state_ == SafetyState::kFault) return;
-  for (int i = 0; i < d.sensors.joint_count; ++i) {
-    if (stale(d.sensors.joints[i].info)) raise(kFaultSensors);
-  }
-  bool imu = false;
-  for (int i = 0; i < d.sensors.imu_count; ++i) imu = imu || !stale(d.sensors.imus[i].info);
-  if (!imu) raise(kFaultSensors);
-  for (int i = 0; i < d.sensors.foot_count; ++i) {
-    if (stale(d.sensors.feet[i].info)) raise(kFaultSensors);
-  }
+  if ((d.health & GAITD_HEALTH_ESTOP) != 0) raise(kFaultEstop);
+  if ((d.health & GAITD_HEALTH_HEARTBEAT) != 0) raise(kFaultHeartbeat);
+  if ((d.health & GAITD_HEALTH_MOTOR) != 0) raise(kFaultMotor);
+  if ((d.health & GAITD_HEALTH_BUS) != 0) raise(kFaultBus);
+  if (!sensors_fresh(d)) raise(kFaultSensors);
+  if (state_ == SafetyState::kTesting) return;  // it hangs: the estimate means nothing
   if (!estimate_ok) {
     raise(kFaultEstimator);
     return;
@@ -103,6 +100,10 @@ bool Safety::update(double dt, const TickData& d, bool walking) {
   if (state_ == SafetyState::kStanding && walking) state_ = SafetyState::kWalking;
   if ((state_ == SafetyState::kWalking || state_ == SafetyState::kStopping) && !walking) {
     state_ = SafetyState::kStanding;
+  }
+  if (state_ == SafetyState::kTesting) {
+    time_in_state_ += dt;
+    if (time_in_state_ > test_.duration + dt) state_ = SafetyState::kDisarmed;
   }
   if (state_ != SafetyState::kReadying) return false;
 
@@ -183,6 +184,9 @@ void Safety::write(double dt, bool control_ok, TickData& d) {
       break;
     case SafetyState::kReadying:
       hold(d, d.commands);
+      break;
+    case SafetyState::kTesting:
+      swing_joint(d.commands);
       break;
     default:
       if (control_ok) {

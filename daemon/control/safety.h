@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "daemon/command/command.h"
 #include "daemon/control/tick_data.h"
 #include "daemon/parameters/safety_parameters.h"
 
@@ -24,7 +25,10 @@ class Safety {
   }
 
   // Requests; each returns null or why not.
-  const char* arm();
+  const char* arm();  // a simulated robot, that is healthy
+  const char* arm(const TickData& data);  // only a healthy robot in a plausible posture
+  // Moves one joint a little and back, the others off; disarmed before and afterwards.
+  const char* test_joint(const TickData& data, const JointTest& test);
   const char* disarm();
   const char* clear();  // of a latched fault: disarmed again
   void reset();         // whatever the state: disarmed, no faults (a simulation starts over)
@@ -49,6 +53,9 @@ class Safety {
   bool tilted(const GaitdRobotState& robot) const;
   bool low(const GaitdRobotState& robot) const;
   bool stale(const GaitdSignalInfo& info) const;
+  bool sensors_fresh(const TickData& data) const;
+  const char* unfit(const TickData& data) const;
+  void swing_joint(GaitdJointCommands& commands) const;
 
   const GaitdModel model_;
   sdk::Parameters<SafetyParameter> p_{kSafetyParameters};
@@ -59,6 +66,7 @@ class Safety {
   double time_settled_ = 0.0;
   double time_unsolved_ = 0.0;
   bool start_taken_ = false;
+  JointTest test_;
   std::array<double, GAITD_MAX_JOINTS> start_position_{};  // where the ramp began
   std::array<double, GAITD_MAX_JOINTS> last_torque_{};
   std::array<double, GAITD_MAX_JOINTS> last_good_torque_{};  // of a solved problem

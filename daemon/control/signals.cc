@@ -96,8 +96,10 @@ void visit_gait(V& v, const TickData& d) {
   v.real(d.time.time, "s", "time");
   v.integer(static_cast<double>(d.time.tick), "tick");
   v.word(static_cast<int>(d.safety),
-         {"disarmed", "readying", "standing", "walking", "stopping", "fault"}, "safety/state");
+         {"disarmed", "readying", "standing", "walking", "stopping", "fault", "testing"},
+         "safety/state");
   v.integer(d.faults, "safety/faults");
+  v.integer(d.health, "safety/health");
   v.word(d.gait.mode, {"stand", "walk-straight", "walk-bent"}, "gait/mode");
   v.word(d.gait.phase, {"stand", "transfer", "swing"}, "gait/phase");
   v.word(d.gait.support, {"left", "right", "both"}, "gait/support");

@@ -9,7 +9,17 @@
 
 namespace gaitd::daemon {
 
-enum class SafetyState { kDisarmed = 0, kReadying, kStanding, kWalking, kStopping, kFault };
+enum class SafetyState {
+  kDisarmed = 0,
+  kReadying,
+  kStanding,
+  kWalking,
+  kStopping,
+  kFault,
+  kTesting  // one joint moves, the others are off
+};
+inline constexpr std::array<const char*, 7> kSafetyStateNames = {
+    "disarmed", "readying", "standing", "walking", "stopping", "fault", "testing"};
 
 // Bits of safety/faults. Latched in kFault until an operator resets.
 enum Fault : std::uint32_t {
@@ -23,10 +33,13 @@ enum Fault : std::uint32_t {
   kFaultBackend = 1u << 7,
   kFaultOverrun = 1u << 8,
   kFaultReadying = 1u << 9,
+  kFaultMotor = 1u << 10,
+  kFaultBus = 1u << 11,
+  kFaultHeartbeat = 1u << 12,
 };
-inline constexpr std::array<const char*, 10> kFaultNames = {
-    "estop", "fall",   "tilt",    "sensors", "estimator",
-    "layer", "solver", "backend", "overrun", "readying"};
+inline constexpr std::array<const char*, 13> kFaultNames = {
+    "estop",   "fall",    "tilt",     "sensors", "estimator", "layer",    "solver",
+    "backend", "overrun", "readying", "motor",   "bus",       "heartbeat"};
 
 // Wall times of one tick. Reported, never acted on in lockstep.
 struct TickTimes {
@@ -38,8 +51,9 @@ struct TickTimes {
 // Everything one tick reads and writes, stage by stage, in the order of the pipeline.
 struct TickData {
   GaitdLayerTime time{};
-  GaitdSensors readings{};  // as the backend gave them
-  GaitdSensors sensors{};   // without those that cannot be true: what the layers get
+  GaitdSensors readings{};   // as the backend gave them
+  GaitdSensors sensors{};    // without those that cannot be true: what the layers get
+  std::uint32_t health = 0;  // GAITD_HEALTH_* that the backend reports
   GaitdRobotState robot{};
   GaitdGaitState gait{};
   GaitdIcpPlan plan{};

@@ -3,6 +3,7 @@
 
 #include <dlfcn.h>
 
+#include <cstddef>
 #include <exception>
 #include <initializer_list>
 #include <utility>
@@ -37,12 +38,12 @@ bool complete(std::initializer_list<std::pair<const char*, bool>> functions, std
 }
 
 template <typename Vtable>
-bool check_size(const Vtable* vtable, std::string* error) {
-  if (vtable != nullptr && vtable->size >= sizeof(Vtable)) return true;
+bool check_size(const Vtable* vtable, std::size_t needed, std::string* error) {
+  if (vtable != nullptr && vtable->size >= needed) return true;
   *error = vtable == nullptr
                ? "create left the vtable null"
                : "the vtable has " + std::to_string(vtable->size) + " bytes, needs " +
-                     std::to_string(sizeof(Vtable)) + "; build against the gaitd-dev of this gaitd";
+                     std::to_string(needed) + "; build against the gaitd-dev of this gaitd";
   return false;
 }
 
@@ -96,16 +97,17 @@ bool create_layer(void* library, const GaitdHost& host, GaitdInstance* instance,
   *instance = {};
   if (!call(GAITD_CREATE_SYMBOL, error, [&] { return create(&host, instance); })) return false;
   const GaitdLayerVtable* v = instance->vtable;
-  return check_size(v, error) && complete({{"init", v->init != nullptr},
-                                           {"activate", v->activate != nullptr},
-                                           {"process", v->process != nullptr},
-                                           {"reset", v->reset != nullptr},
-                                           {"get_state", v->get_state != nullptr},
-                                           {"set_state", v->set_state != nullptr},
-                                           {"set_parameter", v->set_parameter != nullptr},
-                                           {"deactivate", v->deactivate != nullptr},
-                                           {"destroy", v->destroy != nullptr}},
-                                          error);
+  return check_size(v, sizeof(*v), error) &&
+         complete({{"init", v->init != nullptr},
+                   {"activate", v->activate != nullptr},
+                   {"process", v->process != nullptr},
+                   {"reset", v->reset != nullptr},
+                   {"get_state", v->get_state != nullptr},
+                   {"set_state", v->set_state != nullptr},
+                   {"set_parameter", v->set_parameter != nullptr},
+                   {"deactivate", v->deactivate != nullptr},
+                   {"destroy", v->destroy != nullptr}},
+                  error);
 }
 
 bool init_layer(const GaitdInstance& instance, const GaitdModel& model,
@@ -137,17 +139,18 @@ bool create_backend(void* library, const GaitdHost& host, GaitdBackendInstance* 
     return false;
   }
   const GaitdBackendVtable* v = instance->vtable;
-  return check_size(v, error) && complete({{"init", v->init != nullptr},
-                                           {"start", v->start != nullptr},
-                                           {"read", v->read != nullptr},
-                                           {"write", v->write != nullptr},
-                                           {"advance", v->advance != nullptr},
-                                           {"truth", v->truth != nullptr},
-                                           {"disturb", v->disturb != nullptr},
-                                           {"reset", v->reset != nullptr},
-                                           {"stop", v->stop != nullptr},
-                                           {"destroy", v->destroy != nullptr}},
-                                          error);
+  return check_size(v, offsetof(GaitdBackendVtable, health), error) &&
+         complete({{"init", v->init != nullptr},
+                   {"start", v->start != nullptr},
+                   {"read", v->read != nullptr},
+                   {"write", v->write != nullptr},
+                   {"advance", v->advance != nullptr},
+                   {"truth", v->truth != nullptr},
+                   {"disturb", v->disturb != nullptr},
+                   {"reset", v->reset != nullptr},
+                   {"stop", v->stop != nullptr},
+                   {"destroy", v->destroy != nullptr}},
+                  error);
 }
 
 }  // namespace gaitd::daemon

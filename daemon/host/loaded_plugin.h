@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -134,9 +136,13 @@ class LoadedBackend {
 
  private:
   LoadedBackend(std::unique_ptr<PluginLibrary> library, const GaitdBackendInstance& instance)
-      : library_(std::move(library)), instance_(instance) {}
+      : library_(std::move(library)), instance_{instance.self, &vtable_} {
+    std::memcpy(&vtable_, instance.vtable,
+                std::min<std::size_t>(instance.vtable->size, sizeof(vtable_)));
+  }
 
   std::unique_ptr<PluginLibrary> library_;
+  GaitdBackendVtable vtable_{};  // what an older backend does not have is null
   GaitdBackendInstance instance_;
 };
 

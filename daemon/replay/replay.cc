@@ -148,6 +148,7 @@ bool Player::play(const ReplayOptions& options, ReplayReport* report, std::strin
   replayed_.resize(table.size());
   Pipeline& pipeline = robot_.pipeline();
   TickData& data = pipeline.data();
+  const int health = find_signal(table, "safety/health");
   const bool has_truth = log_.metadata_value("truth") == "true";
   LogReader::TickCursor ticks = log_.ticks();
   LogReader::SensorsCursor sensors = log_.sensors();
@@ -164,6 +165,7 @@ bool Player::play(const ReplayOptions& options, ReplayReport* report, std::strin
     // After the commands: the reset of a simulation clears what it finds, as on the control thread.
     if (!sensors.next(&data.readings)) break;
     data.has_truth = has_truth;
+    if (health >= 0) data.health = static_cast<std::uint32_t>(recorded_[health]);
     if (options.before_tick) options.before_tick(robot_.model(), tick, pipeline);
     pipeline.run(tick);
     record_signals(robot_.model(), data, replayed_);

@@ -124,7 +124,7 @@ void CommandBridge::abandon() {
 
 void add_command_methods(Methods* methods, CommandBridge* bridge, CommandParser parser) {
   for (const char* name : {"arm", "disarm", "estop", "reset", "mode", "walk", "footsteps", "pause",
-                           "resume", "stop", "abort", "sim.push", "sim.reset"}) {
+                           "resume", "stop", "abort", "sim.push", "sim.reset", "joint.test"}) {
     methods->add_async(name, [bridge, parser, method = std::string(name)](
                                  const nlohmann::json& params, Respond respond) {
       auto parsed = parser(method, params);

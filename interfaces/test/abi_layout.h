@@ -55,7 +55,8 @@
   X(GaitdLayerVtable, 88) \
   X(GaitdInstance, 16) \
   X(GaitdDisturbance, 64) \
-  X(GaitdBackendVtable, 88) \
+  X(GaitdHealth, 152) \
+  X(GaitdBackendVtable, 96) \
   X(GaitdBackendInstance, 16)
 
 #define GAITD_ABI_OFFSETS(X) \
@@ -453,6 +454,15 @@
   X(GaitdDisturbance, point, 8) \
   X(GaitdDisturbance, force, 32) \
   X(GaitdDisturbance, duration, 56) \
+  X(GaitdHealth, size, 0) \
+  X(GaitdHealth, conditions, 4) \
+  X(GaitdHealth, late, 8) \
+  X(GaitdHealth, missing, 12) \
+  X(GaitdHealth, duplicate, 16) \
+  X(GaitdHealth, stale, 20) \
+  X(GaitdHealth, lost, 24) \
+  X(GaitdHealth, unsent, 28) \
+  X(GaitdHealth, text, 32) \
   X(GaitdBackendVtable, size, 0) \
   X(GaitdBackendVtable, reserved, 4) \
   X(GaitdBackendVtable, init, 8) \
@@ -465,6 +475,7 @@
   X(GaitdBackendVtable, reset, 64) \
   X(GaitdBackendVtable, stop, 72) \
   X(GaitdBackendVtable, destroy, 80) \
+  X(GaitdBackendVtable, health, 88) \
   X(GaitdBackendInstance, self, 0) \
   X(GaitdBackendInstance, vtable, 8)
 /* clang-format on */

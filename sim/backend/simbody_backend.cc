@@ -138,6 +138,7 @@ constexpr GaitdBackendVtable kVtable = {
     reset,
     stop,
     destroy,
+    nullptr,  // always healthy
 };
 
 }  // namespace

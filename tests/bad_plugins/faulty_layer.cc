@@ -4,6 +4,7 @@
 #include FAULTY_HEADER
 
 #include <time.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -13,13 +14,13 @@
 
 namespace {
 
-enum class Fault { kNone, kNan, kError, kThrow, kSize, kSlow, kCrash, kDiverge };
+enum class Fault { kNone, kNan, kError, kThrow, kSize, kSlow, kCrash, kDiverge, kHang };
 
 class FaultyLayer : public FAULTY_CLASS {
  public:
   using Traits = gaitd::sdk::LayerTraits<FAULTY_LAYER>;
   static constexpr std::array<GaitdParameter, 2> kParameters = {
-      gaitd::sdk::integer_parameter("fault", "", 0, 7, 0, "what goes wrong"),
+      gaitd::sdk::integer_parameter("fault", "", 0, 8, 0, "what goes wrong"),
       gaitd::sdk::real_parameter("fault_time", "s", 0, 1000, 0.7, "from when on")};
 
   explicit FaultyLayer(const GaitdModel& model) : FAULTY_CLASS(model) {}
@@ -53,6 +54,9 @@ class FaultyLayer : public FAULTY_CLASS {
         break;
       case Fault::kCrash:
         std::raise(SIGSEGV);
+        break;
+      case Fault::kHang:
+        pause();  // for ever
         break;
       default:
         break;

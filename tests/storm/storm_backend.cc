@@ -111,6 +111,7 @@ constexpr GaitdBackendVtable kVtable = {
     reset,
     stop,
     destroy,
+    nullptr,  // always healthy
 };
 
 }  // namespace

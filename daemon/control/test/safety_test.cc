@@ -6,82 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <functional>
 #include <memory>
+#include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 
-#include "walking/test/atlas.h"
+#include "daemon/control/test/safety_bench.h"
 
 namespace gaitd::daemon {
 namespace {
-
-using testing::atlas;
-
-constexpr double kPeriod = 0.001;  // s
-
-double safety_parameter(SafetyParameter p) {
-  return kSafetyParameters[static_cast<int>(p)].default_value;
-}
-
-// A robot that stands in its nominal posture, with all its sensors.
-class Bench {
- public:
-  explicit Bench(std::initializer_list<std::pair<Limit, double>> limits = {})
-      : safety(atlas()), data(std::make_unique<TickData>()) {
-    for (const auto& [limit, value] : limits) safety.set_limit(static_cast<int>(limit), value);
-    data->robot = testing::standing_state(atlas());
-    GaitdSensors& s = data->sensors;
-    s.joint_count = atlas().joint_count;
-    s.imu_count = atlas().imu_count;
-    s.foot_count = GAITD_MAX_FEET;
-    for (auto& joint : s.joints) joint.info.valid = 1;
-    for (auto& imu : s.imus) imu.info.valid = 1;
-    for (auto& foot : s.feet) foot.info.valid = 1;
-    for (int i = 0; i < atlas().joint_count; ++i) {
-      data->wbc.commands.joints[i] = {GAITD_JOINT_MODE_TORQUE, 0, torque, 0.0, 0.0, 0.0, 0.0, 0.0};
-      data->wbc.commands.joints[i].position = atlas().nominal_position[i];
-    }
-  }
-  // One tick as the pipeline runs it. True in the tick of the hand-over.
-  bool tick() {
-    ++data->time.tick;
-    safety.check(*data, estimate_ok);
-    const bool handed_over = safety.update(kPeriod, *data, walking);
-    safety.write(kPeriod, safety.controlled() && control_ok, *data);
-    return handed_over;
-  }
-  void tick(int count) {
-    for (int i = 0; i < count; ++i) tick();
-  }
-  void stand() {
-    ASSERT_EQ(safety.arm(), nullptr);
-    for (int i = 0; i < 20000 && safety.state() != SafetyState::kStanding; ++i) tick();
-    ASSERT_EQ(safety.state(), SafetyState::kStanding);
-    tick(20);
-  }
-  void set_torque(double value) {
-    torque = value;
-    for (int i = 0; i < atlas().joint_count; ++i) data->wbc.commands.joints[i].torque = value;
-  }
-  const GaitdJointCommand& command(int joint) const { return data->commands.joints[joint]; }
-
-  Safety safety;
-  std::unique_ptr<TickData> data;
-  bool estimate_ok = true;
-  bool control_ok = true;
-  bool walking = false;
-  double torque = 2.0;
-};
-
-void expect_damped(const Bench& b) {
-  for (int i = 0; i < atlas().joint_count; ++i) {
-    EXPECT_EQ(b.command(i).mode, GAITD_JOINT_MODE_DAMPING);
-    EXPECT_EQ(b.command(i).torque, 0.0);
-    EXPECT_EQ(b.command(i).stiffness, 0.0);
-    EXPECT_GT(b.command(i).damping, 0.0);
-  }
-}
 
 TEST(Safety, ComesUpDisarmedAndDamped) {
   Bench b;
@@ -442,8 +378,22 @@ TEST(Safety, ControlTakesOverFromTheTorquesThatTheDrivesMade) {
 TEST(Safety, EveryFaultBitHasAName) {
   const std::uint32_t all = kFaultEstop | kFaultFall | kFaultTilt | kFaultSensors |
                             kFaultEstimator | kFaultLayer | kFaultSolver | kFaultBackend |
-                            kFaultOverrun | kFaultReadying;
+                            kFaultOverrun | kFaultReadying | kFaultMotor | kFaultBus |
+                            kFaultHeartbeat;
   EXPECT_EQ(all, (1u << kFaultNames.size()) - 1u);
+}
+
+TEST(Safety, EveryFaultHasARowInTheSafetyPage) {
+  std::ifstream file(GAITD_SOURCE_DIR "/docs/safety.md");
+  std::set<std::string> rows;
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("| `")) continue;
+    std::istringstream names(line.substr(0, line.find('|', 1)));
+    for (std::string name; std::getline(names, name, '`') && std::getline(names, name, '`');) {
+      rows.insert(name);
+    }
+  }
+  EXPECT_EQ(rows, std::set<std::string>(kFaultNames.begin(), kFaultNames.end()));
 }
 
 }  // namespace

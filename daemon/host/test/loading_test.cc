@@ -169,8 +169,20 @@ TEST_F(Loading, MakesABackendAndPassesOnItsErrors) {
   EXPECT_EQ(backend->init(*model_, "{}", 0.001, GAITD_CLOCK_LOCKSTEP), "");
   EXPECT_EQ(backend->init(*model_, "[]", 0.001, GAITD_CLOCK_LOCKSTEP),
             "backend backend: init: can0: no such key\ncan1: out of range");
+  EXPECT_NE(backend->instance().vtable->health, nullptr);
   request.path = plugin_path("good");
   EXPECT_FALSE(LoadedBackend::load(request, &refusal));
+}
+
+TEST_F(Loading, ABackendBuiltBeforeHealthWasAddedHasNone) {
+  LoadedBackend::Request request;
+  request.path = plugin_path("old_backend");
+  request.model = model_.get();
+  Refusal refusal;
+  const auto backend = LoadedBackend::load(request, &refusal);
+  ASSERT_TRUE(backend) << refusal.text();
+  EXPECT_EQ(backend->init(*model_, "{}", 0.001, GAITD_CLOCK_LOCKSTEP), "");
+  EXPECT_EQ(backend->instance().vtable->health, nullptr);
 }
 
 }  // namespace

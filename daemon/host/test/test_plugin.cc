@@ -40,6 +40,9 @@
 #ifndef TEST_ANSWER
 #define TEST_ANSWER 1
 #endif
+#ifndef TEST_BACKEND_SIZE
+#define TEST_BACKEND_SIZE sizeof(GaitdBackendVtable)
+#endif
 #ifndef TEST_SECTION
 #define TEST_SECTION GAITD_PLUGIN_SECTION
 #endif
@@ -143,7 +146,7 @@ GaitdStatus backend_init(void*, const GaitdModel*, const char* config, double, i
   return GAITD_INVALID_ARGUMENT;
 }
 [[maybe_unused]] const GaitdBackendVtable kBackendVtable = {
-    sizeof(GaitdBackendVtable),
+    TEST_BACKEND_SIZE,
     0,
     backend_init,
     ok,
@@ -154,7 +157,8 @@ GaitdStatus backend_init(void*, const GaitdModel*, const char* config, double, i
     [](void*, const GaitdDisturbance*) -> GaitdStatus { return GAITD_OK; },
     ok,
     ok,
-    destroy};
+    destroy,
+    [](void*, GaitdHealth*) -> GaitdStatus { return GAITD_OK; }};
 
 struct AtLoad {
   AtLoad() {

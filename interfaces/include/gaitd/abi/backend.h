@@ -25,6 +25,27 @@ typedef struct GaitdDisturbance {
   double duration; /* s, from the next plant step on */
 } GaitdDisturbance;
 
+/* What a robot reports beside its sensors. Those present now; none is remembered. */
+enum {
+  GAITD_HEALTH_MOTOR = 1 << 0,     /* a drive reports an error, or switched itself off */
+  GAITD_HEALTH_BUS = 1 << 1,       /* a bus is off or down, or does not take commands */
+  GAITD_HEALTH_ESTOP = 1 << 2,     /* an emergency stop is pressed */
+  GAITD_HEALTH_HEARTBEAT = 1 << 3, /* the emergency stop does not answer */
+  GAITD_HEALTH_WARNING = 1 << 4    /* a bus is error-passive: not a fault yet */
+};
+
+typedef struct GaitdHealth {
+  uint32_t size;
+  uint32_t conditions; /* GAITD_HEALTH_* */
+  uint32_t late;       /* replies, counted since start */
+  uint32_t missing;
+  uint32_t duplicate;
+  uint32_t stale;
+  uint32_t lost;   /* frames that the receiver dropped */
+  uint32_t unsent; /* commands that the bus did not take */
+  char text[GAITD_DESCRIPTION_SIZE]; /* the first condition in words, "" if there is none */
+} GaitdHealth;
+
 /* One tick: read -> (control) -> write -> [lockstep: advance]. */
 typedef struct GaitdBackendVtable {
   uint32_t size;
@@ -46,6 +67,8 @@ typedef struct GaitdBackendVtable {
   GaitdStatus (*reset)(void* self);
   GaitdStatus (*stop)(void* self);                                          /* [main] */
   void (*destroy)(void* self);                                              /* [main] */
+  /* May be null: always healthy. [any, rt included] */
+  GaitdStatus (*health)(void* self, GaitdHealth* health);
 } GaitdBackendVtable;
 
 typedef struct GaitdBackendInstance {

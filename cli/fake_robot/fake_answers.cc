@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the fake robot sends: answers of its motors, its sensors, its e-stop.
+#include <algorithm>
+
+#include "cli/fake_robot/fake_robot.h"
+#include "sensor_frames.h"
+
+namespace gaitd::cli {
+namespace {
+
+constexpr double kEstopInterval = 0.02;  // s
+
+}  // namespace
+
+void FakeRobot::answer_register(int bus, const can::Frame& frame) {
+  const auto request = can::decode_register_read(frame);
+  for (size_t i = 0; request && i < motors_.size(); ++i) {
+    const can::Motor& motor = wiring_.motors[i];
+    if (motor.bus != bus || motor.id != request->motor || motors_[i].silent) continue;
+    can::RegisterValue value = *request;
+    switch (value.address) {
+      case can::Register::kPositionRange:
+        value.raw = can::raw_of(static_cast<float>(motors_[i].range));
+        break;
+      case can::Register::kVelocityRange:
+        value.raw = can::raw_of(static_cast<float>(motor.ranges.velocity));
+        break;
+      case can::Register::kTorqueRange:
+        value.raw = can::raw_of(static_cast<float>(motor.ranges.torque));
+        break;
+      case can::Register::kTimeout:
+        value.raw = static_cast<uint32_t>(motors_[i].timeout / can::kTimeoutUnit + 0.5);
+        break;
+      case can::Register::kControlMode:
+        value.raw = can::kMitControlMode;
+        break;
+      case can::Register::kMasterId:
+        value.raw = motor.reply_id;
+        break;
+      case can::Register::kEscId:
+        value.raw = motor.id;
+        break;
+    }
+    const can::Frame answer = can::encode_register_answer(motor.reply_id, value);
+    bool down = false;
+    buses_[bus].bus->send(&answer, 1, &down);
+  }
+}
+
+void FakeRobot::answer() {
+  GaitdSensors sensors{};
+  GaitdTruth truth{};
+  plant_->read(&sensors);
+  plant_->read(&truth);
+  lowest_pelvis_ = std::min(lowest_pelvis_, truth.pelvis_position[2]);
+  for (BusState& bus : buses_) bus.frames.clear();
+  answer_sensors(sensors);
+  for (size_t i = 0; i < motors_.size(); ++i) {
+    const can::Motor& motor = wiring_.motors[i];
+    MotorState& state = motors_[i];
+    const bool lost = state.lose > 0 && state.commands % state.lose == 0;
+    if (!state.commanded || state.silent || lost) continue;
+    const GaitdJointSensor& joint = sensors.joints[motor.joint];
+    can::MotorReply reply;
+    reply.motor = motor.id;
+    reply.error = state.error != 0 ? state.error : (state.enabled ? 1 : 0);
+    reply.position = motor.motor_position(joint.position);
+    reply.velocity = motor.motor_velocity(joint.velocity);
+    reply.torque = motor.motor_torque(joint.torque);
+    reply.mosfet_temperature = 40;
+    reply.rotor_temperature = 45;
+    const uint32_t id = motor.dialect == can::Dialect::kMiniCheetah ? 0 : motor.reply_id;
+    const can::Frame frame = can::encode_reply(id, reply, motor.dialect, motor.ranges);
+    for (int k = 0; k < (state.duplicate ? 2 : 1); ++k) {
+      buses_[motor.bus].frames.push_back(frame);
+    }
+  }
+  for (BusState& bus : buses_) {
+    if (bus.off) continue;
+    bool down = false;
+    bus.frames.push_back(can::encode_end_of_cycle());
+    bus.bus->send(bus.frames.data(), static_cast<int>(bus.frames.size()), &down);
+  }
+}
+
+void FakeRobot::answer_sensors(const GaitdSensors& sensors) {
+  const auto counter = static_cast<uint16_t>(cycle_);
+  // The last code of a sensor never rests, as in a real one: who repeats himself is taken as
+  // frozen.
+  const auto wobble = [this](const double(&value)[3], double unit, double(&out)[3]) {
+    std::copy(value, value + 3, out);
+    out[0] += static_cast<double>(cycle_ % 2) * unit;
+  };
+  for (size_t i = 0; i < wiring_.imus.size(); ++i) {
+    const can::Sender& sender = wiring_.imus[i];
+    const GaitdImuSensor& imu = sensors.imus[sender.index];
+    if (imu_silent_[i]) continue;
+    auto& frames = buses_[sender.bus].frames;
+    frames.push_back(can::encode_vector(sender.id, imu.angular_rate, can::kRateUnit, counter));
+    double force[3];
+    wobble(imu.specific_force, can::kAccelerationUnit, force);
+    frames.push_back(can::encode_vector(sender.id + 1, force, can::kAccelerationUnit, counter));
+  }
+  for (size_t i = 0; i < wiring_.feet.size(); ++i) {
+    const can::Sender& sender = wiring_.feet[i];
+    const GaitdFootForceSensor& foot = sensors.feet[sender.index];
+    if (foot_silent_[i]) continue;
+    auto& frames = buses_[sender.bus].frames;
+    double force[3];
+    wobble(foot.force, can::kForceUnit, force);
+    frames.push_back(can::encode_vector(sender.id, force, can::kForceUnit, counter));
+    frames.push_back(can::encode_vector(sender.id + 1, foot.moment, can::kMomentUnit, counter));
+  }
+  const auto interval =
+      std::max<int64_t>(1, static_cast<int64_t>(kEstopInterval / options_.period));
+  if (wiring_.estop.bus >= 0 && !estop_silent_ && cycle_ % interval == 0) {
+    buses_[wiring_.estop.bus].frames.push_back(
+        can::encode_estop(wiring_.estop.id, estop_pressed_, static_cast<uint8_t>(cycle_)));
+  }
+}
+
+}  // namespace gaitd::cli

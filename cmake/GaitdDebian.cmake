@@ -1,0 +1,53 @@
+# Debian packages by CPack: gaitd (programs, plugins, robots, service) and gaitd-dev (headers and
+# libraries for plugins and whole-body controllers).
+configure_file(cmake/package/gaitd.pc.in gaitd.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gaitd.pc DESTINATION lib/pkgconfig COMPONENT dev)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/examples/plugin
+        DESTINATION share/doc/gaitd-dev/examples COMPONENT dev)
+
+# ---- gaitd: what belongs to a system and not to a prefix goes into the package only.
+function(gaitd_system_files destination)
+  install(FILES ${ARGN} DESTINATION ${destination} COMPONENT system EXCLUDE_FROM_ALL)
+endfunction()
+set(gaitd_etc ${PROJECT_SOURCE_DIR}/etc)
+gaitd_system_files(/etc/gaitd ${gaitd_etc}/gaitd.yaml)
+gaitd_system_files(/lib/systemd/system ${gaitd_etc}/systemd/gaitd.service)
+install(FILES ${gaitd_etc}/systemd/gaitd.sysusers.conf DESTINATION /usr/lib/sysusers.d
+        RENAME gaitd.conf COMPONENT system EXCLUDE_FROM_ALL)
+install(FILES ${gaitd_etc}/systemd/gaitd.tmpfiles.conf DESTINATION /usr/lib/tmpfiles.d
+        RENAME gaitd.conf COMPONENT system EXCLUDE_FROM_ALL)
+install(DIRECTORY ${gaitd_etc}/network DESTINATION /usr/share/doc/gaitd/examples COMPONENT system
+        EXCLUDE_FROM_ALL)
+gaitd_system_files(/usr/share/doc/gaitd ${PROJECT_SOURCE_DIR}/cmake/package/copyright)
+
+# cpack packs what is built, it does not build the tests first.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY TRUE)
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME gaitd)
+set(CPACK_PACKAGE_VENDOR gaitd)
+set(CPACK_PACKAGE_CONTACT "gaitd developers <gaitd@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
+set(CPACK_COMPONENTS_ALL gaitd system dev)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_COMPONENT_GAITD_GROUP gaitd)
+set(CPACK_COMPONENT_SYSTEM_GROUP gaitd)
+set(CPACK_COMPONENT_DEV_GROUP gaitd-dev)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_GAITD_PACKAGE_NAME gaitd)
+set(CPACK_DEBIAN_GAITD_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_GAITD_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_GAITD_PACKAGE_DEPENDS "systemd")
+set(CPACK_DEBIAN_GAITD_PACKAGE_RECOMMENDS "can-utils, iproute2")
+set(gaitd_scripts ${PROJECT_SOURCE_DIR}/cmake/package)
+set(CPACK_DEBIAN_GAITD_PACKAGE_CONTROL_EXTRA
+    ${gaitd_scripts}/conffiles ${gaitd_scripts}/postinst ${gaitd_scripts}/prerm
+    ${gaitd_scripts}/postrm)
+set(CPACK_DEBIAN_GAITD-DEV_PACKAGE_NAME gaitd-dev)
+set(CPACK_DEBIAN_GAITD-DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_GAITD-DEV_PACKAGE_DEPENDS
+    "gaitd (= ${PROJECT_VERSION}-1), libeigen3-dev, g++, cmake")
+include(CPack)

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <utility>
+
+#include "daemon/control/safety.h"
+#include "walking/test/atlas.h"
+
+namespace gaitd::daemon {
+
+using testing::atlas;
+
+inline constexpr double kPeriod = 0.001;  // s
+
+inline double safety_parameter(SafetyParameter p) {
+  return kSafetyParameters[static_cast<int>(p)].default_value;
+}
+
+// A robot that stands in its nominal posture, with all its sensors.
+class Bench {
+ public:
+  explicit Bench(std::initializer_list<std::pair<Limit, double>> limits = {})
+      : safety(atlas()), data(std::make_unique<TickData>()) {
+    for (const auto& [limit, value] : limits) safety.set_limit(static_cast<int>(limit), value);
+    data->robot = testing::standing_state(atlas());
+    GaitdSensors& s = data->sensors;
+    s.joint_count = atlas().joint_count;
+    s.imu_count = atlas().imu_count;
+    s.foot_count = GAITD_MAX_FEET;
+    for (auto& joint : s.joints) joint.info.valid = 1;
+    for (auto& imu : s.imus) imu.info.valid = 1;
+    for (auto& foot : s.feet) foot.info.valid = 1;
+    for (int i = 0; i < atlas().joint_count; ++i) {
+      data->wbc.commands.joints[i] = {GAITD_JOINT_MODE_TORQUE, 0, torque, 0.0, 0.0, 0.0, 0.0, 0.0};
+      data->wbc.commands.joints[i].position = atlas().nominal_position[i];
+    }
+  }
+  // One tick as the pipeline runs it. True in the tick of the hand-over.
+  bool tick() {
+    ++data->time.tick;
+    safety.check(*data, estimate_ok);
+    const bool handed_over = safety.update(kPeriod, *data, walking);
+    safety.write(kPeriod, safety.controlled() && control_ok, *data);
+    return handed_over;
+  }
+  void tick(int count) {
+    for (int i = 0; i < count; ++i) tick();
+  }
+  void stand() {
+    ASSERT_EQ(safety.arm(), nullptr);
+    for (int i = 0; i < 20000 && safety.state() != SafetyState::kStanding; ++i) tick();
+    ASSERT_EQ(safety.state(), SafetyState::kStanding);
+    tick(20);
+  }
+  void set_torque(double value) {
+    torque = value;
+    for (int i = 0; i < atlas().joint_count; ++i) data->wbc.commands.joints[i].torque = value;
+  }
+  const GaitdJointCommand& command(int joint) const { return data->commands.joints[joint]; }
+
+  Safety safety;
+  std::unique_ptr<TickData> data;
+  bool estimate_ok = true;
+  bool control_ok = true;
+  bool walking = false;
+  double torque = 2.0;
+};
+
+inline void expect_damped(const Bench& b) {
+  for (int i = 0; i < atlas().joint_count; ++i) {
+    EXPECT_EQ(b.command(i).mode, GAITD_JOINT_MODE_DAMPING);
+    EXPECT_EQ(b.command(i).torque, 0.0);
+    EXPECT_EQ(b.command(i).stiffness, 0.0);
+    EXPECT_GT(b.command(i).damping, 0.0);
+  }
+}
+
+}  // namespace gaitd::daemon

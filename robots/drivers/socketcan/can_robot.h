@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// A robot on CAN buses: one batch of commands and one of replies per bus and cycle.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "can_bus.h"
+#include "gaitd/abi/backend.h"
+#include "wiring.h"
+
+namespace gaitd::can {
+
+struct RobotOptions {
+  double period = 0.001;          // s
+  bool lockstep = false;          // advance() waits for the replies of a cycle
+  double lockstep_timeout = 0.5;  // s of wall time that it waits at most
+};
+
+// A motor is switched on by the first torque command and off by stop(), by an error of its own and
+// by its bus going down; until it is switched on, damping commands keep it off. It goes on only by
+// a torque command again, which the daemon sends only after an operator armed it.
+//
+// read(), write() and health() neither block nor allocate; health() may be called by any thread,
+// the others by one at a time.
+class CanRobot {
+ public:
+  using Log = std::function<void(int level, const std::string& line)>;
+
+  CanRobot(Wiring wiring, const GaitdModel& model, const RobotOptions& options, Log log);
+
+  // Opens the buses, compares the motors with the wiring, switches them off and reads their first
+  // state. False: everything that is wrong is in `errors`.
+  bool start(std::vector<std::string>* errors);
+  GaitdStatus read(GaitdSensors* sensors);
+  GaitdStatus write(const GaitdJointCommands& commands);
+  GaitdStatus advance();
+  void health(GaitdHealth* health) const;
+  // Motors off; reports the counters.
+  void stop();
+
+ private:
+  struct MotorState {
+    bool enabled = false;
+    bool awaiting = false;  // of this cycle
+    bool valid = false;
+    uint8_t error = 0;
+    int cycles_enabled = 0;
+    uint32_t owed = 0;  // replies of earlier cycles that may still come
+    uint32_t sequence = 0;
+    int64_t stamp_ns = 0;
+    int64_t cycle = 0;                              // of the last reply
+    double position = 0, velocity = 0, torque = 0;  // of the joint
+  };
+  struct Counters {
+    std::atomic<uint32_t> late{0}, missing{0}, duplicate{0}, stale{0};
+  };
+  struct SenderState {
+    std::array<std::array<double, 3>, 2> value{};  // of the frames
+    std::array<uint16_t, 2> counter{};
+    bool valid = false;
+    uint32_t sequence = 0;
+    int64_t stamp_ns = 0;
+    int64_t cycle = 0;
+  };
+  struct BusState {
+    std::unique_ptr<CanBus> bus;
+    bool down = false;
+    bool passive = false;
+    bool cycle_over = false;  // lockstep: nothing more comes in this cycle
+    int unsent_in_row = 0;
+    std::array<int16_t, 2048> routes{};   // by identifier: what sends it, see Route
+    std::array<int16_t, 256> cheetahs{};  // by motor id: mini-cheetah replies share identifier 0
+    std::vector<Frame> frames;            // to send
+    std::vector<int> motors;              // whose they are
+  };
+
+  bool open(std::vector<std::string>* errors);
+  void check_registers(std::vector<std::string>* errors);
+  std::string check_motor(const Motor& motor);
+  bool read_register(const Motor& motor, Register address, RegisterValue* value);
+  void wait_and_receive(double seconds);
+  void receive();
+  void receive(int bus);
+  void take(int bus, const Received& received);
+  void take_reply(int motor, const Received& received);
+  void take_sensor(SenderState* sender, int frame, double unit, const Received& received);
+  Frame frame_for(int motor, const GaitdJointCommand& command);
+  Frame command_frame(const Motor& motor, const GaitdJointCommand& command) const;
+  void send(int bus);
+  void switch_off_bus(int bus);
+  bool faulty(int motor) const;
+  bool complete() const;
+  void find_conditions();
+  GaitdSignalInfo info(bool valid, uint32_t sequence, int64_t stamp_ns, int64_t cycle,
+                       int64_t now_ns) const;
+
+  Wiring wiring_;
+  RobotOptions options_;
+  Log log_;
+  std::vector<std::string> names_;  // of the joints
+  std::vector<BusState> buses_;
+  std::vector<MotorState> motors_;
+  std::unique_ptr<Counters[]> counters_;
+  std::vector<SenderState> imus_, feet_;
+  bool estop_pressed_ = false;
+  int64_t estop_cycle_ = 0;
+  int64_t cycle_ = 0;  // counts write()
+  std::array<Received, CanBus::kBatch> received_{};
+  std::atomic<uint32_t> conditions_{0}, lost_{0}, unsent_{0};
+  std::atomic<int> bad_motor_{-1}, bad_bus_{-1};
+  std::atomic<uint8_t> bad_error_{0};
+};
+
+}  // namespace gaitd::can

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong with a robot on CAN, and how the motors of a bus that is down are taken off.
+#include <cstdio>
+
+#include "can_robot.h"
+
+namespace gaitd::can {
+namespace {
+
+constexpr int kPatience = 3;        // cycles in which a bus takes no commands until it is a fault
+constexpr int kSwitchOnCycles = 5;  // until a motor has to say that it is on
+
+}  // namespace
+
+bool CanRobot::faulty(int index) const {
+  const MotorState& state = motors_[index];
+  if (state.error > static_cast<uint8_t>(MotorError::kOn)) return true;
+  return state.enabled && state.cycles_enabled > kSwitchOnCycles &&
+         state.error == static_cast<uint8_t>(MotorError::kOff);
+}
+
+void CanRobot::switch_off_bus(int bus) {
+  buses_[bus].down = true;
+  for (size_t i = 0; i < motors_.size(); ++i) {
+    if (wiring_.motors[i].bus == bus) motors_[i].enabled = false;
+  }
+}
+
+// By the thread that reads; what it finds stays until the next read.
+void CanRobot::find_conditions() {
+  uint32_t found = 0;
+  for (size_t i = 0; i < motors_.size(); ++i) {
+    if (!faulty(static_cast<int>(i))) continue;
+    if ((found & GAITD_HEALTH_MOTOR) == 0) {
+      bad_motor_ = static_cast<int>(i);
+      bad_error_ = motors_[i].error;
+    }
+    found |= GAITD_HEALTH_MOTOR;
+  }
+  for (size_t i = 0; i < buses_.size(); ++i) {
+    if (buses_[i].passive) found |= GAITD_HEALTH_WARNING;
+    const bool down = buses_[i].down || buses_[i].unsent_in_row >= kPatience;
+    if (down) found |= GAITD_HEALTH_BUS;
+    if (down || buses_[i].passive) bad_bus_ = static_cast<int>(i);
+  }
+  if (wiring_.estop.bus >= 0) {
+    const double silence = static_cast<double>(cycle_ - estop_cycle_) * options_.period;
+    if (estop_pressed_) found |= GAITD_HEALTH_ESTOP;
+    if (wiring_.heartbeat > 0 && silence > wiring_.heartbeat) found |= GAITD_HEALTH_HEARTBEAT;
+  }
+  conditions_ = found;
+}
+
+void CanRobot::health(GaitdHealth* health) const {
+  *health = {};
+  health->size = sizeof(*health);
+  health->conditions = conditions_;
+  health->lost = lost_;
+  health->unsent = unsent_;
+  for (size_t i = 0; i < motors_.size(); ++i) {
+    health->late += counters_[i].late;
+    health->missing += counters_[i].missing;
+    health->duplicate += counters_[i].duplicate;
+    health->stale += counters_[i].stale;
+  }
+  char* text = health->text;
+  constexpr size_t kSize = sizeof(health->text);
+  const int motor = bad_motor_;
+  const int bus = bad_bus_;
+  if ((health->conditions & GAITD_HEALTH_MOTOR) != 0 && motor >= 0) {
+    std::snprintf(text, kSize, "motor of %s: %s", names_[wiring_.motors[motor].joint].c_str(),
+                  motor_error_text(bad_error_));
+  } else if ((health->conditions & GAITD_HEALTH_BUS) != 0 && bus >= 0) {
+    std::snprintf(text, kSize, "bus %s (%s) is off or down", wiring_.buses[bus].name.c_str(),
+                  wiring_.buses[bus].interface.c_str());
+  } else if ((health->conditions & GAITD_HEALTH_ESTOP) != 0) {
+    std::snprintf(text, kSize, "the e-stop is pressed");
+  } else if ((health->conditions & GAITD_HEALTH_HEARTBEAT) != 0) {
+    std::snprintf(text, kSize, "the e-stop is silent");
+  } else if ((health->conditions & GAITD_HEALTH_WARNING) != 0 && bus >= 0) {
+    std::snprintf(text, kSize, "bus %s (%s) is error-passive", wiring_.buses[bus].name.c_str(),
+                  wiring_.buses[bus].interface.c_str());
+  }
+}
+
+}  // namespace gaitd::can

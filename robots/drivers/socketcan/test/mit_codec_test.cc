@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mit_codec.h"
+
+#include <gtest/gtest.h>
+
+#include "sensor_frames.h"
+
+namespace gaitd::can {
+namespace {
+
+using Bytes = std::array<uint8_t, 8>;
+const Ranges kRanges{12.5, 30.0, 10.0, 500.0, 5.0};
+
+TEST(MitCodec, EveryCodeSurvivesARoundTrip) {
+  const double ranges[] = {12.5, 3.141593, 95.5, 10.0, 54.0, 0.1};
+  for (const double range : ranges) {
+    for (uint32_t code = 0; code <= 0xFFFF; ++code) {
+      ASSERT_EQ(code, to_code(from_code(code, -range, range, 16), -range, range, 16)) << range;
+    }
+    for (uint32_t code = 0; code <= 0xFFF; ++code) {
+      ASSERT_EQ(code, to_code(from_code(code, -range, range, 12), -range, range, 12)) << range;
+      ASSERT_EQ(code, to_code(from_code(code, 0, range, 12), 0, range, 12)) << range;
+    }
+  }
+}
+
+TEST(MitCodec, EveryCodeOfEveryFieldSurvivesInTheFrame) {
+  for (uint32_t code = 0; code <= 0xFFFF; ++code) {
+    MotorCommand command;
+    command.position = from_code(code, -12.5, 12.5, 16);
+    const uint32_t small = code & 0xFFF;
+    command.velocity = from_code(small, -30, 30, 12);
+    command.stiffness = from_code(small ^ 0xAAA, 0, 500, 12);
+    command.damping = from_code(small ^ 0x555, 0, 5, 12);
+    command.torque = from_code(0xFFF - small, -10, 10, 12);
+    const Frame frame = encode_command(0x12, kRanges, command);
+    const MotorCommand back = decode_command(frame, kRanges);
+    ASSERT_EQ(frame.data, encode_command(0x12, kRanges, back).data) << code;
+    ASSERT_EQ(code, static_cast<uint32_t>(frame.data[0] << 8 | frame.data[1]));
+    ASSERT_EQ(small, static_cast<uint32_t>(frame.data[2] << 4 | frame.data[3] >> 4));
+    ASSERT_EQ(small ^ 0xAAA, static_cast<uint32_t>((frame.data[3] & 0xF) << 8 | frame.data[4]));
+    ASSERT_EQ(small ^ 0x555, static_cast<uint32_t>(frame.data[5] << 4 | frame.data[6] >> 4));
+    ASSERT_EQ(0xFFF - small, static_cast<uint32_t>((frame.data[6] & 0xF) << 8 | frame.data[7]));
+    ASSERT_DOUBLE_EQ(back.position, command.position);
+    ASSERT_DOUBLE_EQ(back.torque, command.torque);
+  }
+}
+
+TEST(MitCodec, EveryCodeOfAReplySurvivesInEachDialect) {
+  for (const Dialect dialect : {Dialect::kDamiao, Dialect::kMiniCheetah, Dialect::kCubeMars}) {
+    for (uint32_t code = 0; code <= 0xFFFF; ++code) {
+      MotorReply reply;
+      reply.motor = 5;
+      reply.error = 1;
+      reply.position = from_code(code, -12.5, 12.5, 16);
+      reply.velocity = from_code(code & 0xFFF, -30, 30, 12);
+      reply.torque = from_code(code >> 4, -10, 10, 12);
+      const Frame frame = encode_reply(0x15, reply, dialect, kRanges);
+      const auto back = decode_reply(frame, dialect, kRanges);
+      ASSERT_TRUE(back);
+      ASSERT_EQ(back->motor, 5u);
+      ASSERT_EQ(back->error, 1);
+      ASSERT_DOUBLE_EQ(back->position, reply.position);
+      ASSERT_DOUBLE_EQ(back->velocity, reply.velocity);
+      ASSERT_DOUBLE_EQ(back->torque, reply.torque);
+    }
+  }
+}
+
+TEST(MitCodec, ZeroIsAlmostTheMiddleAndNotAnAllZeroPayload) {
+  const Bytes zero{0x7F, 0xFF, 0x7F, 0xF0, 0x00, 0x00, 0x07, 0xFF};
+  EXPECT_EQ(zero, encode_command(1, kRanges, {}).data);
+  EXPECT_TRUE(is_torque_free(encode_command(1, kRanges, {})));
+  Frame nothing;  // what a forgotten initialisation would send
+  EXPECT_FALSE(is_torque_free(nothing));
+  EXPECT_DOUBLE_EQ(-10.0, decode_command(nothing, kRanges).torque);
+}
+
+TEST(MitCodec, TheSafeIdleIsMiddleCodesWithASmallDamping) {
+  const Bytes idle{0x7F, 0xFF, 0x7F, 0xF0, 0x00, 0x19, 0x97, 0xFF};
+  EXPECT_EQ(idle, encode_damping(1, kRanges, 0.5).data);
+  EXPECT_TRUE(is_torque_free(encode_damping(1, kRanges, 0.5)));
+}
+
+TEST(MitCodec, PublishedExamples) {
+  // p = PMAX, v = VMAX, kp = 500, kd = 5, t = TMAX: all ones.
+  const Bytes ones{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
+  EXPECT_EQ(ones, encode_command(1, kRanges, {12.5, 30, 500, 5, 10}).data);
+  // Beyond the range is the end of the range, and what is no number is the middle.
+  EXPECT_EQ(ones, encode_command(1, kRanges, {99, 99, 999, 99, 99}).data);
+  EXPECT_EQ(0x7FFFu, to_code(std::nan(""), -12.5, 12.5, 16));
+  // Half of the gains.
+  const Bytes gains{0x7F, 0xFF, 0x7F, 0xF7, 0xFF, 0x7F, 0xF7, 0xFF};
+  EXPECT_EQ(gains, encode_command(1, kRanges, {0, 0, 250, 2.5, 0}).data);
+}
+
+TEST(MitCodec, SpecialFrames) {
+  const Bytes enable{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC};
+  EXPECT_EQ(enable, encode_special(3, Special::kEnable).data);
+  for (const Special s :
+       {Special::kEnable, Special::kDisable, Special::kSetZero, Special::kClear}) {
+    EXPECT_EQ(s, decode_special(encode_special(3, s)));
+  }
+  EXPECT_FALSE(decode_special(encode_command(3, kRanges, {12.5, 30, 500, 5, 10})));
+}
+
+TEST(MitCodec, DamiaoReplyHasErrorAndTemperatures) {
+  Frame frame;
+  frame.id = 0x11;
+  frame.data = {0xB1, 0x80, 0x00, 0x80, 0x08, 0x00, 65, 70};
+  const auto reply = decode_reply(frame, Dialect::kDamiao, kRanges);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(1u, reply->motor);
+  EXPECT_STREQ("drive too hot", motor_error_text(reply->error));
+  EXPECT_NEAR(0.0, reply->position, 2e-4);
+  EXPECT_EQ(65, reply->mosfet_temperature);
+  EXPECT_EQ(70, reply->rotor_temperature);
+  frame.length = 7;
+  EXPECT_FALSE(decode_reply(frame, Dialect::kDamiao, kRanges));
+  EXPECT_TRUE(decode_reply(frame, Dialect::kMiniCheetah, kRanges));
+}
+
+TEST(MitCodec, Registers) {
+  const Frame read = encode_register_read(0x104, Register::kPositionRange);
+  EXPECT_EQ(kRegisterId, read.id);
+  EXPECT_EQ((Bytes{0x04, 0x01, 0x33, 21, 0, 0, 0, 0}), read.data);
+  const Frame answer =
+      encode_register_answer(0x14, {0x104, Register::kPositionRange, raw_of(12.5f)});
+  EXPECT_EQ((Bytes{0x04, 0x01, 0x33, 21, 0x00, 0x00, 0x48, 0x41}), answer.data);
+  const auto value = decode_register_answer(answer);
+  ASSERT_TRUE(value);
+  EXPECT_EQ(0x104u, value->motor);
+  EXPECT_FLOAT_EQ(12.5f, value->real());
+}
+
+TEST(SensorFrames, EveryCodeSurvives) {
+  for (int code = -32767; code <= 32767; ++code) {
+    const double value[3] = {code * kForceUnit, -code * kForceUnit, 0};
+    double back[3];
+    EXPECT_EQ(code & 0xFFFF,
+              decode_vector(encode_vector(1, value, kForceUnit, static_cast<uint16_t>(code)),
+                            kForceUnit, back));
+    ASSERT_DOUBLE_EQ(value[0], back[0]);
+    ASSERT_DOUBLE_EQ(value[1], back[1]);
+  }
+  const double huge[3] = {1e9, -1e9, 0};
+  double back[3];
+  decode_vector(encode_vector(1, huge, kForceUnit, 0), kForceUnit, back);
+  EXPECT_DOUBLE_EQ(32767 * kForceUnit, back[0]);
+  EXPECT_DOUBLE_EQ(-32767 * kForceUnit, back[1]);
+}
+
+TEST(SensorFrames, OnlyAClearReleaseIsNotPressed) {
+  EXPECT_FALSE(decode_estop(encode_estop(1, false, 7)));
+  EXPECT_TRUE(decode_estop(encode_estop(1, true, 7)));
+  Frame garbage = encode_estop(1, false, 7);
+  garbage.data[0] = 2;
+  EXPECT_TRUE(decode_estop(garbage));
+  garbage.length = 0;
+  EXPECT_TRUE(decode_estop(garbage));
+}
+
+}  // namespace
+}  // namespace gaitd::can

@@ -1,0 +1,43 @@
+# The Debian packages: what they hold, that a plugin builds against gaitd-dev alone, and how exposed
+# the service is. tests/uml/service.sh installs them.
+source "$(dirname "$0")/common.sh"
+source "$(dirname "$0")/packages_common.sh"
+
+make_packages "$scratch"
+root=$scratch/root
+for name in gaitd gaitd-dev; do dpkg-deb -x "$scratch/$name.deb" "$root"; done
+for file in etc/gaitd/gaitd.yaml usr/lib/sysusers.d/gaitd.conf usr/lib/tmpfiles.d/gaitd.conf \
+  lib/systemd/system/gaitd.service usr/share/doc/gaitd/examples/network/80-can-fd.network \
+  usr/bin/gaitd usr/bin/gaitctl usr/bin/gaitd-fake-robot \
+  usr/lib/gaitd/plugins/backend/socketcan.so usr/share/gaitd/robots/atlas/can-fd.yaml \
+  usr/include/gaitd/abi/plugin.h usr/lib/cmake/gaitd/gaitd-config.cmake; do
+  [[ -f $root/$file ]] || fail "not in the packages: $file"
+done
+if grep -rIl "$GAITD_SOURCE" "$root" >"$scratch/foreign.txt"; then
+  fail "these files name the source tree: $(cat "$scratch/foreign.txt")"
+fi
+
+# The example project, copied out, finds nothing but the installed packages.
+cp -r "$root/usr/share/doc/gaitd-dev/examples/plugin" "$scratch/project"
+{
+  "${CMAKE:-cmake}" -S "$scratch/project" -B "$scratch/project/build" \
+    -DCMAKE_PREFIX_PATH="$root/usr" && "${CMAKE:-cmake}" --build "$scratch/project/build"
+} >"$scratch/plugin.txt" 2>&1 ||
+  fail "the example plugin does not build: $(tail -n 20 "$scratch/plugin.txt")"
+late=$scratch/project/build/lib/gaitd/plugins/toe_off/late.so
+expect 0 "$root/usr/bin/gaitctl" plugin check "$late" >"$scratch/check.txt"
+tail -n 1 "$scratch/check.txt"
+printf '#include "gaitd/walking/gait_machine.h"\nint main() {}\n' >"$scratch/pc.cc"
+export PKG_CONFIG_PATH=$root/usr/lib/pkgconfig
+# shellcheck disable=SC2046
+c++ "$scratch/pc.cc" -o "$scratch/pc" $(pkg-config --cflags --libs gaitd) ||
+  fail "pkg-config gaitd gives flags that do not work"
+
+score=$(systemd-analyze security --offline=yes "$GAITD_SOURCE/etc/systemd/gaitd.service" |
+  sed -n 's/.*exposure level for gaitd.service: \([0-9.]*\).*/\1/p')
+echo "exposure score $score"
+awk -v score="$score" 'BEGIN { exit !(score > 0 && score <= 2.0) }' ||
+  fail "the exposure score is '$score', expected at most 2.0"
+messages=$(systemd-analyze verify --man=no "$root/lib/systemd/system/gaitd.service" 2>&1 |
+  grep -v 'gaitd is not executable' || true)
+[[ -z $messages ]] || fail "systemd-analyze verify: $messages"
