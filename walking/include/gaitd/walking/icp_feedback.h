@@ -40,8 +40,8 @@ inline constexpr std::array<GaitdParameter, 12> kFeedbackParameters = {
     sdk::real_parameter("kappa_min", "", 0.3, 1, 0.8, "clamp of kappa (theory section 1)"),
     sdk::real_parameter("kappa_max", "", 1, 3, 1.4, "clamp of kappa"),
     sdk::real_parameter("kappa_filter", "Hz", 0.1, 500, 10, "low-pass of kappa"),
-    sdk::real_parameter("delay", "s", 0, 0.02, 0.002,
-                        "of sensors and commands, over which the ICP is predicted"),
+    sdk::real_parameter("delay", "s", 0, 0.02, 0.0045,
+                        "of sensors, commands and drives, over which the ICP is predicted"),
 };
 
 // Tracks the ICP reference by moving the CMP (theory section 3):
