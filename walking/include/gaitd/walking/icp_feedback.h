@@ -44,6 +44,16 @@ inline constexpr std::array<GaitdParameter, 12> kFeedbackParameters = {
                         "of sensors, commands and drives, over which the ICP is predicted"),
 };
 
+// CMP of an eCMP and back (W, m), for a CoM at `com` (theory section 1).
+inline Eigen::Vector2d cmp_of(const Eigen::Vector2d& ecmp, const Eigen::Vector2d& com,
+                              double kappa) {
+  return com - kappa * (com - ecmp);
+}
+inline Eigen::Vector2d ecmp_of(const Eigen::Vector2d& cmp, const Eigen::Vector2d& com,
+                               double kappa) {
+  return com - (com - cmp) / kappa;
+}
+
 // Tracks the ICP reference by moving the CMP (theory section 3):
 //   r_eCMP = r_ref + (1 + k/w) (xi - xi_ref), k along and across the motion of the reference
 // The CMP that follows is kept inside the support polygon plus a bounded excursion. What is commanded
@@ -62,9 +72,6 @@ class IcpFeedback {
   void update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out);
 
   double kappa() const { return state_.kappa; }
-  // CMP of an eCMP and back (W, m), with the CoM of `robot`.
-  Eigen::Vector2d cmp_of(const GaitdRobotState& robot, const Eigen::Vector2d& ecmp) const;
-  Eigen::Vector2d ecmp_of(const GaitdRobotState& robot, const Eigen::Vector2d& cmp) const;
   // Where the CMP may be without angular momentum: the support polygon less the margin (W, m).
   ConvexPolygon cmp_region(const GaitdGaitState& gait) const;
 
