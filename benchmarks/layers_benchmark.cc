@@ -113,7 +113,8 @@ const GaitdToeOffInput kToeOffInput{
 
 void plugin_call(benchmark::State& state) {
   std::filesystem::path file;
-  for (const auto& folder : daemon::Paths::detect().plugin_folders()) {
+  const daemon::Paths paths = daemon::Paths::detect();
+  for (const auto& folder : paths.plugin_folders()) {
     if (std::filesystem::exists(folder / "toe_off/never.so")) file = folder / "toe_off/never.so";
   }
   daemon::LoadedLayer::Request request;

@@ -27,7 +27,6 @@ cat >>walk.yaml <<'SCENARIO'
   - {at: 55.0, mode: walk-straight}
 disturbances:
   - {link: utorso, force: [0, 60, 0], duration: 0.1, when: {time: 10.0}}
-sensors: {noise: nominal}
 SCENARIO
 touch asking
 for height in 0.115 0.12 0.125; do

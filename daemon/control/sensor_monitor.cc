@@ -14,7 +14,7 @@ using Limits = sdk::Parameters<SafetyParameter>;
 // Encoder noise and play, on top of what the fastest joint can do between two readings (rad).
 constexpr double kJointPlay = 0.05;
 constexpr double kLongestBounce = 0.15;  // s
-constexpr double kRestingSpeed = 0.05;  // m/s, of a foot on the ground
+constexpr double kRestingSpeed = 0.05;   // m/s, of a foot on the ground
 // Joints are overtaken by impacts; only this multiple of the limit is impossible.
 constexpr double kVelocityRatio = 3.0;
 
@@ -125,9 +125,9 @@ void SensorMonitor::check(double dt, const Limits& p, TickData& d) {
     const double missed = 1.0 + h.untrue / dt;
     const bool credible =
         finite(imu.angular_rate) && finite(imu.specific_force) && finite(imu.orientation) &&
-        (!h.known || (near(imu.angular_rate, held.angular_rate, missed * p[P::kGyroJump]) &&
-                      near(imu.specific_force, held.specific_force,
-                           missed * p[P::kAccelerometerJump])));
+        (!h.known ||
+         (near(imu.angular_rate, held.angular_rate, missed * p[P::kGyroJump]) &&
+          near(imu.specific_force, held.specific_force, missed * p[P::kAccelerometerJump])));
     count_repeats(h, imu.info, last_.imus[i].info,
                   same(imu.angular_rate, last_.imus[i].angular_rate) &&
                       same(imu.specific_force, last_.imus[i].specific_force));
@@ -148,8 +148,7 @@ void SensorMonitor::check(double dt, const Limits& p, TickData& d) {
     // A foot that bounces carries nothing for a while.
     const bool bounces = zero && !rests && h.unchanged < kLongestBounce;
     pass(h, credible, bounces ? 0.0 : frozen(h), Suspicion::kFrozen, before.feet[side],
-         d.sensors.feet[side],
-         side == GAITD_LEFT ? "left foot force" : "right foot force");
+         d.sensors.feet[side], side == GAITD_LEFT ? "left foot force" : "right foot force");
   }
   last_ = now;
 }

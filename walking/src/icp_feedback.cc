@@ -73,25 +73,14 @@ Eigen::Vector2d IcpFeedback::feedback(const GaitdStepAdjusterInput& in) {
          (1.0 + p_[Feedback::kGainOrthogonal] / omega) * across + integral;
 }
 
-Eigen::Vector2d IcpFeedback::cmp_of(const GaitdRobotState& robot,
-                                    const Eigen::Vector2d& ecmp) const {
-  const Eigen::Vector2d com = view(robot.com).head<2>();
-  return com - state_.kappa * (com - ecmp);
-}
-
-Eigen::Vector2d IcpFeedback::ecmp_of(const GaitdRobotState& robot,
-                                     const Eigen::Vector2d& cmp) const {
-  const Eigen::Vector2d com = view(robot.com).head<2>();
-  return com - (com - cmp) / state_.kappa;
-}
-
 ConvexPolygon IcpFeedback::cmp_region(const GaitdGaitState& gait) const {
   return support_polygon(model_, gait).inset(p_[Feedback::kMargin]);
 }
 
 void IcpFeedback::update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out) {
   update_kappa(in);
-  Eigen::Vector2d cmp = cmp_of(*in.robot, view(in.plan->ecmp) + feedback(in));
+  const Eigen::Vector2d com = view(in.robot->com).head<2>();
+  Eigen::Vector2d cmp = cmp_of(view(in.plan->ecmp) + feedback(in), com, state_.kappa);
   const ConvexPolygon region = cmp_region(*in.gait);
   if (!region.empty()) {
     const Eigen::Vector2d inside = region.closest_point(cmp);
@@ -100,7 +89,7 @@ void IcpFeedback::update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& 
     const double allowed = p_[Feedback::kExcursion];
     cmp = inside + (length > allowed ? Eigen::Vector2d(beyond * (allowed / length)) : beyond);
   }
-  const Eigen::Vector2d ecmp = ecmp_of(*in.robot, cmp);
+  const Eigen::Vector2d ecmp = ecmp_of(cmp, com, state_.kappa);
   newest_ = (newest_ + 1) % kMaxOnTheirWay;
   commanded_[newest_] = ecmp;
   commanded_count_ = std::min(commanded_count_ + 1, kMaxOnTheirWay);
@@ -111,7 +100,6 @@ void IcpFeedback::update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& 
   view(out.cmp) = cmp;
   view(out.ecmp) = ecmp;
   const double omega = in.gait->omega;
-  const Eigen::Vector2d com = view(in.robot->com).head<2>();
   view(out.linear_momentum_rate) = model_.total_mass * omega * omega * (com - ecmp);
 }
 

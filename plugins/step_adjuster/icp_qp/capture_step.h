@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "gaitd/qp/dense_solver.h"
+#include "gaitd/walking/icp_feedback.h"
 #include "gaitd/walking/polygon.h"
 
 namespace gaitd::plugins {
@@ -26,8 +27,12 @@ struct Capture {
   walking::ConvexPolygon reach;       // where the foothold may be
   walking::ConvexPolygon landing;     // where the terrain allows it; empty: anywhere
 
-  Eigen::Vector2d ecmp_of(const Eigen::Vector2d& at) const { return com - (com - at) / kappa; }
-  Eigen::Vector2d cmp_of(const Eigen::Vector2d& ecmp) const { return com - kappa * (com - ecmp); }
+  Eigen::Vector2d ecmp_of(const Eigen::Vector2d& at) const {
+    return walking::ecmp_of(at, com, kappa);
+  }
+  Eigen::Vector2d cmp_of(const Eigen::Vector2d& ecmp) const {
+    return walking::cmp_of(ecmp, com, kappa);
+  }
   // Shift that lands the ICP with the best constant CMP when `remaining` seconds are left,
   // whether it can be reached or not.
   Eigen::Vector2d needed_shift(double remaining) const;

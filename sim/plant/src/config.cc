@@ -56,8 +56,8 @@ void read_terrain(const json& value, std::vector<std::string>* errors, TerrainCo
   }
 }
 
-void read_sensor_faults(const json& list, const GaitdModel& model,
-                        std::vector<std::string>* errors, std::vector<SensorFault>* faults) {
+void read_sensor_faults(const json& list, const GaitdModel& model, std::vector<std::string>* errors,
+                        std::vector<SensorFault>* faults) {
   if (!list.is_array()) {
     errors->push_back("sensors.faults: expected a list, got " + list.dump());
     return;
@@ -66,10 +66,8 @@ void read_sensor_faults(const json& list, const GaitdModel& model,
     JsonReader reader(list[i], "sensors.faults[" + std::to_string(i) + "]", errors);
     reader.allow({"sensor", "kind", "from", "duration"});
     SensorFault fault;
-    const json& object = reader.object();
-    const std::string sensor = object.value("sensor", json("")).is_string()
-                                   ? object.value("sensor", std::string())
-                                   : std::string();
+    const json name = reader.has("sensor") ? reader.at("sensor") : json();
+    const std::string sensor = name.is_string() ? name.get<std::string>() : std::string();
     if (!find_sensor(model, sensor, &fault)) {
       errors->push_back(reader.path("sensor") +
                         ": expected imu, left_foot, right_foot or the name of a joint, got \"" +

@@ -40,9 +40,19 @@ inline constexpr std::array<GaitdParameter, 12> kFeedbackParameters = {
     sdk::real_parameter("kappa_min", "", 0.3, 1, 0.8, "clamp of kappa (theory section 1)"),
     sdk::real_parameter("kappa_max", "", 1, 3, 1.4, "clamp of kappa"),
     sdk::real_parameter("kappa_filter", "Hz", 0.1, 500, 10, "low-pass of kappa"),
-    sdk::real_parameter("delay", "s", 0, 0.02, 0.002,
-                        "of sensors and commands, over which the ICP is predicted"),
+    sdk::real_parameter("delay", "s", 0, 0.02, 0.0045,
+                        "of sensors, commands and drives, over which the ICP is predicted"),
 };
+
+// CMP of an eCMP and back (W, m), for a CoM at `com` (theory section 1).
+inline Eigen::Vector2d cmp_of(const Eigen::Vector2d& ecmp, const Eigen::Vector2d& com,
+                              double kappa) {
+  return com - kappa * (com - ecmp);
+}
+inline Eigen::Vector2d ecmp_of(const Eigen::Vector2d& cmp, const Eigen::Vector2d& com,
+                               double kappa) {
+  return com - (com - cmp) / kappa;
+}
 
 // Tracks the ICP reference by moving the CMP (theory section 3):
 //   r_eCMP = r_ref + (1 + k/w) (xi - xi_ref), k along and across the motion of the reference
@@ -62,9 +72,6 @@ class IcpFeedback {
   void update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out);
 
   double kappa() const { return state_.kappa; }
-  // CMP of an eCMP and back (W, m), with the CoM of `robot`.
-  Eigen::Vector2d cmp_of(const GaitdRobotState& robot, const Eigen::Vector2d& ecmp) const;
-  Eigen::Vector2d ecmp_of(const GaitdRobotState& robot, const Eigen::Vector2d& cmp) const;
   // Where the CMP may be without angular momentum: the support polygon less the margin (W, m).
   ConvexPolygon cmp_region(const GaitdGaitState& gait) const;
 
