@@ -137,7 +137,13 @@ void FakeRobot::end_cycle() {
   if (moving) {
     advance_plant();
     ++moving_cycles_;
+    GaitdTruth truth{};
+    plant_->read(&truth);
+    std::copy_n(truth.pelvis_position, 3, last_pelvis_.begin());
+  } else if (moved_) {
+    plant_->reset();
   }
+  moved_ = moving;
   const double time = plant_time();
   for (const Fault& fault : pending_) {
     if (time < fault.time || !moving) continue;
@@ -175,9 +181,7 @@ nlohmann::json FakeRobot::report() const {
   report["fault_cycle"] = fault_cycle_;
   report["lowest_pelvis"] = lowest_pelvis_;
   report["events"] = events_;
-  GaitdTruth truth{};
-  plant_->read(&truth);
-  report["pelvis"] = truth.pelvis_position;
+  report["pelvis"] = last_pelvis_;
   int on = 0;
   int damped = 0;
   for (size_t i = 0; i < motors_.size(); ++i) {

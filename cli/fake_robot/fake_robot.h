@@ -2,6 +2,7 @@
 // The other side of the CAN buses: motors, sensors and e-stop of a simulated robot.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -23,8 +24,8 @@ struct FakeRobotOptions {
 };
 
 // A cycle is over when every motor got its command; then the plant advances one period and every
-// motor answers with the state after it. While all motors are off the robot hangs on its hoist: it
-// does not move.
+// motor answers with the state after it. While all motors are off the robot hangs on its hoist: as
+// it started, at rest.
 class FakeRobot {
  public:
   FakeRobot(const GaitdModel& model, can::Wiring wiring, std::unique_ptr<sim::Plant> plant,
@@ -91,6 +92,8 @@ class FakeRobot {
   double now_ = 0;             // s, wall, of this serve()
   double cycle_start_ = 0;     // s, wall; 0: no command yet
   int64_t first_torque_cycle_ = -1, last_torque_cycle_ = -1, fault_cycle_ = -1;
+  bool moved_ = false;                   // in the last cycle
+  std::array<double, 3> last_pelvis_{};  // when it moved, m
   double lowest_pelvis_ = 1e9;
   std::vector<std::string> events_;
 };

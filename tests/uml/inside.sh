@@ -69,7 +69,7 @@ wait_state() {
   while state=$(field state); [[ $state != "$1" ]]; do
     [[ $state == fault && $1 != fault ]] && fail "fault $(field faults), waiting for $1"
     ((SECONDS < end)) || fail "state $state after $2 s, expected $1"
-    sleep 0.1
+    sleep 0.3 # asking takes time from the one processor
   done
 }
 

@@ -18,6 +18,8 @@ wait_for() {
   local end=$((SECONDS + $2))
   until eval "$1"; do
     ((SECONDS < end)) || fail "after $2 s not: $1
+$(cat /result/arm.txt 2>&1)
+$(gaitctl status 2>&1)
 $(systemctl status gaitd --no-pager 2>&1 | tail -n 20)"
     sleep 0.2
   done
@@ -38,13 +40,15 @@ messages=$(systemd-analyze verify --man=no gaitd.service 2>&1)
 
 say "gaitd-dev installed and removed, the unit verified"
 
-# A robot on three classic buses. Real time means little in here: long patience, and a watchdog that
-# a machine under load does not set off.
+# A robot on three classic buses, so far above the ground that it does not fall over. Real time means
+# little in here: long patience, and a watchdog that a machine under load does not set off.
 can_links 3 16
 install -m 644 /result/faulty.so /usr/lib/gaitd/
 gaitd-fake-robot --can can-classic.yaml --period 0.01 --stall-time 6 --patience 30 \
-  --report /result/robot.json   >/result/robot.txt 2>&1 &
+  --world '{"terrain": {"ground_z": 0.0}, "start": {"z": 10000.0}}' \
+  --report /result/robot.json >/result/robot.txt 2>&1 &
 robot=$!
+wait_for 'grep -q ready /result/robot.txt' 60
 cat >/etc/gaitd/gaitd.yaml <<'CONFIG'
 schema: gaitd.config/1
 backend: socketcan
