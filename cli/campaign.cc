@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "cli/campaign_plot.h"
+#include "cli/campaign_search.h"
 #include "daemon/config/node.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/settings.h"
@@ -154,6 +156,8 @@ std::optional<Campaign> load_campaign(const std::string& file, Issues* issues) {
   campaign.name = root.text("name").value_or("");
   read_scenarios(&root, &campaign);
   read_settings(root.map("set"), &campaign);
+  read_search(root.map("search"), &campaign);
+  read_plot(root.map("plot"), &campaign);
   read_draws(root.map("draw"), &campaign);
   read_seeds(&root, &campaign);
   campaign.only_falls = root.choice("success", kSuccess).value_or(0) == 1;

@@ -24,6 +24,16 @@ struct CampaignDraw {
   bool is_list = false;
 };
 
+/// Polar plots of what a search found, one file for each scenario.
+struct CampaignPlot {
+  std::string angle;                     ///< setting whose values are angles in rad, 0 upwards
+  std::string panels;                    ///< setting with a diagram per value; "": a single one
+  std::vector<std::string> panel_names;  ///< in the order of its values
+  std::string curves;                    ///< setting with a curve per value; "": a single one
+  double scale = 1.0;                    ///< radius per unit of the searched value
+  std::string label;                     ///< of the radius, with its unit
+};
+
 /// One file of schema gaitd.campaign/1, checked; see docs/campaigns.md.
 struct Campaign {
   std::string file;
@@ -31,6 +41,8 @@ struct Campaign {
   std::string name;
   std::vector<std::string> scenarios;     ///< names, or paths of files
   std::vector<CampaignSetting> settings;  ///< every combination is tried
+  bool searches = false;  ///< the last setting ascends, and is bisected instead of tried in full
+  std::optional<CampaignPlot> plot;
   std::vector<CampaignDraw> draws;
   std::vector<std::uint64_t> seeds;
   bool only_falls = false;   ///< success is not to fall; else every expectation of the scenario

@@ -16,8 +16,10 @@
 #include <thread>
 
 #include "cli/campaign.h"
+#include "cli/campaign_plot.h"
 #include "cli/campaign_results.h"
 #include "cli/campaign_runner.h"
+#include "cli/campaign_search.h"
 #include "cli/campaign_summary.h"
 #include "cli/failure.h"
 #include "cli/print.h"
@@ -47,39 +49,36 @@ std::string duration_text(double seconds) {
 // A bar that stays in its line on a terminal, else a line now and then.
 class ProgressBar {
  public:
-  ProgressBar(const ResultFile& results, std::size_t runs, std::size_t before)
-      : results_(results), runs_(runs), before_(before) {}
+  ProgressBar(const ResultFile& results, RunOrder* order) : results_(results), order_(order) {}
 
   void show(int finished) {
     const std::size_t done = results_.results().size();
-    if (!terminal_ && (finished == shown_ || (done * 20 / runs_ == last_step_ && done < runs_))) {
+    const std::size_t runs = done + order_->remaining();
+    if (!terminal_ && (finished == shown_ || (done * 20 / runs == last_step_ && done < runs))) {
       return;
     }
-    last_step_ = done * 20 / runs_;
+    last_step_ = done * 20 / runs;
     shown_ = finished;
     int failed = 0;
     for (const auto& [number, result] : results_.results()) failed += result.success ? 0 : 1;
     constexpr std::size_t kWidth = 30;
-    const std::size_t filled = done * kWidth / runs_;
+    const std::size_t filled = done * kWidth / runs;
     const double passed = std::chrono::duration<double>(Clock::now() - start_).count();
     const std::string left =
-        finished > 0
-            ? duration_text(passed / finished * static_cast<double>(runs_ - done)) + " left"
-            : "";
+        finished > 0 ? duration_text(passed / finished * static_cast<double>(runs - done)) + " left"
+                     : "";
     std::fprintf(stderr, "%s[%s%s] %zu/%zu, %d failed, %s%s", terminal_ ? "\r" : "",
                  std::string(filled, '#').c_str(), std::string(kWidth - filled, '.').c_str(), done,
-                 runs_, failed, left.c_str(), terminal_ ? "\033[K" : "\n");
+                 runs, failed, left.c_str(), terminal_ ? "\033[K" : "\n");
     std::fflush(stderr);
   }
   void end() const {
     if (terminal_) std::fputs("\r\033[K", stderr);
   }
-  std::size_t before() const { return before_; }
 
  private:
   const ResultFile& results_;
-  std::size_t runs_;
-  std::size_t before_;  // done by earlier starts
+  RunOrder* order_;
   bool terminal_ = isatty(STDERR_FILENO) != 0;
   Clock::time_point start_ = Clock::now();
   int shown_ = 0;
@@ -116,6 +115,14 @@ int take_folder(const fs::path& folder, const std::string& text, std::string* er
   return lock;
 }
 
+void write_plots(const Campaign& campaign, const std::vector<SearchResult>& found,
+                 const fs::path& folder) {
+  for (const std::string& scenario : campaign.scenarios) {
+    std::ofstream(folder / (fs::path(scenario).stem().string() + ".svg"))
+        << polar_plot(campaign, found, scenario);
+  }
+}
+
 int run(const Context& context, const Arguments& arguments) {
   daemon::Issues issues;
   const std::optional<Campaign> campaign = load_campaign(arguments.file, &issues);
@@ -143,16 +150,20 @@ int run(const Context& context, const Arguments& arguments) {
   options.jobs = arguments.jobs > 0
                      ? arguments.jobs
                      : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  ProgressBar bar(results, runs.size(), results.results().size());
-  if (bar.before() > 0) {
-    std::cerr << "goes on: " << bar.before() << " of " << runs.size() << " runs are done\n";
+  RunOrder order(*campaign, runs, results.results());
+  ProgressBar bar(results, &order);
+  if (const std::size_t before = results.results().size(); before > 0) {
+    std::cerr << "goes on: " << before << " of " << before + order.remaining()
+              << (campaign->searches ? " runs at most are done\n" : " runs are done\n");
   }
   const RunnerEnd end = play_runs(
-      *campaign, runs, options, &results, [&bar](int finished) { bar.show(finished); }, &error);
+      *campaign, runs, options, &order, &results, [&bar](int finished) { bar.show(finished); },
+      &error);
   bar.end();
   close(lock);
   if (end == RunnerEnd::kFailed) return fail(context, kFailed, "campaign", error);
-  const nlohmann::json summary = summary_json(*campaign, runs, results.results(), folder);
+  const nlohmann::json summary = summary_json(*campaign, runs, results.results(), &order, folder);
+  if (campaign->plot) write_plots(*campaign, order.found(), folder);
   std::ofstream(folder / "summary.txt") << summary_text(summary);
   std::cout << (context.json ? json_text(summary) : summary_text(summary));
   if (end == RunnerEnd::kInterrupted) {

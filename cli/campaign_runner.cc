@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <system_error>
 #include <thread>
 
@@ -144,24 +145,24 @@ class Pool {
 }  // namespace
 
 RunnerEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                    const RunnerOptions& options, ResultFile* results,
+                    const RunnerOptions& options, RunOrder* order, ResultFile* results,
                     const std::function<void(int)>& progress, std::string* error) {
   using Clock = std::chrono::steady_clock;
   constexpr auto kRefresh = std::chrono::milliseconds(500);
   const StopSignals signals;
   Pool pool(campaign, runs, options, results);
   pool.keep_worst();
-  std::size_t next = 0;
   int finished = 0;
   Clock::time_point shown{};
   for (;;) {
     if (StopSignals::requested()) return RunnerEnd::kInterrupted;
-    while (!pool.full() && next < runs.size()) {
-      const CampaignRun& run = runs[next++];
-      if (results->results().contains(run.number)) continue;
+    while (!pool.full()) {
+      const std::optional<int> next = order->next();
+      if (!next) break;
+      const CampaignRun& run = runs[static_cast<std::size_t>(*next) - 1];
       if (!pool.start(run, error)) return RunnerEnd::kFailed;
     }
-    if (pool.idle() && next == runs.size()) return RunnerEnd::kDone;
+    if (pool.idle()) return RunnerEnd::kDone;
     error->clear();
     // A terminal interrupts the children as well: what they say then is no result.
     while (!StopSignals::requested() && pool.take(error)) {

@@ -8,6 +8,7 @@
 
 #include "cli/campaign.h"
 #include "cli/campaign_results.h"
+#include "cli/campaign_search.h"
 
 namespace gaitd::cli {
 
@@ -20,11 +21,11 @@ struct RunnerOptions {
 
 enum class RunnerEnd { kDone, kInterrupted, kFailed };
 
-/// Plays the runs that have no result yet, several at once, and appends what came of them. SIGINT
+/// Plays the runs that the order asks for, several at once, and appends what came of them. SIGINT
 /// and SIGTERM end it; runs that were under way are forgotten. `progress` is called after each run
 /// and a few times a second, with the number of runs that this call has finished.
 RunnerEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                    const RunnerOptions& options, ResultFile* results,
+                    const RunnerOptions& options, RunOrder* order, ResultFile* results,
                     const std::function<void(int finished)>& progress, std::string* error);
 
 }  // namespace gaitd::cli

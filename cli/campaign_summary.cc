@@ -23,6 +23,41 @@ std::string describe_run(const Campaign& campaign, const CampaignRun& run) {
   return text;
 }
 
+json settings_json(const Campaign& campaign, const std::vector<std::string>& values) {
+  json settings = json::object();
+  for (std::size_t i = 0; i < values.size(); ++i) settings[campaign.settings[i].key] = values[i];
+  return settings;
+}
+
+std::string settings_text(const json& settings) {
+  std::string text;
+  for (const auto& [key, value] : settings.items()) {
+    text += (text.empty() ? "" : " ") + key + "=" + value.get<std::string>();
+  }
+  return text;
+}
+
+std::string held_text(const json& cell) {
+  if (!cell["finished"].get<bool>()) return "not finished";
+  if (cell["held"].is_null()) return "none";
+  char text[32];
+  std::snprintf(text, sizeof(text), "%g", cell["held"].get<double>());
+  return text;
+}
+
+// Cells of a search. False if one is not finished.
+bool add_found(const Campaign& campaign, RunOrder* order, json* cells) {
+  bool finished = true;
+  for (const SearchResult& found : order->found()) {
+    finished = finished && found.finished;
+    cells->push_back({{"scenario", found.scenario},
+                      {"set", settings_json(campaign, found.values)},
+                      {"finished", found.finished},
+                      {"held", found.held ? json(*found.held) : json()}});
+  }
+  return finished;
+}
+
 }  // namespace
 
 SuccessInterval wilson_interval(int successes, int runs) {
@@ -37,10 +72,11 @@ SuccessInterval wilson_interval(int successes, int runs) {
 }
 
 json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                  const std::map<int, CampaignResult>& results, const fs::path& folder) {
+                  const std::map<int, CampaignResult>& results, RunOrder* order,
+                  const fs::path& folder) {
   json cells = json::array();
   int total = 0;
-  bool pass = results.size() == runs.size();
+  bool pass = order->remaining() == 0;
   std::map<int, std::pair<int, int>> counts;  // successes and runs by cell
   std::map<int, int> falls;
   for (const auto& [number, result] : results) {
@@ -50,17 +86,15 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
     falls[cell] += result.fell ? 1 : 0;
     total += result.success ? 1 : 0;
   }
+  if (campaign.searches) pass = add_found(campaign, order, &cells) && pass;
   for (const auto& [cell, count] : counts) {
+    if (campaign.searches) break;
     const CampaignRun& run = runs[static_cast<std::size_t>(cell)];  // of the first seed
-    json settings = json::object();
-    for (std::size_t i = 0; i < run.values.size(); ++i) {
-      settings[campaign.settings[i].key] = run.values[i];
-    }
     const SuccessInterval interval = wilson_interval(count.first, count.second);
     const double rate = static_cast<double>(count.first) / count.second;
     pass = pass && rate >= campaign.success_min;
     cells.push_back({{"scenario", run.scenario},
-                     {"set", settings},
+                     {"set", settings_json(campaign, run.values)},
                      {"runs", count.second},
                      {"successes", count.first},
                      {"falls", falls[cell]},
@@ -93,10 +127,11 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
   }
   return {{"campaign", campaign.name},
           {"pass", pass},
-          {"runs", runs.size()},
+          {"runs", results.size() + order->remaining()},
           {"finished", results.size()},
           {"successes", total},
           {"success_min", campaign.success_min},
+          {"searched", campaign.searches ? json(campaign.settings.back().key) : json()},
           {"cells", cells},
           {"worst", worst_runs},
           {"results", (folder / "results.csv").string()}};
@@ -108,11 +143,13 @@ std::string summary_text(const json& summary) {
     std::snprintf(text, sizeof(text), "%.1f %%", 100.0 * share.get<double>());
     return std::string(text);
   };
+  const bool searches = !summary["searched"].is_null();
   std::vector<std::vector<std::string>> rows;
   for (const json& cell : summary["cells"]) {
-    std::string settings;
-    for (const auto& [key, value] : cell["set"].items()) {
-      settings += (settings.empty() ? "" : " ") + key + "=" + value.get<std::string>();
+    const std::string settings = settings_text(cell["set"]);
+    if (searches) {
+      rows.push_back({cell["scenario"], held_text(cell), settings});
+      continue;
     }
     rows.push_back({cell["scenario"], cell["successes"].dump() + "/" + cell["runs"].dump(),
                     percent(cell["success_rate"]),
@@ -122,7 +159,11 @@ std::string summary_text(const json& summary) {
   std::string text = summary["campaign"].get<std::string>() + ": " + summary["finished"].dump() +
                      " of " + summary["runs"].dump() + " runs, " + summary["successes"].dump() +
                      " succeeded\n\n";
-  text += table({"SCENARIO", "SUCCESS", "RATE", "95 % INTERVAL", "FALLS", "SETTINGS"}, rows);
+  std::vector<std::string> header = {"SCENARIO",      "SUCCESS", "RATE",
+                                     "95 % INTERVAL", "FALLS",   "SETTINGS"};
+  if (searches)
+    header = {"SCENARIO", "LARGEST " + summary["searched"].get<std::string>(), "SETTINGS"};
+  text += table(header, rows);
   text += "\nworst runs\n";
   for (const json& run : summary["worst"]) {
     const std::string failed = run["failed"].get<std::string>();

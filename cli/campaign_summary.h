@@ -9,6 +9,7 @@
 
 #include "cli/campaign.h"
 #include "cli/campaign_results.h"
+#include "cli/campaign_search.h"
 
 namespace gaitd::cli {
 
@@ -18,9 +19,10 @@ struct SuccessInterval {
 };
 SuccessInterval wilson_interval(int successes, int runs);
 
-/// Success rates by cell, the worst runs with their logs, and whether the campaign is passed.
+/// Success rates by cell, or what a search found, the worst runs with their logs, and whether the
+/// campaign is passed; a search is if it found something for every combination.
 nlohmann::json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                            const std::map<int, CampaignResult>& results,
+                            const std::map<int, CampaignResult>& results, RunOrder* order,
                             const std::filesystem::path& folder);
 std::string summary_text(const nlohmann::json& summary);
 

@@ -7,7 +7,7 @@
 
 namespace gaitd::cli {
 
-void write_sample_log(const std::string& path) {
+void write_sample_log(const std::string& path, double com_z) {
   using Kind = daemon::SignalDescription::Kind;
   const daemon::SignalTable table = {
       {"time", "s", Kind::kReal, {}},
@@ -18,7 +18,7 @@ void write_sample_log(const std::string& path) {
   ASSERT_TRUE(writer.open(path, {}, {}, &error)) << error;
   for (int tick = 0; tick < 1000; ++tick) {
     const double time = 0.001 * tick;
-    const double values[] = {time, 0.0, 1.0};
+    const double values[] = {time, 0.0, com_z};
     writer.write_tick(tick, time, values, nullptr);
   }
   ASSERT_TRUE(writer.close()) << writer.error();

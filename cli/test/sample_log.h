@@ -5,7 +5,7 @@
 
 namespace gaitd::cli {
 
-/// Writes a log of one second in which the robot stands with its CoM at 1 m.
-void write_sample_log(const std::string& path);
+/// Writes a log of one second in which the robot stands with its CoM at that height (m).
+void write_sample_log(const std::string& path, double com_z = 1.0);
 
 }  // namespace gaitd::cli

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -91,6 +92,24 @@ void read_contact_polygon(MapReader* map, GaitdFootstep* footstep) {
   }
 }
 
+// The height of a region is where the foothold is: only its outline is used.
+void check_region_height(MapReader* map, const std::vector<double>& points, double foothold) {
+  constexpr double kTolerance = 0.05;  // m
+  double low = points[2], high = points[2];
+  for (std::size_t i = 2; i < points.size(); i += 3) {
+    low = std::min(low, points[i]);
+    high = std::max(high, points[i]);
+  }
+  if (foothold >= low - kTolerance && foothold <= high + kTolerance) return;
+  const auto metres = [](double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%g m", value);
+    return std::string(text);
+  };
+  map->fail("landing_region", "a region at the height of the foothold, " + metres(foothold),
+            "one from " + metres(low) + " to " + metres(high), "correct z of the one or the other");
+}
+
 void read_landing_region(MapReader* map, GaitdFootstep* footstep) {
   const std::vector<NodePtr> nodes = map->list("landing_region", 3, GAITD_MAX_REGION_POINTS);
   const std::string path = map->path_of("landing_region");
@@ -104,6 +123,8 @@ void read_landing_region(MapReader* map, GaitdFootstep* footstep) {
   } else if (const double* p = footstep->pose.position; !is_inside(points, 3, p[0], p[1])) {
     map->fail("landing_region", "a region around the foothold itself", "one beside it",
               "it may be shifted inside the region only: move the region or the footstep");
+  } else {
+    check_region_height(map, points, p[2]);
   }
 }
 

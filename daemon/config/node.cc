@@ -107,9 +107,26 @@ NodePtr make_scalar(std::string text, const Location& where) {
   return node;
 }
 
+std::optional<std::size_t> item_index(const NodePtr& list, std::string_view word) {
+  if (!list || list->kind != NodeKind::kList) return std::nullopt;
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
+  const bool whole = error == std::errc() && end == word.data() + word.size();
+  if (!whole || index >= list->items.size()) return std::nullopt;
+  return index;
+}
+
 NodePtr with_value(const NodePtr& root, std::string_view dotted_path, NodePtr value) {
   const std::size_t dot = dotted_path.find('.');
   const std::string_view key = dotted_path.substr(0, dot);
+  if (const auto index = item_index(root, key)) {
+    auto list = std::make_shared<Node>(*root);
+    NodePtr& item = list->items[*index];
+    item = dot == std::string_view::npos
+               ? std::move(value)
+               : with_value(item, dotted_path.substr(dot + 1), std::move(value));
+    return list;
+  }
   auto copy = std::make_shared<Node>();
   copy->kind = NodeKind::kMap;
   copy->where = value->where;

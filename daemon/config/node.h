@@ -56,6 +56,9 @@ nlohmann::json to_json(const Node& node);
 
 NodePtr make_scalar(std::string text, const Location& where);
 
+// The item of a list that a word of a dotted path names, from 0; nothing if there is none.
+std::optional<std::size_t> item_index(const NodePtr& list, std::string_view word);
+
 // A copy of `root` in which the value at the dotted path is replaced; maps are made where missing.
 NodePtr with_value(const NodePtr& root, std::string_view dotted_path, NodePtr value);
 

@@ -13,15 +13,32 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kModes = {"stand", "walk-straight", "walk-bent"};
 // What the command line may replace.
-constexpr std::array<std::string_view, 8> kOverridable = {
-    "duration", "seed", "start", "mode", "terrain", "sensors", "actuators", "model_error"};
+constexpr std::array<std::string_view, 9> kOverridable = {
+    "duration", "seed",      "start",       "mode",        "terrain",
+    "sensors",  "actuators", "model_error", "disturbances"};
 
-NodePtr with_overrides(NodePtr root, Settings* settings) {
+// Of the disturbances single keys of those that are there: disturbances.0.force.
+bool is_there(const NodePtr& root, const std::string& key, const Location& where, Issues* issues) {
+  const std::string list_key = "disturbances";
+  if (!key.starts_with(list_key)) return true;
+  const Node::Entry* entry = root->find(list_key);
+  const NodePtr list = entry != nullptr ? entry->value : nullptr;
+  const std::string rest = key.substr(std::min(key.size(), list_key.size() + 1));
+  if (item_index(list, std::string_view(rest).substr(0, rest.find('.')))) return true;
+  const std::size_t count = list ? list->items.size() : 0;
+  issues->add(where, key, "one of the " + std::to_string(count) + " disturbances of the scenario",
+              rest.empty() ? "all of them" : "'" + rest + "'",
+              "count from 0, for example disturbances.0.force=[100, 0, 0]");
+  return false;
+}
+
+NodePtr with_overrides(NodePtr root, Settings* settings, Issues* issues) {
   for (const Settings::Entry& entry : settings->from(SettingSource::kCommandLine)) {
     const std::string_view first = std::string_view(entry.key).substr(0, entry.key.find('.'));
     if (std::find(kOverridable.begin(), kOverridable.end(), first) == kOverridable.end()) continue;
-    root = with_value(root, entry.key, entry.value);
     settings->declare(entry.key);
+    if (!is_there(root, entry.key, entry.value->where, issues)) continue;
+    root = with_value(root, entry.key, entry.value);
   }
   return root;
 }
@@ -96,7 +113,7 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
                                       Settings* settings, Issues* issues) {
   Issues found;
   NodePtr overlaid = document;
-  if (document->kind == NodeKind::kMap) overlaid = with_overrides(document, settings);
+  if (document->kind == NodeKind::kMap) overlaid = with_overrides(document, settings, &found);
   MapReader root(overlaid, "", &found);
   root.require({"schema", "name", "robot", "duration"});
   root.schema("gaitd.scenario/1");

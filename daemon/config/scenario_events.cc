@@ -2,6 +2,7 @@
 // What happens in a scenario: commands and disturbances.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "daemon/config/command_parse.h"
 #include "daemon/config/daemon_config.h"
@@ -11,6 +12,7 @@ namespace gaitd::daemon {
 namespace {
 
 constexpr std::size_t kMaxEvents = 10000;
+constexpr Bounds kForceBounds = {-1e5, 1e5, "N"};
 
 // A key of a command line in a scenario, and the method that it stands for.
 struct Verb {
@@ -104,13 +106,30 @@ void read_when(MapReader map, double duration, ScenarioDisturbance* disturbance)
   map.finish();
 }
 
+// [x, y, z], or a number: horizontal, in the direction of that angle.
+void read_force(MapReader* map, ScenarioDisturbance* disturbance) {
+  const NodePtr force = map->node("force");
+  const bool number = force && force->kind == NodeKind::kScalar;
+  if (!number) map->numbers("force", disturbance->force, kForceBounds);
+  if (!number && map->has("direction")) {
+    map->fail("direction", "none beside a force of three numbers",
+              describe(*map->node("direction")),
+              "write the force as one number, in N, or leave the direction out");
+    return;
+  }
+  const double angle = map->number("direction", {-100.0, 100.0, "rad"}).value_or(0.0);
+  if (!number) return;
+  const double size = map->number("force", kForceBounds).value_or(0.0);
+  disturbance->force = {size * std::cos(angle), size * std::sin(angle), 0.0};
+}
+
 ScenarioDisturbance read_disturbance(MapReader map, double duration) {
   ScenarioDisturbance disturbance;
   disturbance.where = map.where();
   map.require({"link", "force", "duration", "when"});
   disturbance.link = map.text("link").value_or("");
   map.numbers("point", disturbance.point, {-10.0, 10.0, "m"});
-  map.numbers("force", disturbance.force, {-1e5, 1e5, "N"});
+  read_force(&map, &disturbance);
   disturbance.duration = map.number("duration", {1e-4, 60.0, "s"}).value_or(0.0);
   read_when(map.map("when"), duration, &disturbance);
   map.finish();

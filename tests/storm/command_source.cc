@@ -184,6 +184,43 @@ Request CommandSource::refused_by_the_gait(const Scene& scene) {
   return r;
 }
 
+// A landing region that is empty, flat, not convex, no number, the other way around, too high or
+// out of reach.
+Request CommandSource::wrong_region(Call call) {
+  json& step = call.params["footsteps"].back();
+  const double x = step["x"], y = step["y"];
+  const auto corner = [&](double dx, double dy) { return json{x + dx, y + dy, 0.0}; };
+  json region = {corner(-0.2, -0.1), corner(0.2, -0.1), corner(0.2, 0.1), corner(-0.2, 0.1)};
+  switch (integer(0, 6)) {
+    case 0:
+      region = json::array();
+      break;
+    case 1:
+      region = {corner(-0.2, -0.2), corner(0.0, 0.0), corner(0.2, 0.2)};
+      break;
+    case 2:
+      region[1] = corner(-0.1, 0.0);
+      break;
+    case 3:
+      region[2][1] = pick(std::vector<json>{"nan", nullptr, 1e300});
+      break;
+    case 4:
+      std::reverse(region.begin(), region.end());
+      break;
+    case 5:
+      for (json& point : region) point[2] = 2.0;
+      break;
+    default:
+      for (json& point : region) point[0] = point[0].get<double>() + 3.0;
+      break;
+  }
+  step["landing_region"] = region;
+  Request r = request(Request::Kind::kInvalid, call);
+  r.code = kInvalidParams;
+  r.names = "landing_region";
+  return r;
+}
+
 Request CommandSource::wrong_params(const Scene& scene) {
   constexpr const char* kMethods[] = {"walk",  "footsteps", "sim.push", "mode",
                                       "pause", "arm",       "param."};
@@ -191,6 +228,7 @@ Request CommandSource::wrong_params(const Scene& scene) {
   if (call.method == "param.") return wrong_parameter();
   if (call.method == "walk") call.params = good_walk();
   if (call.method == "footsteps") call.params = good_footsteps(scene);
+  if (call.method == "footsteps" && chance(0.2)) return wrong_region(call);
   if (call.method == "sim.push") call.params = good_push();
   if (call.method == "mode") call.params["mode"] = "walk-bent";
   // In a footstep as often as around it.

@@ -74,6 +74,7 @@ class CommandSource {
   json good_push();
   Request refused_by_the_gait(const Scene& scene);
   Request wrong_params(const Scene& scene);
+  Request wrong_region(Call call);
   Request wrong_parameter();
   Request no_request(const Scene& scene);
   Request no_json(const Scene& scene);

@@ -130,6 +130,47 @@ TEST(CommandParse, Footsteps) {
   EXPECT_TRUE(parse("replace", json::array({step}), &error)->replace);
 }
 
+TEST(CommandParse, RefusesRegionsThatAreNone) {
+  const auto error_of = [](const json& region, double z = 0.0) {
+    std::string error;
+    const json step = {
+        {"side", "left"}, {"x", 0.3}, {"y", 0.12}, {"z", z}, {"landing_region", region}};
+    const bool taken = parse("footsteps", json::array({step}), &error).has_value();
+    EXPECT_EQ(taken, error.empty()) << error;
+    return error;
+  };
+  struct Row {
+    const char* what;
+    json region;
+    const char* error;
+  };
+  const double far = 1e300;
+  const Row rows[] = {
+      {"empty", json::array(), "landing_region: expected a list of 3 to 8 items, got a list of 0"},
+      {"a line", {{0, 0, 0}, {0.5, 0.2, 0}}, "a list of 3 to 8 items, got a list of 2"},
+      {"no area", {{0, 0, 0}, {0.3, 0.12, 0}, {0.6, 0.24, 0}}, "a convex outline"},
+      {"a notch",
+       {{0, 0, 0}, {0.6, 0, 0}, {0.35, 0.12, 0}, {0.6, 0.3, 0}, {0, 0.3, 0}},
+       "a convex outline"},
+      {"clockwise", {{0, 0, 0}, {0, 0.3, 0}, {0.6, 0.3, 0}, {0.6, 0, 0}}, "clockwise order"},
+      {"not a number", {{0, 0, 0}, {0.6, "nan", 0}, {0.6, 0.3, 0}}, "landing_region[1][1]"},
+      {"no number", {{0, 0, 0}, {0.6, nullptr, 0}, {0.6, 0.3, 0}}, "landing_region[1][1]"},
+      {"out of the world", {{0, 0, 0}, {far, 0, 0}, {0.6, 0.3, 0}}, "landing_region[1][0]"},
+      {"out of reach",
+       {{9, 0, 0}, {10, 0, 0}, {10, 1, 0}, {9, 1, 0}},
+       "a region around the foothold itself, got one beside it"},
+      {"below",
+       {{0, 0, -1}, {0.6, 0, -1}, {0.6, 0.3, -0.9}, {0, 0.3, -0.9}},
+       "a region at the height of the foothold, 0 m, got one from -1 m to -0.9 m"},
+  };
+  for (const Row& row : rows) {
+    const std::string error = error_of(row.region);
+    EXPECT_NE(error.find(row.error), std::string::npos) << row.what << ": " << error;
+    EXPECT_NE(error.find("footsteps[0].landing_region"), std::string::npos) << error;
+  }
+  EXPECT_EQ(error_of({{0, 0, 0}, {0.6, 0, 0}, {0.6, 0.3, 0.2}, {0, 0.3, 0.2}}, 0.1), "");
+}
+
 TEST(CommandParse, SaysWhichFootstepIsWrong) {
   std::string error;
   const json good = {{"side", "left"}, {"x", 0.3}, {"y", 0.12}};

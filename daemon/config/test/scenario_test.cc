@@ -317,6 +317,35 @@ TEST(Scenario, TheCommandLineReplacesKeysOfTheScenario) {
   EXPECT_PART(issues.error_text(), "gait.swing_duration: unknown key");
 }
 
+TEST(Scenario, TheCommandLineReplacesKeysOfADisturbance) {
+  const std::string pushed =
+      kHead + "terrain: {ground_z: 0}\ndisturbances:\n" +
+      "  - {link: utorso, force: [1, 2, 3], duration: 0.1, when: {time: 0.2}}\n" +
+      "  - {link: utorso, force: 10, direction: 0.5, duration: 0.1, when: {time: 0.3}}\n";
+  const auto with = [&](std::initializer_list<const char*> assignments, Issues* issues) {
+    Settings settings;
+    for (const char* assignment : assignments) settings.set_assignment(assignment, issues);
+    return read(pushed, issues, &settings);
+  };
+  Issues issues;
+  const auto scenario = with({"disturbances.1.force=20", "disturbances.1.direction=1.5707963",
+                              "disturbances.0.when={time: 0.4}"},
+                             &issues);
+  ASSERT_TRUE(scenario) << issues.error_text();
+  EXPECT_EQ(scenario->disturbances[0].force[2], 3.0);
+  EXPECT_EQ(scenario->disturbances[0].time, 0.4);
+  EXPECT_NEAR(scenario->disturbances[1].force[0], 0.0, 1e-5);
+  EXPECT_NEAR(scenario->disturbances[1].force[1], 20.0, 1e-5);
+  EXPECT_EQ(scenario->disturbances[1].time, 0.3);
+
+  Issues wrong;
+  EXPECT_FALSE(with({"disturbances.2.force=20", "disturbances.0.direction=1"}, &wrong));
+  EXPECT_PART(wrong.error_text(),
+              "disturbances.2.force: expected one of the 2 disturbances of the scenario, got "
+              "'2.force'");
+  EXPECT_PART(wrong.error_text(), "disturbances[0].direction: expected none beside a force");
+}
+
 TEST(Scenario, ErrorsOfAnOverrideNameTheCommandLine) {
   Issues issues;
   Settings settings;
