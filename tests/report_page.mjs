@@ -7,6 +7,9 @@ import {pathToFileURL} from 'node:url';
 const [playwright, page_file, picture] = process.argv.slice(2);
 const {chromium} = createRequire(import.meta.url)(playwright);
 
+const kLongestOpening = 3000;  // ms
+const kFrames = 55;  // 1/s: 60 less what a busy machine takes
+
 function check(holds, what) {
   if (holds) return;
   console.error(`FAILED: ${what}`);
@@ -16,8 +19,7 @@ function check(holds, what) {
 const browser = await chromium.launch({
   timeout: 600e3,
   executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-         '--ignore-gpu-blocklist'],
+  args: ['--no-sandbox', '--enable-unsafe-swiftshader'],
 });
 const context = await browser.newContext({viewport: {width: 1280, height: 800}, offline: true});
 const page = await context.newPage();
@@ -30,19 +32,23 @@ page.on('request', (request) => /^(file|data|blob):/.test(request.url()) ||
 
 const session = await context.newCDPSession(page);
 await session.send('Performance.enable', {timeDomain: 'threadTicks'});
-const began = Date.now();
-await page.goto(pathToFileURL(page_file).href);
-await page.waitForFunction(() => window.gaitd?.player.frames > 1);
-console.log(`opened in ${Date.now() - began} ms`);
-// What a busy machine and a software renderer make of it is said, not judged: the processor time of
-// the page itself is.
-const {metrics} = await session.send('Performance.getMetrics');
-const seconds = metrics.find(({name}) => name === 'TaskDuration').value;
-const built = await page.evaluate(() => gaitd.built);
-const length = await page.evaluate(() => gaitd.log.time[gaitd.log.rows - 1]);
-console.log(`a log of ${length.toFixed(0)} s took ${seconds.toFixed(2)} s of processor time, ` +
-            `parsed and built in ${built.toFixed(0)} ms`);
-check(seconds < 3, `the page took ${seconds} s of processor time to open`);
+const processorTime = async () =>
+    (await session.send('Performance.getMetrics')).metrics.find(({name}) => name === 'TaskDuration').value;
+
+// It opens within 3 s, on a busy machine at least once.
+let opened;
+for (let tries = 0; tries < 5 && !(opened < kLongestOpening); ++tries) {
+  const before = await processorTime(), began = Date.now();
+  await page.goto(pathToFileURL(page_file).href);
+  await page.waitForFunction(() => window.gaitd?.player.frames > 1);
+  opened = Date.now() - began;
+  const built = await page.evaluate(() => gaitd.built);
+  const length = await page.evaluate(() => gaitd.log.time[gaitd.log.rows - 1]);
+  const seconds = await processorTime() - before;
+  console.log(`a log of ${length.toFixed(0)} s opened in ${opened} ms: ${seconds.toFixed(2)} s of ` +
+              `processor time, parsed and built in ${built.toFixed(0)} ms`);
+}
+check(opened < kLongestOpening, `the page took ${opened} ms to open`);
 check(!errors.length, errors.join('; '));
 
 // The drawn pelvis is where the log says, at any time.
@@ -87,8 +93,7 @@ const went = await page.evaluate(() => ({
 check(Math.abs(went.player - went.clicked) < 0.05, `a click at ${went.clicked} s went to ${went.player} s`);
 check(Math.abs(went.player - went.slider) < 0.01, `slider at ${went.slider} s, replay at ${went.player} s`);
 
-// It plays, no faster than time passes. How many frames a software renderer makes of it is said, not
-// judged.
+// It plays, no faster than time passes.
 const [before, after] = await page.evaluate(async () => {
   const state = () => ({time: gaitd.player.time, frames: gaitd.player.frames, now: performance.now()});
   gaitd.player.go(gaitd.log.time[0]);
@@ -102,9 +107,31 @@ const [before, after] = await page.evaluate(async () => {
   return [start, state()];
 });
 const passed = (after.now - before.now) / 1000;
-console.log(`${((after.frames - before.frames) / passed).toFixed(0)} frames/s`);
 check(after.time > before.time && after.time - before.time < 0.1 * passed + 0.1,
       `${after.time - before.time} s were played in ${passed} s`);
+
+// Sixty frames each second: for the page itself in each second, with all that a browser does in the
+// best of them, for a machine may be busy.
+let best = 0;
+for (let tries = 0; tries < 120 && best < kFrames; ++tries) {
+  const spent = await processorTime();
+  const {frames, seconds} = await page.evaluate(async () => {
+    const {player} = gaitd, play = document.getElementById('play');
+    document.getElementById('speed').value = '1';
+    player.go(gaitd.log.time[0]);
+    play.click();
+    await new Promise(requestAnimationFrame);
+    const frames = player.frames, began = performance.now();
+    while (performance.now() < began + 1000) await new Promise(requestAnimationFrame);
+    play.click();
+    return {frames: player.frames - frames, seconds: (performance.now() - began) / 1000};
+  });
+  best = Math.max(best, frames / seconds);
+  const each = 1000 * (await processorTime() - spent) / frames;
+  console.log(`${(frames / seconds).toFixed(1)} frames/s, ${each.toFixed(1)} ms of processor time each`);
+  check(each < 1000 / 60, `a frame takes ${each.toFixed(1)} ms of processor time`);
+}
+check(best >= kFrames, `it plays at ${best.toFixed(1)} frames/s at best`);
 
 // Plots are made as they come into view.
 for (const box of await page.locator('#plots > div').all()) {

@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
 
 #include "daemon/telemetry/log_info.h"
+#include "daemon/telemetry/mcap_reader.h"
 #include "daemon/telemetry/test/fixture.h"
 
 namespace gaitd::daemon {
 namespace {
+
+constexpr int kTicks = 300;
+
+SignalTable short_table() {
+  return {{"time", "s", Kind::kReal, {}}, {"icp/x", "m", Kind::kReal, {}}};
+}
 
 // Reads all there is, so that a sanitizer sees every path.
 std::uint64_t read_all(const std::string& path) {
@@ -45,26 +56,72 @@ class Damage : public testing::TestWithParam<McapCompression> {
 INSTANTIATE_TEST_SUITE_P(Compressions, Damage,
                          testing::Values(McapCompression::kNone, McapCompression::kZstd));
 
-TEST_P(Damage, AFileCutAnywhereIsReadUpToThere) {
-  std::uint64_t before = 0;
+// Many ticks in few bytes.
+void write_short_log(const std::string& path, const McapOptions& options) {
+  const SignalTable table = short_table();
+  LogWriter writer(table);
   std::string error;
-  for (std::size_t size = 0; size < bytes_.size(); size += size < 200 ? 1 : 23) {
-    write_file(path_, bytes_.substr(0, size));
+  ASSERT_TRUE(writer.open(path, {{"seed", "1"}}, options, &error)) << error;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    const GaitdSensors sensors = sample_sensors(tick, 1);
+    writer.write_tick(tick, 0.001 * tick, sample_values(table, tick),
+                      tick % 50 == 0 ? &sensors : nullptr);
+  }
+  ASSERT_TRUE(writer.close()) << writer.error();
+}
+
+// By size of the file up to which the ticks stand in it whole: uncompressed to the last byte of
+// each, compressed to the last byte of its chunk.
+std::vector<std::uint64_t> ends_of_ticks(const std::string& path, McapCompression compression) {
+  McapReader file;
+  std::string records;
+  std::string error;
+  EXPECT_TRUE(file.open(path, &error)) << error;
+  const McapChannel* signals = file.find_channel(kSignalsTopic);
+  std::vector<std::uint64_t> ends;
+  for (const McapChunk& chunk : file.chunks()) {
+    EXPECT_TRUE(file.read_chunk(chunk, &records, &error)) << error;
+    std::uint64_t offset = 0;
+    McapMessage message;
+    while (next_message(records, &offset, &message)) {
+      if (message.channel != signals->id) continue;
+      ends.push_back(chunk.offset + (compression == McapCompression::kNone ? offset : chunk.size));
+    }
+  }
+  return ends;
+}
+
+TEST_P(Damage, AFileCutAtAnyByteIsReadUpToThere) {
+  write_short_log(path_, {.compression = GetParam(), .chunk_bytes = 4000});
+  const std::vector<std::uint64_t> ends = ends_of_ticks(path_, GetParam());
+  ASSERT_EQ(ends.size(), static_cast<std::size_t>(kTicks));
+  std::string error;
+  std::uint64_t opened = 0;
+  for (std::uint64_t size = std::filesystem::file_size(path_); size-- > 0;) {
+    ASSERT_EQ(truncate(path_.c_str(), static_cast<off_t>(size)), 0);
+    const auto whole =
+        static_cast<std::uint64_t>(std::upper_bound(ends.begin(), ends.end(), size) - ends.begin());
+    error.clear();
     const auto log = LogReader::open(path_, &error);
-    const std::uint64_t ticks = log == nullptr ? 0 : log->tick_count();
-    EXPECT_GE(ticks, before) << size;  // more bytes never give less
-    before = ticks;
-    if (log == nullptr) continue;
-    EXPECT_FALSE(log->finished());
-    EXPECT_EQ(log->damaged(), 0u) << size;
+    if (log == nullptr) {  // not even the heads are there
+      ASSERT_EQ(whole, 0u) << size << ": " << error;
+      ASSERT_FALSE(error.empty()) << size;
+      continue;
+    }
+    ++opened;
+    ASSERT_EQ(log->tick_count(), whole) << size;
+    ASSERT_EQ(log->damaged(), 0u) << size;
+    ASSERT_FALSE(log->finished()) << size;
+    ASSERT_FALSE(log->break_reason().empty()) << size;
+    if (size % 61 != 0) continue;
     std::vector<double> row(log->signals().size());
     auto cursor = log->ticks();
-    for (std::uint64_t tick = 0; tick < ticks; ++tick) {
+    for (std::uint64_t tick = 0; tick < whole; ++tick) {
       ASSERT_TRUE(cursor.next(row));
       ASSERT_EQ(row, sample_values(log->signals(), static_cast<std::int64_t>(tick)));
     }
   }
-  EXPECT_EQ(before, 60u);
+  EXPECT_GT(opened, ends.back() - ends.front());
 }
 
 TEST_P(Damage, AnUncompressedChunkIsReadToItsLastWholeMessage) {

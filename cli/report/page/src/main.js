@@ -9,13 +9,23 @@ const $ = (id) => document.getElementById(id);
 const log = new Log(JSON.parse($('gaitd-data').textContent));
 const [start, end] = [log.time[0], log.time[log.rows - 1]];
 
+const kControlsPeriod = 100;  // ms between updates of slider and clock while it plays
+
 const player = {time: start, playing: false, frames: 0, go};
 
-function go(time) {
+function move(time) {
   player.time = Math.min(end, Math.max(start, time));
+  player.changed = true;
+}
+
+function showControls() {
   $('slider').value = player.time;
   $('clock').value = `${player.time.toFixed(2)} s of ${end.toFixed(2)} s`;
-  player.changed = true;
+}
+
+function go(time) {
+  move(time);
+  showControls();
 }
 
 function row(table, cells, kind = '') {
@@ -60,12 +70,18 @@ $('play').addEventListener('click', () => {
   player.playing = !player.playing;
   if (player.playing && player.time >= end) go(start);
   $('play').textContent = player.playing ? 'Pause' : 'Play';
+  showControls();
 });
 
-let last = performance.now();
+let last = performance.now(), controls = last;
 function frame(now) {
   if (player.playing) {
-    go(player.time + (now - last) / 1000 * Number($('speed').value));
+    move(player.time + (now - last) / 1000 * Number($('speed').value));
+    // Not with each frame: where there is no graphics card, painting them costs more than the robot.
+    if (now >= controls + kControlsPeriod) {
+      controls = now;
+      showControls();
+    }
     if (player.time >= end) $('play').click();
   }
   if (player.playing) scene?.adapt(now - last);

@@ -67,9 +67,12 @@ function cursor(player) {
       const line = document.createElement('div');
       line.className = 'now';
       plot.over.append(line);
+      let shown;
       plot.placeTime = () => {
-        const x = plot.valToPos(player.time, 'x');
-        line.hidden = !(x >= 0 && x <= plot.over.clientWidth);
+        const x = Math.round(plot.valToPos(player.time, 'x'));
+        if (x === shown) return;
+        shown = x;
+        line.hidden = !(x >= 0 && x <= plot.bbox.width / devicePixelRatio);
         line.style.transform = `translateX(${x}px)`;
       };
       plot.placeTime();

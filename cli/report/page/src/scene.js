@@ -3,6 +3,7 @@ import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import URDFLoader from 'urdf-loader';
 import {hull} from './hull.js';
+import {chooseRenderer} from './renderer.js';
 
 export const kMarkers = [
   {name: 'ICP', prefix: 'icp', color: '#d62728'},
@@ -26,6 +27,9 @@ function simplify(robot) {
     if (color) mesh.material = material(color, opacity);
   });
 }
+
+// ms: where drawing takes less, frames are not late for its sake.
+const kShortDrawing = 6;
 
 const kGrid = 0.5;       // m
 const kGridRange = 3.5;  // m, around the robot
@@ -66,17 +70,25 @@ function terrain(world) {
   return group;
 }
 
+// In place where their count is the same, for it goes to the graphics card with each frame.
+function setPoints(geometry, points) {
+  const {position} = geometry.attributes;
+  if (position?.count !== points.length) {
+    geometry.setFromPoints(points);
+    return;
+  }
+  points.forEach((point, i) => position.setXYZ(i, point.x, point.y, point.z));
+  position.needsUpdate = true;
+}
+
 export class Scene {
   constructor(element, log) {
     this.log = log;
     this.element = element;
-    this.renderer = new THREE.WebGLRenderer();
-    // More pixels than the screen has smooth the edges, as long as the graphics are fast enough.
-    this.pixels = Math.max(2, devicePixelRatio);
+    this.renderer = chooseRenderer();
+    // More pixels than the screen has smooth the edges, as long as frames are drawn fast enough.
+    this.pixels = Math.max(1, devicePixelRatio);
     this.slow = 0;
-    const info = this.renderer.getContext().getExtension('WEBGL_debug_renderer_info');
-    const name = info ? this.renderer.getContext().getParameter(info.UNMASKED_RENDERER_WEBGL) : '';
-    if (/swiftshader|llvmpipe|software/i.test(name)) this.pixels = 0.75;
     this.renderer.setPixelRatio(this.pixels);
     element.append(this.renderer.domElement);
     this.scene = new THREE.Scene();
@@ -86,7 +98,9 @@ export class Scene {
     this.camera.position.set(2.2, -3.2, 1.6);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener('change', () => { this.stale = true; });
-    this.scene.add(new THREE.HemisphereLight('#ffffff', '#777766', 3));
+    const light = new THREE.HemisphereLight('#ffffff', '#777766', 3);
+    light.position.set(0.4, -0.5, 0.8);
+    this.scene.add(light);
     this.terrain = terrain(log.world);
     this.scene.add(this.terrain);
     this.addRobot();
@@ -120,11 +134,13 @@ export class Scene {
     for (const side of ['left', 'right']) {
       const line = new THREE.LineLoop(new THREE.BufferGeometry(), new THREE.LineBasicMaterial(
           {color: side === 'left' ? '#2ca02c' : '#ff7f0e'}));
+      line.frustumCulled = false;  // three.js would ask where it was at first
       this.footsteps[side] = line;
       this.scene.add(line);
     }
     this.support = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial(
         {color: '#1f77b4', opacity: 0.25, transparent: true, side: THREE.DoubleSide}));
+    this.support.frustumCulled = false;
     this.scene.add(this.support);
   }
 
@@ -136,7 +152,8 @@ export class Scene {
 
   // Fewer pixels where frames of `milliseconds` come too slowly.
   adapt(milliseconds) {
-    this.slow = Math.max(0, this.slow + (milliseconds > 22 ? 1 : -1));
+    const late = milliseconds > 22 && !(this.renderer.milliseconds < kShortDrawing);
+    this.slow = Math.max(0, this.slow + (late ? 1 : -1));
     if (this.slow < 20 || this.pixels < 0.4) return;
     this.slow = 0;
     this.pixels *= 0.7;
@@ -177,7 +194,7 @@ export class Scene {
     for (const {joint, column} of this.joints ?? []) joint.setJointValue(column[row]);
     const loaded = [];
     for (const side of ['left', 'right']) {
-      this.footsteps[side].geometry.setFromPoints(this.outline(side, 'footstep', row));
+      setPoints(this.footsteps[side].geometry, this.outline(side, 'footstep', row));
       if (log.word(`foot/${side}/contact`, row) === 'none') continue;
       const corners = this.outline(side, 'foot', row);
       const front = Math.max(...(log.robot?.feet?.[side]?.outline ?? [[0]]).map(([x]) => x));
@@ -188,8 +205,8 @@ export class Scene {
     this.support.visible = loaded.length > 2;
     if (this.support.visible) {
       const corners = hull(loaded);
-      this.support.geometry.setFromPoints(
-          corners.slice(2).flatMap((corner, i) => [corners[0], corners[i + 1], corner]));
+      setPoints(this.support.geometry,
+                corners.slice(2).flatMap((corner, i) => [corners[0], corners[i + 1], corner]));
     }
     const ground = loaded.length ? Math.max(...loaded.map(({z}) => z)) : 0;
     for (const {prefix, mesh} of this.markers) {
