@@ -61,8 +61,9 @@ int main(int argc, char** argv) {
   if (!file) return fail("no robot '" + robot_name + "'");
   Issues issues;
   auto robot = load_robot(file->string(), Profile::kSimulation, nullptr, &issues);
-  if (robot && !wiring_file.empty()) {
-    robot->can = load_wiring(make_scalar(wiring_file, {}), file->parent_path().string(), &issues);
+  if (robot) {
+    const auto wiring = wiring_file.empty() ? robot->can : make_scalar(wiring_file, {});
+    robot->can = load_wiring(wiring, file->parent_path().string(), &issues);
   }
   if (!issues.ok()) return fail(issues.error_text());
   if (!robot->can) return fail(file->string() + ": expected a can: section");

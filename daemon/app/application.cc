@@ -95,8 +95,10 @@ void Application::read_configuration(Issues* all) {
                         suggestion(config_.robot, paths_.robots()));
   } else {
     robot_ = load_robot(robot_file->string(), config_.profile, &settings_, &issues);
-    if (const NodePtr wiring = settings_.find("can"); wiring && robot_) {
-      robot_->can = load_wiring(wiring, robot_file->parent_path().string(), &issues);
+    const NodePtr wiring = settings_.find("can");
+    if (robot_ && config_.backend == "socketcan") {
+      robot_->can =
+          load_wiring(wiring ? wiring : robot_->can, robot_file->parent_path().string(), &issues);
     }
   }
   if (scenario_ && robot_) {

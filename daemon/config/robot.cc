@@ -157,10 +157,6 @@ std::optional<Robot> load_robot(const std::string& file, Profile profile, Settin
   const NodePtr document = load_yaml_file(file, &found);
   std::optional<Robot> robot;
   if (document) robot = read_robot(document, file, profile, dynamics::load_urdf, settings, &found);
-  if (robot) {
-    const std::string folder = std::filesystem::path(file).parent_path().string();
-    robot->can = load_wiring(robot->can, folder, &found);
-  }
   issues->append(found);
   return found.ok() ? robot : std::nullopt;
 }

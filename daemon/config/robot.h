@@ -40,7 +40,7 @@ struct Robot {
   std::string urdf;  // path of the URDF file
   GaitdModel model{};
   ImpedanceProfile impedance;  // of the chosen profile
-  NodePtr can;                 // wiring of the motors, for the backend to check; null without
+  NodePtr can;                 // wiring of the motors, see load_wiring(); null without
 };
 
 // Reads robots/<name>/robot.yaml and the URDF it names, fills the model, and puts the parameters of
@@ -57,8 +57,8 @@ using UrdfLoader = std::function<dynamics::UrdfResult(const std::string& path,
 std::optional<Robot> read_robot(const NodePtr& document, const std::string& file, Profile profile,
                                 const UrdfLoader& load, Settings* settings, Issues* issues);
 
-// The wiring of a robot: a map, or the name of a file that holds it, relative to `folder`. Null and
-// an issue when it cannot be read.
+// The wiring of a robot, for the backend to check: a map, or the name of a file that holds it,
+// relative to `folder`. Null and an issue when it cannot be read. Only who drives motors needs it.
 NodePtr load_wiring(const NodePtr& value, const std::string& folder, Issues* issues);
 
 }  // namespace gaitd::daemon
