@@ -1,9 +1,10 @@
 # Sourced after common.sh by the tests of pages. run_page FILE takes every ```sh block of a page in
-# order and runs its lines in a folder that looks like a fresh clone with a finished build, with three
+# order and runs its lines in a folder that looks like a fresh clone with a finished build, with these
 # differences:
 #   ./run-demo     as ./run-demo --no-build: the build is done
 #   ./run-tests    only looked for: it is what runs this test
 #   gaitd ...      in the background, until the end or the next one
+# `gaitctl report` is left out where its page could not be built for want of npm.
 clone=$scratch/clone
 mkdir -p "$clone/build"
 for entry in "$GAITD_SOURCE"/* "$GAITD_SOURCE"/.[!.]*; do
@@ -28,6 +29,13 @@ run_block() {
       read -ra words <<<"$line"
       start_daemon "${words[@]:1}"
       wait_for state standing 20
+      ;;
+    'gaitctl report '*)
+      if [[ -e $GAITD_BUILD/share/gaitd/report.html ]]; then
+        eval "expect 0 $line"
+      else
+        echo "left out: $line"
+      fi
       ;;
     'gaitctl walk '*)
       eval "expect 0 $line"

@@ -141,6 +141,9 @@ for (const box of await page.locator('#plots > div').all()) {
 const plots = await page.evaluate(() => gaitd.plots.map(({id}) => id));
 console.log(`plots: ${plots.join(' ')}`);
 check(plots.length >= 8, `only ${plots.length} plots`);
+const empty = await page.evaluate(() => gaitd.plots.filter(({plot: {scales: {x, y}}}) =>
+    !(x.max > x.min && y.max > y.min)).map(({id}) => id));
+check(!empty.length, `nothing on the plots ${empty.join(' ')}`);
 check(!errors.length, errors.join('; '));
 if (picture) {
   await page.locator('#plots > div').first().scrollIntoViewIfNeeded();

@@ -6,4 +6,4 @@ for page in docs/tutorial-first-walk.md docs/port-your-robot.md docs/tutorial-pl
   run_page "$page"
   [[ -z $daemon ]] || stop_daemon
 done
-[[ -s first.html && -s knees.csv && -s my-walk.mcap && -s mine.html ]] || fail "a command left no file"
+[[ -s knees.csv && -s my-walk.mcap ]] || fail "a command left no file"

@@ -18,14 +18,15 @@ gaitctl --json watch --interval 0.02 | head -n 2 >"$scratch/json"
 (($(grep -c '^{.*"state":"standing".*}$' "$scratch/json") == 2)) || fail "not one object per line"
 expect 2 gaitctl watch --interval 0 2>/dev/null
 
-# start_watch NAME ARGUMENTS...: on a terminal of 60 x 12, its output in $scratch/NAME.
+# start_watch NAME ARGUMENTS...: on a terminal of $rows x $columns, its output in $scratch/NAME.
+rows=12 columns=60
 start_watch() {
   local name=$1
   shift
   rm -f "$scratch/$name.code" "$scratch/pid"
   {
     code=0
-    script -qefc "stty rows 12 cols 60; echo \$\$ >$scratch/pid; \
+    script -qefc "stty rows $rows cols $columns; echo \$\$ >$scratch/pid; \
       exec gaitctl watch --interval 0.02 $*" "$scratch/$name" </dev/null >/dev/null || code=$?
     echo "$code" >"$scratch/$name.code"
   } &
@@ -58,6 +59,36 @@ done
 widest=$(sed 's/\x1b\[[0-9;]*H/\n/g; s/\x1b\[[?0-9;]*[a-zA-Z]//g' "$scratch/INT" | tr -d '\r' |
   grep -v '^Script ' | LC_ALL=C.UTF-8 wc -L)
 ((widest <= 60)) || fail "a line is longer than the window"
+
+# What it shows, as long as the window has room for it: state, mode, steps, ICP error, the times of each
+# layer, and faults once there are some.
+rows=40 columns=100
+expect 0 gaitctl walk --steps 2 --length 0.2
+start_watch contents
+wait_for state walking 5
+wait_for state standing 30
+expect 0 gaitctl estop
+wait_for_text() {
+  for _ in {1..100}; do
+    grep -qaE "$2" "$scratch/$1" && return
+    sleep 0.05
+  done
+  fail "watch does not show '$2': $(sed 's/\x1b\[[0-9;?]*[a-zA-Z]/\n/g' "$scratch/$1" | tail -n 40)"
+}
+for text in 'state +walking' 'state +standing' 'state +fault' 'faults +none' 'faults +estop' \
+  'gait +walk-[a-z]+, swing, support (left|right)' 'step +2, ' 'ICP error +[0-9.]+ mm' \
+  'whole tick +[0-9.]+ +[0-9.]+'; do
+  wait_for_text contents "$text"
+done
+for layer in state_estimator icp_planner step_adjuster toe_off whole_body_controller; do
+  wait_for_text contents "$layer +[a-z_]+ +[0-9]+\\.[0-9] +[0-9]+\\.[0-9]"
+done
+kill -INT "$(cat "$scratch/pid")"
+ends contents 0
+stop_daemon
+start_daemon --log "$scratch/log.mcap"
+wait_for state standing 20
+rows=12 columns=60
 
 # When gaitd ends.
 start_watch gone

@@ -35,6 +35,9 @@ export class Log {
     return i === undefined ? '' : this.signals[i].words?.[this.value(name, row)] ?? '';
   }
 
+  // All words of an enumeration.
+  words(name) { return this.signals[this.index.get(name)]?.words ?? []; }
+
   point(prefix, row) {
     return ['x', 'y', 'z'].map((axis) => this.value(`${prefix}/${axis}`, row));
   }

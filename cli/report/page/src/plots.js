@@ -58,10 +58,40 @@ function shades(log) {
   }]}};
 }
 
+// Below, a band for each leg (left above right) in a colour for each of its states, with their words
+// where there is room.
+function stateBands(log) {
+  const kBand = 11, kWordColor = '#ffffff';
+  const bands = ['left', 'right'].map((side) => log.words(`leg/${side}/state`).flatMap((word, i) =>
+      log.spans(`leg/${side}/state`, word).map(([from, to]) => ({word, color: kColors[i], from, to}))));
+  return {hooks: {draw: [(plot) => {
+    const {ctx, bbox} = plot, height = kBand * devicePixelRatio;
+    ctx.save();
+    ctx.font = `${9 * devicePixelRatio}px sans-serif`;
+    ctx.textAlign = 'left';
+    ctx.textBaseline = 'middle';
+    bands.forEach((band, i) => {
+      const top = bbox.top + bbox.height - (bands.length - i) * height;
+      for (const {word, color, from, to} of band) {
+        const left = Math.max(bbox.left, plot.valToPos(from, 'x', true));
+        const right = Math.min(bbox.left + bbox.width, plot.valToPos(to, 'x', true));
+        if (right <= left) continue;
+        ctx.fillStyle = color;
+        ctx.fillRect(left, top, right - left, height - 1);
+        if (ctx.measureText(word).width + 4 > right - left) continue;
+        ctx.fillStyle = kWordColor;
+        ctx.fillText(word, left + 2, top + height / 2);
+      }
+    });
+    ctx.restore();
+  }]}};
+}
+
 // The time of the replay as a line of its own above the plot, which is not drawn again for it; a click
 // goes there.
 function cursor(player) {
   const place = (plot) => plot.placeTime?.();
+  if (!player) return {hooks: {}};
   return {hooks: {
     ready: [(plot) => {
       const line = document.createElement('div');
@@ -84,19 +114,20 @@ function cursor(player) {
 }
 
 function timePlot(log, panel, player, element, width, height) {
-  const states = panel.states ? {label: 'states', value: (_, __, ___, row) => row === null ? '' :
-      ['left', 'right'].map((side) => log.word(`leg/${side}/state`, row)).join(', '),
-      show: true, points: {show: false}} : undefined;
+  // Without values of its own: the words under the mouse, on a scale that is not the one of the lines.
+  const states = panel.states ? {label: 'states', scale: 'states', points: {show: false},
+      value: (_, __, ___, row) => row === null ? '' :
+          ['left', 'right'].map((side) => log.word(`leg/${side}/state`, row)).join(', ')} : undefined;
   const data = [log.time, ...panel.lines.map(({name, scale}) =>
       scale === 1 ? log.column(name) : log.column(name).map((value) => value * scale))];
   if (states) data.push(new Float32Array(log.rows).fill(NaN));
   return new uPlot({
     width, height, cursor: {sync: {key: 'time'}},
-    scales: {x: {time: false}},
+    scales: {x: {time: false}, states: {range: [0, 1]}},
     axes: [{label: 's', labelSize: 16, size: 32}, {label: panel.unit, size: 56}],
     series: [{label: 't'}, ...panel.lines.map(({label}, i) => (
         {label, stroke: kColors[i % kColors.length], width: 1})), ...(states ? [states] : [])],
-    plugins: [shades(log), cursor(player)],
+    plugins: [shades(log), cursor(player), ...(states ? [stateBands(log)] : [])],
   }, data, element);
 }
 
@@ -136,11 +167,19 @@ function pathPlot(log, element, width, height) {
   }, [null, ...names.map(path)], element);
 }
 
-// All plots below `element`, or only the one with the id `only`. A plot is made when it comes into
-// view: the list grows as they are.
-export function addPlots(log, player, element, only) {
+// All plots: {id, title, make(player, element, width, height)}; `make` gives the uPlot.
+export function listPlots(log) {
+  return [
+    {id: 'icp-path', title: 'Capture point from above',
+     make: (_, ...place) => pathPlot(log, ...place)},
+    ...panels(log).map((panel) => ({id: panel.id, title: panel.title,
+        make: (player, ...place) => timePlot(log, panel, player, ...place)})),
+  ];
+}
+
+// All plots below `element`. A plot is made when it comes into view: the list grows as they are.
+export function addPlots(log, player, element) {
   const width = Math.max(400, element.clientWidth - 30);
-  const height = only ? 480 : kHeight;
   const plots = [], makers = new Map();
   const watcher = new IntersectionObserver((entries) => {
     for (const {target, isIntersecting} of entries) {
@@ -149,19 +188,14 @@ export function addPlots(log, player, element, only) {
       makers.get(target)();
     }
   });
-  const add = (id, title, make) => {
-    if (only && only !== id) return;
+  for (const {id, title, make} of listPlots(log)) {
     const box = document.createElement('div');
     box.id = `plot-${id}`;
     box.innerHTML = `<h2>${title}</h2>`;
     element.append(box);
-    box.style.minHeight = `${height}px`;
+    box.style.minHeight = `${kHeight}px`;
     watcher.observe(box);
-    makers.set(box, () => plots.push({id, plot: make(box)}));
-  };
-  add('icp-path', 'Capture point from above', (box) => pathPlot(log, box, width, height));
-  for (const panel of panels(log)) {
-    add(panel.id, panel.title, (box) => timePlot(log, panel, player, box, width, height));
+    makers.set(box, () => plots.push({id, plot: make(player, box, width, kHeight)}));
   }
   return plots;
 }

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace gaitd::cli {
+
+/// The robot and each plot of a report page as PNG files in a folder, which is made if it is not
+/// there. One run of chromium draws all of them. Empty, or the reason why not.
+std::string draw_pictures(const std::filesystem::path& page, const std::filesystem::path& folder);
+
+}  // namespace gaitd::cli
