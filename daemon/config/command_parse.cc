@@ -9,13 +9,12 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "daemon/config/names.h"
 #include "daemon/config/yaml_reader.h"
 
 namespace gaitd::daemon {
 namespace {
 
-constexpr std::array<std::string_view, 3> kModes = {"stand", "walk-straight", "walk-bent"};
-constexpr std::array<std::string_view, 2> kSides = {"left", "right"};
 constexpr int kMaxSteps = 1000;
 constexpr Bounds kDuration = {0.05, 20.0, "s"};
 constexpr Bounds kSolePosition = {-1.0, 1.0, "m"};
@@ -76,7 +75,7 @@ void read_walk(MapReader* map, walking::WalkCommand* walk) {
   walk->turn = map->number("turn", {-1.6, 1.6, "rad"}).value_or(0.0);
   walk->swing_duration = map->number("swing", kDuration).value_or(0.0);
   walk->transfer_duration = map->number("transfer", kDuration).value_or(0.0);
-  walk->first_side = map->choice("first", kSides).value_or(GAITD_BOTH);
+  walk->first_side = map->choice("first", kSideNames).value_or(GAITD_BOTH);
 }
 
 void read_contact_polygon(MapReader* map, GaitdFootstep* footstep) {
@@ -130,7 +129,7 @@ void read_landing_region(MapReader* map, GaitdFootstep* footstep) {
 
 void read_footstep(MapReader map, GaitdFootstep* footstep) {
   map.require({"side", "x", "y"});
-  footstep->side = map.choice("side", kSides).value_or(GAITD_LEFT);
+  footstep->side = map.choice("side", kSideNames).value_or(GAITD_LEFT);
   footstep->pose.position[0] = map.number("x", kPositionBounds).value_or(0.0);
   footstep->pose.position[1] = map.number("y", kPositionBounds).value_or(0.0);
   footstep->pose.position[2] = map.number("z", kPositionBounds).value_or(0.0);
@@ -216,7 +215,7 @@ std::optional<Command> parse_command(std::string_view method, const NodePtr& par
   } else if (method == "mode") {
     command.type = CommandType::kMode;
     map.require({"mode"});
-    command.mode = map.choice("mode", kModes).value_or(GAITD_MODE_STAND);
+    command.mode = map.choice("mode", kModeNames).value_or(GAITD_MODE_STAND);
   } else if (method == "walk") {
     command.type = CommandType::kWalk;
     read_walk(&map, &command.walk);
@@ -251,12 +250,12 @@ std::optional<Command> parse_command(std::string_view method, const nlohmann::js
 }
 
 int mode_from_name(std::string_view name) {
-  const auto found = std::find(kModes.begin(), kModes.end(), name);
-  return found == kModes.end() ? -1 : static_cast<int>(found - kModes.begin());
+  const auto found = std::find(kModeNames.begin(), kModeNames.end(), name);
+  return found == kModeNames.end() ? -1 : static_cast<int>(found - kModeNames.begin());
 }
 
 std::string_view mode_name(int mode) {
-  return mode >= 0 && mode < static_cast<int>(kModes.size()) ? kModes[mode] : "unknown";
+  return mode >= 0 && mode < static_cast<int>(kModeNames.size()) ? kModeNames[mode] : "unknown";
 }
 
 int body_index(const GaitdModel& model, std::string_view name) {

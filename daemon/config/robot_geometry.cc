@@ -8,10 +8,11 @@
 #include <cmath>
 #include <cstring>
 
+#include "daemon/config/names.h"
+
 namespace gaitd::daemon {
 namespace {
 
-constexpr std::array<std::string_view, 2> kSides = {"left", "right"};
 constexpr Bounds kLength = {-10.0, 10.0, "m"};
 constexpr Bounds kAngle = {-2.0 * M_PI, 2.0 * M_PI, "rad"};
 constexpr int kMinLegJoints = 6;
@@ -84,14 +85,14 @@ void RobotGeometry::read_imus(MapReader* root) {
 
 void RobotGeometry::read_feet(MapReader* root) {
   MapReader feet = root->map("feet");
-  feet.require({kSides[0], kSides[1]});
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) read_foot(feet.map(kSides[side]), side);
+  feet.require({kSideNames[0], kSideNames[1]});
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) read_foot(feet.map(kSideNames[side]), side);
   feet.finish();
 }
 
 void RobotGeometry::read_foot(MapReader map, int side) {
   GaitdFoot* foot = &model_->feet[side];
-  const std::string name(kSides[side]);
+  const std::string name(kSideNames[side]);
   map.require({"link", "sole", "outline", "force_sensor"});
   const dynamics::UrdfLink* foot_link = link(&map, "link");
   if (foot_link) foot->body = foot_link->body;
@@ -168,8 +169,8 @@ int RobotGeometry::leg_joint(MapReader* map, std::string_view key, const GaitdLe
 
 void RobotGeometry::read_legs(MapReader* root) {
   MapReader legs = root->map("legs");
-  legs.require({kSides[0], kSides[1]});
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) read_leg(legs.map(kSides[side]), side);
+  legs.require({kSideNames[0], kSideNames[1]});
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) read_leg(legs.map(kSideNames[side]), side);
   legs.finish();
 }
 

@@ -5,13 +5,13 @@
 #include <filesystem>
 
 #include "daemon/config/command_parse.h"
+#include "daemon/config/names.h"
 #include "daemon/config/scenario_sections.h"
 #include "daemon/config/yaml_reader.h"
 
 namespace gaitd::daemon {
 namespace {
 
-constexpr std::array<std::string_view, 3> kModes = {"stand", "walk-straight", "walk-bent"};
 // What the command line may replace.
 constexpr std::array<std::string_view, 9> kOverridable = {
     "duration", "seed",      "start",       "mode",        "terrain",
@@ -123,7 +123,7 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
   scenario.robot = robot_from(file, root.text("robot").value_or(""));
   scenario.duration = root.number("duration", {0.001, 86400.0, "s"}).value_or(86400.0);
   scenario.seed = static_cast<std::uint64_t>(root.integer("seed", 0, 4294967295).value_or(1));
-  scenario.mode = root.choice("mode", kModes).value_or(GAITD_MODE_STAND);
+  scenario.mode = root.choice("mode", kModeNames).value_or(GAITD_MODE_STAND);
   scenario.terrain = read_terrain(root.map("terrain"));
   scenario.start = read_start(root.map("start"), scenario.terrain, root.where());
   scenario.start_where = root.where(root.has("start") ? "start" : "");

@@ -8,8 +8,8 @@ namespace gaitd::daemon {
 namespace {
 
 constexpr Bounds kTolerance = {1e-6, 1e3, "m"};
-constexpr Bounds kAngle = {-100.0, 100.0, "rad"};
-constexpr Bounds kAngleTolerance = {1e-6, 10.0, "rad"};
+constexpr Bounds kYaw = {-100.0, 100.0, "rad"};
+constexpr Bounds kYawTolerance = {1e-6, 10.0, "rad"};
 constexpr Bounds kFraction = {0.0, 1.0, ""};
 // In the order of the enumerations of expectations.h.
 constexpr std::array<std::string_view, 6> kStatistics = {"rms", "mean", "min",
@@ -24,8 +24,8 @@ std::optional<FinalPelvis> read_final_pelvis(MapReader map) {
   result.x = map.number("x", kPositionBounds).value_or(0.0);
   result.y = map.number("y", kPositionBounds).value_or(0.0);
   result.tolerance = map.number("tolerance", kTolerance).value_or(0.0);
-  result.yaw = map.number("yaw", kAngle);
-  result.yaw_tolerance = map.number("yaw_tolerance", kAngleTolerance);
+  result.yaw = map.number("yaw", kYaw);
+  result.yaw_tolerance = map.number("yaw_tolerance", kYawTolerance);
   if (map.has("yaw_tolerance") && !map.has("yaw")) {
     map.fail("yaw_tolerance", "a yaw beside it", "none", "add 'yaw'");
   }
@@ -37,8 +37,8 @@ std::optional<FinalYaw> read_final_yaw(MapReader map) {
   if (!map.valid()) return std::nullopt;
   map.require({"yaw", "tolerance"});
   FinalYaw result;
-  result.yaw = map.number("yaw", kAngle).value_or(0.0);
-  result.tolerance = map.number("tolerance", kAngleTolerance).value_or(0.0);
+  result.yaw = map.number("yaw", kYaw).value_or(0.0);
+  result.tolerance = map.number("tolerance", kYawTolerance).value_or(0.0);
   map.finish();
   return result;
 }

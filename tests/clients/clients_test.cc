@@ -127,7 +127,7 @@ TEST_F(Clients, ThatAreSilentOrVanishHoldNobodyUp) {
   EXPECT_EQ(daemon_->descriptors(), before);
 }
 
-// Four clients at once for ten seconds, in real time: three of them unwell.
+// Four clients at once for five seconds, in real time: three of them unwell.
 class RandomClient {
  public:
   RandomClient(const std::string& socket, unsigned seed)
@@ -144,7 +144,7 @@ class RandomClient {
       const bool slow = source_.chance(0.1);
       for (int i = 0; !slow && i < 10 && take(1);) ++i;
       if (source_.chance(0.05)) vanish();
-      std::this_thread::sleep_for(std::chrono::milliseconds(source_.integer(0, 120)));
+      std::this_thread::sleep_for(std::chrono::milliseconds(source_.integer(0, 60)));
     }
     client_->send("\n");
     while (take(300)) {

@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Fault{"error_status", "process", "process() returned GAITD_ERROR (tick 700"},
                       Fault{"throw_in_process", "process", "GAITD_EXCEPTION"},
                       Fault{"crash_in_process", "process", "crashed with SIGSEGV"},
-                      Fault{"hang_in_process", "process", "hung: not done after 3000 ms", 3000},
+                      Fault{"hang_in_process", "process", "hung: not done after 1500 ms", 1500},
                       Fault{"exit_in_process", "process", "ended the process with exit code 0"},
                       Fault{"wrong_output_size", "process", "size: is not that of the struct"},
                       Fault{"no_such_side", "process", "side: is no foot"},
@@ -117,7 +117,7 @@ std::vector<Fault> host_faults() {
                                {"unresolved", "load", "gaitd_test_function_that_nobody_has"},
                                {"crash_at_load", "load", "crashed with SIGSEGV"},
                                {"exit_at_load", "load", "ended the process with exit code 0"},
-                               {"hang_at_load", "load", "hung: not done after 2000 ms", 2000}};
+                               {"hang_at_load", "load", "hung: not done after 1000 ms", 1000}};
   for (Fault& fault : faults) fault.plugin = host_plugin(fault.plugin);
   return faults;
 }
