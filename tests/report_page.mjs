@@ -37,7 +37,7 @@ const processorTime = async () =>
 
 // It opens within 3 s, on a busy machine at least once.
 let opened;
-for (let tries = 0; tries < 5 && !(opened < kLongestOpening); ++tries) {
+for (let tries = 0; tries < 10 && !(opened < kLongestOpening); ++tries) {
   const before = await processorTime(), began = Date.now();
   await page.goto(pathToFileURL(page_file).href);
   await page.waitForFunction(() => window.gaitd?.player.frames > 1);
