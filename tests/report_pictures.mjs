@@ -62,6 +62,6 @@ for (const share of [0.1, 0.5, 0.9]) {
   console.log(`at ${share} of the log ${(100 * robot).toFixed(1)} % of the picture are robot, ` +
               `${(100 * differ).toFixed(2)} % differ with and without WebGL`);
   check(robot > 0.01, 'no robot is drawn');
-  check(differ < 0.015, 'with and without WebGL the pictures differ');
+  check(differ < 0.008, 'with and without WebGL the pictures differ');
 }
 await browser.close();

@@ -246,6 +246,12 @@ void ControlLoop::report_changes() {
     length += std::snprintf(text + length, sizeof(text) - length, R"(,"layer":"%s","what":"%s")",
                             sdk::kLayerNames[failure.layer].data(), failure.what);
   }
+  if ((d.faults & kFaultCapture) != 0) {
+    const CaptureCheck& capture = pipeline_->safety().capture();
+    length += std::snprintf(text + length, sizeof(text) - length,
+                            R"(,"what":"ICP %.2f m off the feet, beyond %.2f m")",
+                            capture.distance(), capture.limit());
+  }
   if ((d.faults & kFaultSensors) != 0) {
     const SensorMonitor::Suspect& suspect = pipeline_->monitor().suspect();
     length += std::snprintf(text + length, sizeof(text) - length,

@@ -94,6 +94,8 @@ void Safety::check(const TickData& d, bool estimate_ok) {
   }
   if (tilted(d.robot)) raise(kFaultTilt | kFaultFall);
   if (low(d.robot)) raise(kFaultFall);
+  if (!controlled()) return capture_.reset();
+  if (capture_.lost(d.time.period, d.robot, d.gait, p_)) raise(kFaultCapture | kFaultFall);
 }
 
 bool Safety::update(double dt, const TickData& d, bool walking) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "daemon/command/command.h"
+#include "daemon/control/capture_check.h"
 #include "daemon/control/tick_data.h"
 #include "daemon/parameters/safety_parameters.h"
 
@@ -11,7 +12,7 @@ namespace gaitd::daemon {
 // the joints do in each state, and the clamps on everything that is sent.
 class Safety {
  public:
-  explicit Safety(const GaitdModel& model) : model_(model) {}
+  explicit Safety(const GaitdModel& model) : model_(model), capture_(model_) {}
   void set_parameter(int index, double value) { p_.set(index, value); }
   void set_limit(int index, double value) { limits_.set(index, value); }
 
@@ -25,7 +26,7 @@ class Safety {
   }
 
   // Requests; each returns null or why not.
-  const char* arm();  // a simulated robot, that is healthy
+  const char* arm();                      // a simulated robot, that is healthy
   const char* arm(const TickData& data);  // only a healthy robot in a plausible posture
   // Moves one joint a little and back, the others off; disarmed before and afterwards.
   const char* test_joint(const TickData& data, const JointTest& test);
@@ -36,6 +37,7 @@ class Safety {
   void stopping();
   void going_on();  // new footsteps while stopping: it walks again
 
+  const CaptureCheck& capture() const { return capture_; }
   // Whether the pelvis is up and level enough not to count as fallen.
   bool upright(const GaitdRobotState& robot) const;
   // Looks at sensors and estimate; raises what it finds. `estimate_ok` as the layer said.
@@ -58,6 +60,7 @@ class Safety {
   void swing_joint(GaitdJointCommands& commands) const;
 
   const GaitdModel model_;
+  CaptureCheck capture_;
   sdk::Parameters<SafetyParameter> p_{kSafetyParameters};
   sdk::Parameters<Limit> limits_{kLimitParameters};
   SafetyState state_ = SafetyState::kDisarmed;

@@ -36,10 +36,11 @@ enum Fault : std::uint32_t {
   kFaultMotor = 1u << 10,
   kFaultBus = 1u << 11,
   kFaultHeartbeat = 1u << 12,
+  kFaultCapture = 1u << 13,
 };
-inline constexpr std::array<const char*, 13> kFaultNames = {
-    "estop",   "fall",    "tilt",     "sensors", "estimator", "layer",    "solver",
-    "backend", "overrun", "readying", "motor",   "bus",       "heartbeat"};
+inline constexpr std::array<const char*, 14> kFaultNames = {
+    "estop",   "fall",    "tilt",     "sensors", "estimator", "layer",     "solver",
+    "backend", "overrun", "readying", "motor",   "bus",       "heartbeat", "capture"};
 
 // Wall times of one tick. Reported, never acted on in lockstep.
 struct TickTimes {

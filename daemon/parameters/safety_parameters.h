@@ -9,6 +9,9 @@ namespace gaitd::daemon {
 enum class SafetyParameter {
   kTiltLimit,
   kFallHeight,
+  kCaptureReach,
+  kCaptureStep,
+  kCaptureTime,
   kSensorTimeout,
   kFrozenTime,
   kStuckTravel,
@@ -26,10 +29,15 @@ enum class SafetyParameter {
   kTorqueRate,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 17> kSafetyParameters = {
+inline constexpr std::array<GaitdParameter, 20> kSafetyParameters = {
     sdk::real_parameter("tilt_limit", "rad", 0.1, 3, 0.8, "of the pelvis, beyond is a fall"),
     sdk::real_parameter("fall_height", "", 0.1, 1, 0.6,
                         "pelvis above the lower foot, over the nominal height; below is a fall"),
+    sdk::real_parameter("capture_reach", "com heights", 0, 10, 0.85,
+                        "longest step that could catch the robot; 0: no fault capture"),
+    sdk::real_parameter("capture_step", "s", 0.1, 10, 0.5, "from one such step to the next"),
+    sdk::real_parameter("capture_time", "s", 0, 1, 0.02,
+                        "for which the ICP is out of reach of all of them, beyond is a fall"),
     sdk::real_parameter("sensor_timeout", "s", 0.001, 1, 0.02, "age of a signal that is stale"),
     sdk::real_parameter("frozen_time", "s", 0, 1, 0.02,
                         "for which an IMU or a loaded foot sensor may repeat itself; 0: for ever"),

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
 #include "daemon/control/safety.h"
+#include "gaitd/walking/support.h"
 #include "walking/test/atlas.h"
 
 namespace gaitd::daemon {
@@ -19,6 +21,17 @@ inline double safety_parameter(SafetyParameter p) {
   return kSafetyParameters[static_cast<int>(p)].default_value;
 }
 
+// The gait of a robot that stands on both soles where they are.
+inline void stand_on_soles(const GaitdRobotState& robot, GaitdGaitState& gait) {
+  gait.omega = 3.0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    GaitdPose pose{};
+    std::copy_n(robot.feet[side].position, 3, pose.position);
+    std::copy_n(robot.feet[side].orientation, 4, pose.orientation);
+    gait.footholds[side] = walking::whole_sole(atlas(), side, pose);
+  }
+}
+
 // A robot that stands in its nominal posture, with all its sensors.
 class Bench {
  public:
@@ -26,6 +39,7 @@ class Bench {
       : safety(atlas()), data(std::make_unique<TickData>()) {
     for (const auto& [limit, value] : limits) safety.set_limit(static_cast<int>(limit), value);
     data->robot = testing::standing_state(atlas());
+    data->time.period = kPeriod;
     GaitdSensors& s = data->sensors;
     s.joint_count = atlas().joint_count;
     s.imu_count = atlas().imu_count;

@@ -163,6 +163,12 @@ std::vector<FaultRow> fault_table() {
       {"rolled", kFaultTilt | kFaultFall, [=](Bench& b) { lean(b, tilt, 0.0); }},
       {"pitched", kFaultTilt | kFaultFall, [=](Bench& b) { lean(b, 0.0, -tilt); }},
       {"low", kFaultFall, [](Bench& b) { b.data->robot.pelvis_position[2] = 0.2; }},
+      {"out of reach of every step", kFaultCapture | kFaultFall,
+       [](Bench& b) {
+         stand_on_soles(b.data->robot, b.data->gait);
+         b.data->robot.icp[0] = 3.0;
+         b.tick(static_cast<int>(safety_parameter(SafetyParameter::kCaptureTime) / kPeriod) + 1);
+       }},
       {"no solution", kFaultSolver,
        [](Bench& b) {
          b.control_ok = false;
@@ -379,7 +385,7 @@ TEST(Safety, EveryFaultBitHasAName) {
   const std::uint32_t all = kFaultEstop | kFaultFall | kFaultTilt | kFaultSensors |
                             kFaultEstimator | kFaultLayer | kFaultSolver | kFaultBackend |
                             kFaultOverrun | kFaultReadying | kFaultMotor | kFaultBus |
-                            kFaultHeartbeat;
+                            kFaultHeartbeat | kFaultCapture;
   EXPECT_EQ(all, (1u << kFaultNames.size()) - 1u);
 }
 

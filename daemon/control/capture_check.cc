@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/capture_check.h"
+
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
+
+namespace gaitd::daemon {
+
+using P = SafetyParameter;
+
+bool CaptureCheck::lost(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
+                        const sdk::Parameters<SafetyParameter>& p) {
+  const walking::ConvexPolygon feet = walking::support_polygon(model_, gait);
+  const double reach = p[P::kCaptureReach] * model_.nominal_com_height;
+  if (feet.empty() || gait.omega <= 0.0 || reach <= 0.0) {
+    reset();
+    return false;
+  }
+  distance_ = -feet.inside_distance(sdk::view(robot.icp));
+  const double swing = gait.phase == GAITD_PHASE_SWING ? gait.time_remaining : 0.0;
+  limit_ =
+      reach / (1.0 - std::exp(-gait.omega * p[P::kCaptureStep])) * std::exp(-gait.omega * swing);
+  time_beyond_ = distance_ > limit_ ? time_beyond_ + dt : 0.0;
+  return time_beyond_ > p[P::kCaptureTime];
+}
+
+}  // namespace gaitd::daemon
