@@ -20,7 +20,7 @@ daemon::Expectations wanted_signals() {
   daemon::Expectations wanted;
   for (const char* glob : {"com/*", "cop/*", "foot/*", "footstep/*", "joint/*", "safety/*",
                            "truth/estimate_error/*", "truth/com/*"}) {
-    wanted.checks.push_back({.signal = glob});
+    wanted.checks.emplace_back().signal = glob;
   }
   return wanted;
 }

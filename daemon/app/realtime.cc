@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kStackTouched = 512 * 1024;
 
 void touch_stack() {
-  volatile char stack[kStackTouched];
+  [[maybe_unused]] volatile char stack[kStackTouched];
   for (std::size_t i = 0; i < kStackTouched; i += 1024) stack[i] = 0;
 }
 
