@@ -73,13 +73,15 @@ wait_state() {
   done
 }
 
-# expect_json FILE EXPRESSION: python on the report `r`.
+# expect_json FILE EXPRESSION...: python on the report `r`, started once for all of them.
 expect_json() {
-  python3 - "$1" "$2" <<'PYTHON' || fail "$1: expected $2"
+  python3 -S - "$@" <<'PYTHON' || fail "$1: see the expression above"
 import json, sys
 r = json.load(open(sys.argv[1]))
-if not eval(sys.argv[2]):
-    print(json.dumps(r))
-    sys.exit(1)
+for expression in sys.argv[2:]:
+    if not eval(expression):
+        print("expected", expression)
+        print(json.dumps(r))
+        sys.exit(1)
 PYTHON
 }
