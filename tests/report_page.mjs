@@ -1,26 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The report page in a headless browser: report_page.mjs PLAYWRIGHT PAGE [PICTURE]
 // Prints what it measured; exit code 1 with the reason if anything is not as it should be.
-import {createRequire} from 'node:module';
 import {pathToFileURL} from 'node:url';
 
+import {check, launch} from './report_browser.mjs';
+
 const [playwright, page_file, picture] = process.argv.slice(2);
-const {chromium} = createRequire(import.meta.url)(playwright);
 
 const kLongestOpening = 3000;  // ms
 const kFrames = 55;  // 1/s: 60 less what a busy machine takes
 
-function check(holds, what) {
-  if (holds) return;
-  console.error(`FAILED: ${what}`);
-  process.exit(1);
-}
-
-const browser = await chromium.launch({
-  timeout: 600e3,
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-  args: ['--no-sandbox', '--enable-unsafe-swiftshader'],
-});
+const browser = await launch(playwright);
 const context = await browser.newContext({viewport: {width: 1280, height: 800}, offline: true});
 const page = await context.newPage();
 page.setDefaultTimeout(600e3);  // a busy machine is no failure

@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The report page draws the same with WebGL and without: report_pictures.mjs PLAYWRIGHT PAGE
 // Exit code 1 with the reason if it does not.
-import {createRequire} from 'node:module';
 import {pathToFileURL} from 'node:url';
 
+import {check, launch} from './report_browser.mjs';
+
 const [playwright, page_file] = process.argv.slice(2);
-const {chromium} = createRequire(import.meta.url)(playwright);
 
-function check(holds, what) {
-  if (holds) return;
-  console.error(`FAILED: ${what}`);
-  process.exit(1);
-}
-
-const browser = await chromium.launch({
-  timeout: 600e3,
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-  args: ['--no-sandbox', '--enable-unsafe-swiftshader'],
-});
+const browser = await launch(playwright);
 
 async function open(renderer) {
   const page = await browser.newPage({viewport: {width: 1280, height: 800}});
