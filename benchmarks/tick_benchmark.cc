@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 #include "measure.h"
 
 namespace gaitd::benchmarks {

@@ -13,9 +13,9 @@
 #include "cli/failure.h"
 #include "cli/print.h"
 #include "cli/replay_command.h"
-#include "daemon/telemetry/export_csv.h"
-#include "daemon/telemetry/log_info.h"
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/export_csv.h"
+#include "daemon/log/log_info.h"
+#include "daemon/log/log_reader.h"
 
 namespace gaitd::cli {
 namespace {

@@ -17,7 +17,7 @@
 #include "cli/rpc_client.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/scenario.h"
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 
 namespace gaitd::cli {
 namespace {

@@ -10,9 +10,9 @@
 #include <streambuf>
 #include <string>
 
-#include "daemon/telemetry/export_csv.h"
-#include "daemon/telemetry/log_info.h"
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/export_csv.h"
+#include "daemon/log/log_info.h"
+#include "daemon/log/log_reader.h"
 #include "fuzz/require.h"
 
 namespace gaitd::daemon {

@@ -10,8 +10,8 @@
 #include <memory>
 #include <string>
 
+#include "daemon/log/mcap_format.h"
 #include "daemon/telemetry/log_writer.h"
-#include "daemon/telemetry/mcap_format.h"
 
 namespace gaitd::daemon {
 namespace {

@@ -16,7 +16,7 @@
 #include "cli/failure.h"
 #include "cli/print.h"
 #include "daemon/config/paths.h"
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 
 namespace gaitd::cli {
 namespace {

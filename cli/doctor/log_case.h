@@ -9,7 +9,7 @@
 
 #include "cli/doctor/finding.h"
 #include "daemon/config/robot.h"
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 #include "daemon/verdict/run_data.h"
 
 namespace gaitd::doctor {

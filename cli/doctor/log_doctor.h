@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/doctor/finding.h"
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 
 namespace gaitd::doctor {
 

@@ -2,7 +2,7 @@
 #include <map>
 
 #include "cli/doctor/log_checks.h"
-#include "daemon/telemetry/signal.h"
+#include "daemon/log/signal.h"
 
 namespace gaitd::doctor {
 namespace {

@@ -13,7 +13,7 @@
 #include "cli/print.h"
 #include "cli/report/pictures.h"
 #include "cli/report/report_data.h"
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 
 namespace gaitd::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "daemon/control/tick_data.h"
-#include "daemon/telemetry/signal.h"
+#include "daemon/log/signal.h"
 
 namespace gaitd::daemon {
 

@@ -7,7 +7,7 @@
 #include "daemon/config/node.h"
 #include "daemon/config/settings.h"
 #include "daemon/host/plugin_json.h"
-#include "daemon/telemetry/glob.h"
+#include "daemon/log/glob.h"
 
 namespace gaitd::daemon {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "daemon/control/pipeline.h"
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 
 namespace gaitd::daemon {
 

@@ -6,7 +6,7 @@
 
 #include "daemon/config/robot.h"
 #include "daemon/config/settings.h"
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 
 namespace gaitd::daemon {
 

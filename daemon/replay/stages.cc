@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/replay/stages.h"
 
-#include "daemon/telemetry/glob.h"
+#include "daemon/log/glob.h"
 
 namespace gaitd::daemon {
 namespace {

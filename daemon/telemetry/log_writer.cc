@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "daemon/telemetry/records_codec.h"
+#include "daemon/log/records_codec.h"
+#include "daemon/log/signal_codec.h"
 #include "daemon/telemetry/scene_topics.h"
-#include "daemon/telemetry/signal_codec.h"
 #include "daemon/telemetry/signal_schema.h"
 
 #ifndef GAITD_VERSION

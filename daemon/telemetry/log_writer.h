@@ -2,29 +2,17 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
 
-#include "daemon/telemetry/event.h"
+#include "daemon/log/event.h"
+#include "daemon/log/log_format.h"
+#include "daemon/log/signal.h"
 #include "daemon/telemetry/mcap_writer.h"
-#include "daemon/telemetry/signal.h"
 #include "gaitd/abi/types.h"
 
 namespace gaitd::daemon {
-
-// Names inside the file, shared by writer and reader.
-inline constexpr char kSignalsTopic[] = "/gaitd/signals";
-inline constexpr char kSensorsTopic[] = "/gaitd/sensors";
-inline constexpr char kEventsTopic[] = "/gaitd/events";
-inline constexpr char kStartMetadata[] = "gaitd";    // given when the file is opened
-inline constexpr char kEndMetadata[] = "gaitd.end";  // given when it is closed
-inline constexpr char kTableKey[] = "signal_table";  // of the metadata of the signals channel
-inline constexpr char kLayoutKey[] = "layout";
-inline constexpr char kLayoutVersion[] = "1";
-
-using LogMetadata = std::map<std::string, std::string>;
 
 // Writes one log file: MCAP with protobuf messages whose schema is in the file. Not thread-safe;
 // not for the real-time thread. Once writing fails (disk full) it stops for good: every later call

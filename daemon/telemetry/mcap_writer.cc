@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "daemon/telemetry/bytes.h"
-#include "daemon/telemetry/crc32.h"
-#include "daemon/telemetry/mcap_format.h"
+#include "daemon/log/bytes.h"
+#include "daemon/log/crc32.h"
+#include "daemon/log/mcap_format.h"
 
 namespace gaitd::daemon {
 

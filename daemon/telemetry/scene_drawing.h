@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/telemetry/signal.h"
+#include "daemon/log/signal.h"
 
 namespace foxglove {
 class SceneUpdate;

@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
+#include "daemon/log/signal.h"
 #include "daemon/telemetry/mcap_writer.h"
-#include "daemon/telemetry/signal.h"
 
 namespace gaitd::daemon {
 

@@ -3,7 +3,7 @@
 
 #include <google/protobuf/descriptor.pb.h>
 
-#include "daemon/telemetry/signal_tree.h"
+#include "daemon/log/signal_tree.h"
 
 namespace gaitd::daemon {
 

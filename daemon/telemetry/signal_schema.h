@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "daemon/telemetry/signal.h"
+#include "daemon/log/signal.h"
 
 namespace gaitd::daemon {
 

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/telemetry/event.h"
+#include "daemon/log/event.h"
+#include "daemon/log/signal.h"
 #include "daemon/telemetry/log_rotation.h"
-#include "daemon/telemetry/signal.h"
 #include "gaitd/abi/types.h"
 
 namespace gaitd::daemon {

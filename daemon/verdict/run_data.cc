@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "daemon/telemetry/glob.h"
+#include "daemon/log/glob.h"
 
 namespace gaitd::daemon {
 
@@ -14,14 +14,22 @@ using Json = nlohmann::json;
 
 // All signals that any figure looks at, besides those that the checks of a scenario name.
 constexpr std::array<const char*, 17> kSignals = {
-    "time",           "safety/faults",
-    "gait/*",         "icp/*",
-    "pelvis/*",       "foot/*/z",
-    "foot/*/contact", "toe_off/active",
-    "truth/pelvis/*", "truth/foot/*/slip",
-    "truth/foot/*/z", "wbc/*",
-    "tick/*",         "joint/*/torque_desired",
-    "joint/*/velocity", "foot/*/force/z",
+    "time",
+    "safety/faults",
+    "gait/*",
+    "icp/*",
+    "pelvis/*",
+    "foot/*/z",
+    "foot/*/contact",
+    "toe_off/active",
+    "truth/pelvis/*",
+    "truth/foot/*/slip",
+    "truth/foot/*/z",
+    "wbc/*",
+    "tick/*",
+    "joint/*/torque_desired",
+    "joint/*/velocity",
+    "foot/*/force/z",
     "truth/foot/*/force/z",
 };
 

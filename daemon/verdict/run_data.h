@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 #include "daemon/verdict/expectations.h"
 
 namespace gaitd::daemon {

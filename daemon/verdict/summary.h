@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 #include "daemon/verdict/run_figures.h"
 #include "daemon/verdict/verdict.h"
 

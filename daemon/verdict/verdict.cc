@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "daemon/telemetry/glob.h"
+#include "daemon/log/glob.h"
 #include "daemon/verdict/number_text.h"
 #include "daemon/verdict/run_data.h"
 #include "daemon/verdict/run_figures.h"
@@ -141,8 +141,8 @@ void Judge::judge_torques(const Expectations& expected) {
             figures_.torque_step.joint.empty() ? "" : "worst: " + figures_.torque_step.joint);
   }
   if (expected.stance_knee_torque_max) {
-    at_most("stance_knee_torque_max", figures_.stance_knee_torque,
-            *expected.stance_knee_torque_max, "N m");
+    at_most("stance_knee_torque_max", figures_.stance_knee_torque, *expected.stance_knee_torque_max,
+            "N m");
   }
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 #include "daemon/verdict/expectations.h"
 
 namespace gaitd::daemon {

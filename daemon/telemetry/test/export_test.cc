@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/export_csv.h"
+#include "daemon/log/export_csv.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/telemetry/log_info.h"
+#include "daemon/log/log_info.h"
 #include "daemon/telemetry/test/fixture.h"
 
 namespace gaitd::daemon {

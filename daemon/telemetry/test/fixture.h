@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 #include "daemon/telemetry/log_writer.h"
 
 namespace gaitd::daemon {

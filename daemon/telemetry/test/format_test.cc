@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "daemon/telemetry/bytes.h"
-#include "daemon/telemetry/crc32.h"
-#include "daemon/telemetry/glob.h"
-#include "daemon/telemetry/mcap_format.h"
+#include "daemon/log/bytes.h"
+#include "daemon/log/crc32.h"
+#include "daemon/log/glob.h"
+#include "daemon/log/mcap_format.h"
 #include "daemon/telemetry/test/fixture.h"
 
 namespace gaitd::daemon {

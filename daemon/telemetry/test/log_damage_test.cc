@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "daemon/telemetry/log_info.h"
-#include "daemon/telemetry/mcap_reader.h"
+#include "daemon/log/log_info.h"
+#include "daemon/log/mcap_reader.h"
 #include "daemon/telemetry/test/fixture.h"
 
 namespace gaitd::daemon {

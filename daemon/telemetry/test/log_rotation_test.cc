@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 #include "daemon/telemetry/recent_maximum.h"
 #include "daemon/telemetry/test/fixture.h"
 

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "daemon/telemetry/records_codec.h"
+#include "daemon/log/records_codec.h"
 #include "daemon/telemetry/test/fixture.h"
 
 namespace gaitd::daemon {

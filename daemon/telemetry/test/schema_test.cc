@@ -5,11 +5,11 @@
 #include <google/protobuf/dynamic_message.h>
 #include <gtest/gtest.h>
 
-#include "daemon/telemetry/mcap_reader.h"
-#include "daemon/telemetry/records_codec.h"
-#include "daemon/telemetry/signal_codec.h"
+#include "daemon/log/mcap_reader.h"
+#include "daemon/log/records_codec.h"
+#include "daemon/log/signal_codec.h"
+#include "daemon/log/signal_tree.h"
 #include "daemon/telemetry/signal_schema.h"
-#include "daemon/telemetry/signal_tree.h"
 #include "daemon/telemetry/test/fixture.h"
 
 namespace gaitd::daemon {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 
 namespace gaitd::daemon {
 

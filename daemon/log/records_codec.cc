@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/records_codec.h"
+#include "daemon/log/records_codec.h"
 
 #include <google/protobuf/descriptor.pb.h>
 

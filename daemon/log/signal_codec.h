@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/telemetry/signal.h"
+#include "daemon/log/signal.h"
 
 namespace gaitd::daemon {
 

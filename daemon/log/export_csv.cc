@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/export_csv.h"
+#include "daemon/log/export_csv.h"
 
 #include <array>
 #include <charconv>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/signal_codec.h"
+#include "daemon/log/signal_codec.h"
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
 
-#include "daemon/telemetry/signal_tree.h"
+#include "daemon/log/signal_tree.h"
 
 namespace gaitd::daemon {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/glob.h"
+#include "daemon/log/glob.h"
 
 namespace gaitd::daemon {
 

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/telemetry/event.h"
-#include "daemon/telemetry/log_writer.h"
-#include "daemon/telemetry/signal.h"
+#include "daemon/log/event.h"
+#include "daemon/log/log_format.h"
+#include "daemon/log/signal.h"
 #include "gaitd/abi/types.h"
 
 namespace gaitd::daemon {

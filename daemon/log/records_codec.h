@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "daemon/telemetry/event.h"
+#include "daemon/log/event.h"
 #include "gaitd/abi/types.h"
 
 namespace gaitd::daemon {

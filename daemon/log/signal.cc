@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/signal.h"
+#include "daemon/log/signal.h"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/telemetry/input_file.h"
+#include "daemon/log/input_file.h"
 
 namespace gaitd::daemon {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/signal_tree.h"
+#include "daemon/log/signal_tree.h"
 
 #include <algorithm>
 #include <cctype>

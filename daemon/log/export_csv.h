@@ -5,7 +5,7 @@
 #include <ostream>
 #include <string>
 
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 
 namespace gaitd::daemon {
 

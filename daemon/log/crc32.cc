@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/crc32.h"
+#include "daemon/log/crc32.h"
 
 #include <array>
 #include <cstring>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/telemetry/signal.h"
+#include "daemon/log/signal.h"
 
 namespace gaitd::daemon {
 

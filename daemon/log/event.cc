@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/event.h"
+#include "daemon/log/event.h"
 
 namespace gaitd::daemon {
 

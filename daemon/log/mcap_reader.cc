@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/mcap_reader.h"
+#include "daemon/log/mcap_reader.h"
 
 #include <zstd.h>
 
 #include <algorithm>
 #include <memory>
 
-#include "daemon/telemetry/bytes.h"
-#include "daemon/telemetry/crc32.h"
-#include "daemon/telemetry/mcap_format.h"
+#include "daemon/log/bytes.h"
+#include "daemon/log/crc32.h"
+#include "daemon/log/mcap_format.h"
 
 namespace gaitd::daemon {
 

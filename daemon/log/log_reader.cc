@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/log_reader.h"
+#include "daemon/log/log_reader.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "daemon/telemetry/glob.h"
-#include "daemon/telemetry/mcap_reader.h"
-#include "daemon/telemetry/records_codec.h"
-#include "daemon/telemetry/signal_codec.h"
+#include "daemon/log/glob.h"
+#include "daemon/log/mcap_reader.h"
+#include "daemon/log/records_codec.h"
+#include "daemon/log/signal_codec.h"
 
 namespace gaitd::daemon {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/input_file.h"
+#include "daemon/log/input_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

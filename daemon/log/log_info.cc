@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/telemetry/log_info.h"
+#include "daemon/log/log_info.h"
 
 #include <algorithm>
 #include <cmath>
