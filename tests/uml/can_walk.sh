@@ -3,3 +3,7 @@
 source "$(dirname "$0")/uml.sh"
 uml_start_or_skip
 uml_run can_walk_inside.sh 1500
+for walk in walk5 walk3; do
+  expect_report "$walk" "r['pelvis'][0] > 1.35 and abs(r['pelvis'][1]) < 0.1" \
+    "r['lowest_pelvis'] > 0.75" "r['motors'] == {'with_torque': 0, 'damped': 0, 'off': 30}"
+done

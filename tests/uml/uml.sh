@@ -1,5 +1,5 @@
 # Sourced by the tests that run in User-Mode Linux: a kernel with CAN, as an ordinary program. Gives
-# uml_start_or_skip, uml_run and uml_boot. Exit code 77: skipped.
+# uml_start_or_skip, uml_run, uml_kernel and expect_report. Exit code 77: skipped.
 source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 uml=$GAITD_BUILD/tests/uml
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -68,4 +68,17 @@ INSIDE
   uml_kernel "$2" mode=chroot script="$scratch/inside.sh" result="$scratch" 2>&1 | grep --line-buffered -v '^SELinux' || true
   [[ -f $scratch/code ]] && code=$(cat "$scratch/code")
   [[ $code == 0 ]] || fail "$1 ended with $code inside User-Mode Linux"
+}
+
+# expect_report NAME EXPRESSION...: python on the report `r` that the fake robot left.
+expect_report() {
+  python3 -S - "$scratch/$1.json" "${@:2}" <<'PYTHON' || fail "$1.json: see the expression above"
+import json, sys
+r = json.load(open(sys.argv[1]))
+for expression in sys.argv[2:]:
+    if not eval(expression):
+        print("expected", expression)
+        print(json.dumps(r))
+        sys.exit(1)
+PYTHON
 }
