@@ -397,6 +397,32 @@ TEST(NullspaceQp, KneesAtTheSingularityGetNoTorqueSpike) {
   }
 }
 
+// More force to the side than friction gives at the weight of the robot: without the limit the free
+// height is spent on it.
+TEST(NullspaceQp, AFreeHeightIsNotSpentOnAJump) {
+  auto vertical_force = [](double rise_speed, double velocity) {
+    Bench b;
+    b.straighten(0.6);
+    b.walk.robot.com_velocity[2] = velocity;
+    b.objectives->momentum_rate[4] = 14.0 * atlas().total_mass;
+    NullspaceQp controller(atlas());
+    controller.set_parameter(static_cast<int>(NullspaceQp::P::kRiseSpeed), rise_speed);
+    EXPECT_EQ(b.process(controller), GAITD_OK);
+    EXPECT_EQ(b.out->info.status, GAITD_WBC_SOLVED);
+    double sum = 0.0;
+    for (const auto& wrench : b.out->info.foot_wrench) sum += wrench[5];
+    return sum / weight();
+  };
+  const double free = vertical_force(100.0, 0.3);
+  EXPECT_GT(free, 1.4);
+  const double time =
+      sdk::Parameters<NullspaceQp::P>(NullspaceQp::kParameters)[NullspaceQp::P::kRiseTime];
+  EXPECT_LE(vertical_force(0.7, 0.3), 1.0 + 0.4 / (time * atlas().gravity) + 1e-6);
+  EXPECT_LE(vertical_force(0.7, 0.7), 1.0 + 1e-6);
+  // Who falls may brake.
+  EXPECT_GT(vertical_force(0.7, -1.0), 0.9 * free);
+}
+
 TEST(NullspaceQp, ThePrivilegedKneeDecidesWhichWayTheBodyMoves) {
   for (double goal : {-50.0, 50.0}) {
     Bench b;

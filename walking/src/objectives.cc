@@ -77,6 +77,7 @@ void ObjectiveBuilder::reset(const GaitdRobotState& robot, const GaitdGaitState&
     time_in_toe_off_[side] = 0.0;
   }
   swing_step_ = -1;
+  pelvis_share_ = 1.0;
   height_.reset(robot.com[2]);
   const Eigen::Quaterniond pelvis = sdk::quaternion(robot.pelvis_orientation);
   yaw_.reset(sdk::yaw_of(pelvis));
@@ -251,18 +252,23 @@ void ObjectiveBuilder::add_orientation_task(int body, const Eigen::Quaterniond& 
   view(task.weight).head<3>().setConstant(weight);
 }
 
-// While a touchdown is overdue the pelvis may turn towards the foot, up to a limit.
-double ObjectiveBuilder::pelvis_weight(const GaitdGaitState& gait,
-                                       const Eigen::Quaterniond& goal) const {
+// While a touchdown is overdue the pelvis may turn towards the foot, up to a limit; afterwards it
+// comes back as slowly as it went.
+double ObjectiveBuilder::pelvis_weight(double dt, const GaitdGaitState& gait,
+                                       const Eigen::Quaterniond& goal) {
   const double full = parameters_[Objective::kPelvisWeight];
   const double fade = parameters_[Objective::kLatePelvisFade];
-  const double late = late_time(gait);
-  if (late <= 0.0 || fade <= 0.0) return full;
-  const Eigen::Vector3d turned =
-      sdk::log_so3(goal.conjugate() * Eigen::Quaterniond(kinematics_.R_WB(0)));
-  const double used = std::max(std::abs(turned.x()) / parameters_[Objective::kPelvisRollLimit],
-                               std::abs(turned.z()) / parameters_[Objective::kPelvisYawLimit]);
-  return full * std::clamp(std::max(1.0 - late / fade, used), 0.05, 1.0);
+  if (fade <= 0.0) return full;
+  double share = 1.0;
+  if (const double late = late_time(gait); late > 0.0) {
+    const Eigen::Vector3d turned =
+        sdk::log_so3(goal.conjugate() * Eigen::Quaterniond(kinematics_.R_WB(0)));
+    const double used = std::max(std::abs(turned.x()) / parameters_[Objective::kPelvisRollLimit],
+                                 std::abs(turned.z()) / parameters_[Objective::kPelvisYawLimit]);
+    share = std::clamp(std::max(1.0 - late / fade, used), 0.05, 1.0);
+  }
+  pelvis_share_ = std::min(share, pelvis_share_ + dt / fade);
+  return full * pelvis_share_;
 }
 
 void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot,
@@ -274,7 +280,8 @@ void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot
   const Eigen::Quaterniond goal = sdk::from_yaw(yaw_.value()) * sdk::exp_so3(tilt_);
   const Eigen::Vector3d rate(0.0, 0.0, yaw_.velocity());
   add_orientation_task(0, goal, rate, parameters_[Objective::kPelvisStiffness],
-                       parameters_[Objective::kPelvisDampingRatio], pelvis_weight(gait, goal), out);
+                       parameters_[Objective::kPelvisDampingRatio], pelvis_weight(dt, gait, goal),
+                       out);
   if (model_.chest_body > 0) {
     add_orientation_task(
         model_.chest_body, goal * chest_in_pelvis_, rate, parameters_[Objective::kChestStiffness],
@@ -313,6 +320,9 @@ void ObjectiveBuilder::add_stance_foot(int side, const GaitdRobotState& robot,
   const double extra = std::max(0.0, parameters_[Objective::kTouchdownDamping] - settled);
   const double rate = settled + extra * std::exp(-time_in_contact_[side] / kTouchdownTime);
   view(task.acceleration) = -rate * view(robot.feet[side].twist);
+  auto stop = view(task.acceleration).tail<3>();
+  const double hardest = parameters_[Objective::kTouchdownStop];
+  if (stop.norm() > hardest) stop *= hardest / stop.norm();
   view(task.weight).setConstant(parameters_[Objective::kStanceWeight]);
 }
 

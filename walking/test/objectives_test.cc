@@ -314,6 +314,42 @@ TEST(ObjectiveBuilder, AFootInContactIsOnlyDamped) {
   }
 }
 
+TEST(ObjectiveBuilder, AFootThatComesDownHardIsNotStoppedHarderThanItMayBe) {
+  WalkWithObjectives w;
+  w.run_for(0.5);
+  const int body = atlas().feet[GAITD_LEFT].body;
+  const double hardest = ObjectiveParameters(kObjectiveParameters)[Objective::kTouchdownStop];
+  for (double speed : {1.0, 100.0}) {
+    w.robot.feet[GAITD_LEFT].twist[5] = -speed;
+    w.tick();
+    for (int t = 0; t < w.objectives->task_count; ++t) {
+      const GaitdTask& task = w.objectives->tasks[t];
+      if (task.index == body) EXPECT_LE(task.acceleration[5], hardest * (1.0 + 1e-9)) << speed;
+      if (task.index == body) EXPECT_GT(task.acceleration[5], 0.0) << speed;
+    }
+  }
+}
+
+TEST(ObjectiveBuilder, ThePelvisLetsGoForALateFootAndComesBackWithoutAStep) {
+  WalkWithObjectives w;
+  w.landing_delay = 0.3;
+  const ObjectiveParameters p(kObjectiveParameters);
+  const double full = p[Objective::kPelvisWeight];
+  double least = full, before = full, fastest = 0.0;
+  w.check = [&](const GaitdObjectives& o) {
+    const double now = o.tasks[0].weight[0];
+    least = std::min(least, now);
+    fastest = std::max(fastest, now - before);
+    before = now;
+  };
+  ASSERT_FALSE(w.machine.walk({.steps = 2, .length = 0.3, .swing_duration = 0.6}).refused());
+  w.tick();
+  ASSERT_TRUE(w.run_until_stand());
+  EXPECT_LT(least, 0.2 * full);
+  EXPECT_LE(fastest, full * w.dt / p[Objective::kLatePelvisFade] * (1.0 + 1e-6));
+  EXPECT_EQ(before, full);
+}
+
 TEST(ObjectiveBuilder, OrientationFeedbackPullsThePelvisBack) {
   WalkWithObjectives w;
   const Eigen::Vector3d tilt(0.1, -0.05, 0.0);

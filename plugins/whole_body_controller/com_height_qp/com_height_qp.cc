@@ -13,7 +13,9 @@ GaitdStatus ComHeightQp::process(const GaitdWholeBodyControllerInput& in,
                                          .horizon = p_[P::kHorizon],
                                          .joint_acceleration = p_[P::kJointAcceleration],
                                          .base_acceleration = p_[P::kBaseAcceleration],
-                                         .torque_scale = p_[P::kTorqueScale]};
+                                         .torque_scale = p_[P::kTorqueScale],
+                                         .rise_speed = p_[P::kRiseSpeed],
+                                         .rise_time = p_[P::kRiseTime]};
   qp_.begin(*in.robot, objectives, objectives.momentum_mask | kLinearRows, limits);
   for (int i = 0; i < joints_; ++i) {
     const double weight = p_[P::kPrivilegedScale] * objectives.privileged_weight[i];

@@ -18,11 +18,13 @@ class ComHeightQp {
     kJointAcceleration,
     kBaseAcceleration,
     kTorqueScale,
+    kRiseSpeed,
+    kRiseTime,
     kMaxIterations,
     kReferenceLeak,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 8> kParameters = {
+  static constexpr std::array<GaitdParameter, 10> kParameters = {
       sdk::real_parameter("privileged_scale", "", 0, 10, 0.1,
                           "of the privileged weights; small: it must not disturb the tasks"),
       kJointRateGainParameter,
@@ -30,6 +32,8 @@ class ComHeightQp {
       kJointAccelerationParameter,
       kBaseAccelerationParameter,
       kTorqueScaleParameter,
+      kRiseSpeedParameter,
+      kRiseTimeParameter,
       kMaxIterationsParameter,
       kReferenceLeakParameter,
   };

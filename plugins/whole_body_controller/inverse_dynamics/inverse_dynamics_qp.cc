@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gaitd/sdk/views.h"
 
@@ -14,6 +15,9 @@ namespace {
 constexpr double kPositionLead = 0.1;
 constexpr double kRateLead = 3.0;
 
+constexpr double kBrakeTime = 0.05;  // s, in which a falling CoM may be stopped
+constexpr double kLeastRise = 0.3;   // weights, left to the contacts of a robot that rises too fast
+
 }  // namespace
 
 using sdk::view;
@@ -23,7 +27,7 @@ InverseDynamicsQp::InverseDynamicsQp(const GaitdModel& model)
       nv_(6 + model.joint_count),
       joints_(model.joint_count),
       dynamics_(model),
-      solver_({nv_ + kMaxRho, 6, model.joint_count}) {
+      solver_({nv_ + kMaxRho, 6, model.joint_count + 1}) {
   const int n = nv_ + kMaxRho;
   rows_.resize(kMaxRows, nv_);
   targets_.resize(kMaxRows);
@@ -35,11 +39,11 @@ InverseDynamicsQp::InverseDynamicsQp(const GaitdModel& model)
   contact_.resize(nv_, kMaxRho);
   H_.resize(n, n);
   A_.resize(6, n);
-  C_.resize(joints_, n);
+  C_.resize(joints_ + 1, n);
   g_.resize(n);
   b_.resize(6);
-  l_.resize(joints_);
-  u_.resize(joints_);
+  l_.resize(joints_ + 1);
+  u_.resize(joints_ + 1);
   lb_.resize(n);
   ub_.resize(n);
   acceleration_.setZero(nv_);
@@ -77,6 +81,7 @@ void InverseDynamicsQp::begin(const GaitdRobotState& robot, const GaitdObjective
   add_costs(objectives);
   add_equalities(objectives);
   add_limits(robot, objectives, limits);
+  add_rise_limit(robot, limits);
 }
 
 void InverseDynamicsQp::add_contacts(const GaitdObjectives& objectives) {
@@ -207,8 +212,8 @@ void InverseDynamicsQp::add_equalities(const GaitdObjectives& objectives) {
 
 void InverseDynamicsQp::add_limits(const GaitdRobotState& robot, const GaitdObjectives& objectives,
                                    const Limits& limits) {
-  C_.leftCols(nv_) = dynamics_.mass_matrix().bottomRows(joints_);
-  C_.middleCols(nv_, rho_count_) = -contact_.bottomRows(joints_).leftCols(rho_count_);
+  C_.topLeftCorner(joints_, nv_) = dynamics_.mass_matrix().bottomRows(joints_);
+  C_.block(0, nv_, joints_, rho_count_) = -contact_.bottomRows(joints_).leftCols(rho_count_);
   for (int i = 0; i < joints_; ++i) {
     const GaitdJoint& joint = model_.joints[i];
     const double rate = robot.joint_velocity[i];
@@ -233,6 +238,18 @@ void InverseDynamicsQp::add_limits(const GaitdRobotState& robot, const GaitdObje
     lb_[nv_ + i] = objectives.contacts[i / kEdges].rho_min;
     ub_[nv_ + i] = objectives.contacts[i / kEdges].rho_max;
   }
+}
+
+void InverseDynamicsQp::add_rise_limit(const GaitdRobotState& robot, const Limits& limits) {
+  C_.row(joints_).head(nv_).setZero();
+  C_.row(joints_).segment(nv_, rho_count_) = edges_.row(2).head(rho_count_);
+  const double velocity = robot.com_velocity[2];
+  const double upwards = velocity < 0.0
+                             ? limits.rise_speed / limits.rise_time - velocity / kBrakeTime
+                             : (limits.rise_speed - velocity) / limits.rise_time;
+  l_[joints_] = -std::numeric_limits<double>::infinity();
+  u_[joints_] = dynamics_.total_mass() *
+                std::max(dynamics_.gravity() + upwards, kLeastRise * dynamics_.gravity());
 }
 
 qp::Problem InverseDynamicsQp::problem() const {

@@ -22,6 +22,11 @@ inline constexpr GaitdParameter kBaseAccelerationParameter = sdk::real_parameter
     "base_acceleration_limit", "m/s^2", 10, 1e5, 1000, "of the pelvis, also in rad/s^2");
 inline constexpr GaitdParameter kTorqueScaleParameter =
     sdk::real_parameter("torque_scale", "", 0.05, 1, 1, "share of the effort limits in use");
+inline constexpr GaitdParameter kRiseSpeedParameter =
+    sdk::real_parameter("rise_speed", "m/s", 0, 100, 0.7,
+                        "of the CoM, upwards, that the contacts may build up: no jumps");
+inline constexpr GaitdParameter kRiseTimeParameter =
+    sdk::real_parameter("rise_time", "s", 0.01, 10, 0.15, "in which they may");
 inline constexpr GaitdParameter kMaxIterationsParameter =
     sdk::integer_parameter("max_iterations", "", 10, 10000, 300,
                            "changes of the active set after which the solver gives up");
@@ -34,6 +39,7 @@ inline constexpr GaitdParameter kReferenceLeakParameter =
 //   min        sum |P (J vdot - p)|^2 + |P_h (A vdot - b)|^2 + |P_rho rho|^2 + |P_v vdot|^2 + …
 //   s.t.       A vdot + Adot v = W_gravity + B rho + W_external       (six centroidal rows)
 //              tau_min <= M_a vdot + c_a - J_c,a' f <= tau_max        (every joint)
+//              sum of the vertical forces <= m (g + (rise speed - CoM velocity) / rise time)
 //              vdot_min <= vdot <= vdot_max,  rho_min <= rho <= rho_max
 // Call begin(), add what is special to the variant, then solve() and write().
 class InverseDynamicsQp {
@@ -48,6 +54,8 @@ class InverseDynamicsQp {
     double joint_acceleration;  // rad/s^2
     double base_acceleration;   // rad/s^2, m/s^2
     double torque_scale;        // share of the effort limits that may be used
+    double rise_speed;          // m/s, of the CoM that the contacts may build up
+    double rise_time;           // s, in which they may
   };
 
   explicit InverseDynamicsQp(const GaitdModel& model);
@@ -86,6 +94,9 @@ class InverseDynamicsQp {
   void add_equalities(const GaitdObjectives& objectives);
   void add_limits(const GaitdRobotState& robot, const GaitdObjectives& objectives,
                   const Limits& limits);
+  // Keeps the sum of the vertical forces from throwing the robot into the air: with the height
+  // free, a large force is the cheapest way to a large horizontal one.
+  void add_rise_limit(const GaitdRobotState& robot, const Limits& limits);
   double previous_rho(const GaitdObjectives& objectives, int contact, int edge) const;
   void remember(const GaitdObjectives& objectives);
   void write_commands(double dt, double reference_leak, const GaitdRobotState& robot,

@@ -16,7 +16,9 @@ GaitdStatus NullspaceQp::process(const GaitdWholeBodyControllerInput& in,
                                          .horizon = p_[P::kHorizon],
                                          .joint_acceleration = p_[P::kJointAcceleration],
                                          .base_acceleration = p_[P::kBaseAcceleration],
-                                         .torque_scale = p_[P::kTorqueScale]};
+                                         .torque_scale = p_[P::kTorqueScale],
+                                         .rise_speed = p_[P::kRiseSpeed],
+                                         .rise_time = p_[P::kRiseTime]};
   qp_.begin(*in.robot, objectives, objectives.momentum_mask, limits);
   add_privileged(objectives);
   qp_.solve(static_cast<int>(p_[P::kMaxIterations]));

@@ -21,11 +21,13 @@ class NullspaceQp {
     kJointAcceleration,
     kBaseAcceleration,
     kTorqueScale,
+    kRiseSpeed,
+    kRiseTime,
     kMaxIterations,
     kReferenceLeak,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 8> kParameters = {
+  static constexpr std::array<GaitdParameter, 10> kParameters = {
       sdk::real_parameter("damping", "", 1e-5, 1, 0.005,
                           "of the projector, for task rows of unit length"),
       kJointRateGainParameter,
@@ -33,6 +35,8 @@ class NullspaceQp {
       kJointAccelerationParameter,
       kBaseAccelerationParameter,
       kTorqueScaleParameter,
+      kRiseSpeedParameter,
+      kRiseTimeParameter,
       kMaxIterationsParameter,
       kReferenceLeakParameter,
   };

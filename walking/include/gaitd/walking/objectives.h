@@ -66,7 +66,7 @@ class ObjectiveBuilder {
   void add_orientation_task(int body, const Eigen::Quaterniond& goal,
                             const Eigen::Vector3d& goal_rate, double stiffness,
                             double damping_ratio, double weight, GaitdObjectives& out) const;
-  double pelvis_weight(const GaitdGaitState& gait, const Eigen::Quaterniond& goal) const;
+  double pelvis_weight(double dt, const GaitdGaitState& gait, const Eigen::Quaterniond& goal);
   // The rest of the sole is unloaded: the foot may roll.
   bool on_toe(int side) const;
   // Share of the full load that the contacts of a foot may carry now, 0..1.
@@ -90,6 +90,7 @@ class ObjectiveBuilder {
   ReferenceFilter height_;
   ReferenceFilter yaw_;
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // rad, held while standing, level in a walk
+  double pelvis_share_ = 1.0;  // of the weight of the pelvis orientation
   std::array<double, GAITD_MAX_FEET> time_in_contact_{};
   std::array<double, GAITD_MAX_FEET> time_in_toe_off_{};
   bool impedance_given_ = false;

@@ -109,7 +109,7 @@ inline constexpr std::array<GaitdParameter, 9> kSwingParameters = {
     real_parameter("touchdown_velocity", "m/s", 0, 2, 0.3, "downwards at the end of the swing"),
     real_parameter("apex_fraction", "", 0.1, 0.9, 0.45, "part of the swing at the highest point"),
     real_parameter("late_velocity", "m/s", 0, 2, 0.3, "downwards when the touchdown is due"),
-    real_parameter("late_acceleration", "m/s^2", 0, 50, 25, "downwards while it is overdue"),
+    real_parameter("late_acceleration", "m/s^2", 0, 50, 10, "downwards while it is overdue"),
     real_parameter("edge_height", "m", 0.01, 1, 0.12,
                    "step up or down that counts as an edge in full; less of it in proportion"),
     real_parameter("rise_wait", "", 0, 0.5, 0.18,
@@ -204,6 +204,7 @@ enum class Objective {
   kPostureWeight,
   kStanceDamping,
   kTouchdownDamping,
+  kTouchdownStop,
   kStanceWeight,
   kSwingStiffness,
   kSwingHeightStiffness,
@@ -226,7 +227,7 @@ enum class Objective {
   kStrikeDriveDamping,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 47> kObjectiveParameters = {
+inline constexpr std::array<GaitdParameter, 48> kObjectiveParameters = {
     real_parameter("friction", "", 0.05, 2, 0.7, "coefficient that the controller counts on"),
     real_parameter("com_height", "", 0.5, 1.2, 1.0,
                    "CoM height when standing, over the height in the nominal posture"),
@@ -262,6 +263,8 @@ inline constexpr std::array<GaitdParameter, 47> kObjectiveParameters = {
     real_parameter("stance_damping", "1/s", 0, 200, 3, "of the twist of a foot in contact"),
     real_parameter("touchdown_damping", "1/s", 0, 200, 30,
                    "the same in the first moments after touchdown, fading out"),
+    real_parameter("touchdown_stop", "m/s^2", 0, 1000, 9,
+                   "deceleration that it may ask for: the ground stops the foot anyway"),
     real_parameter("stance_weight", "", 0, 1e6, 1000, "of a foot in contact"),
     real_parameter("swing_stiffness", "1/s^2", 0, 2000, 150, "of the swing foot"),
     real_parameter("swing_height_stiffness", "1/s^2", 0, 2000, 200,
