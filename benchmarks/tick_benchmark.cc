@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr const char* kTimes[] = {"total", "estimator", "planner", "adjuster", "toe_off", "wbc"};
 constexpr const char* kWalk = "straight-0.35";
+constexpr double kPeriod = 1000.0;  // us
 
 // Keeps this process and its children on one processor.
 class OneProcessor {
@@ -112,7 +113,10 @@ const Runs& runs(const std::string& scenario) {
 void tick(benchmark::State& state, const std::string& scenario, const std::string& name) {
   const Runs& r = runs(scenario);
   if (!r.ok) return state.SkipWithError("gaitctl run failed");
-  for (auto _ : state) show(state, distribution(r.least_us.at(name)), r.calibration);
+  const std::vector<double>& times = r.least_us.at(name);
+  for (auto _ : state) show(state, distribution(times), r.calibration);
+  state.counters["overruns"] = static_cast<double>(
+      std::count_if(times.begin(), times.end(), [](double us) { return us > kPeriod; }));
 }
 
 // Seconds of the walk over seconds that it took: of the clock, and of the processor.

@@ -2,6 +2,7 @@
 #include "walk_problems.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "nullspace_qp.h"
@@ -75,10 +76,13 @@ QpSequence walk_problems(const std::string& walk, double torque_scale) {
 
 void scale_torque_limits(double scale, QpSequence* problems) {
   for (auto& problem : *problems) {
-    const Eigen::VectorXd middle = 0.5 * (problem.l + problem.u);
-    const Eigen::VectorXd half = 0.5 * scale * (problem.u - problem.l);
-    problem.l = middle - half;
-    problem.u = middle + half;
+    for (Eigen::Index row = 0; row < problem.l.size(); ++row) {
+      if (!std::isfinite(problem.l[row])) continue;  // of the forces together
+      const double middle = 0.5 * (problem.l[row] + problem.u[row]);
+      const double half = 0.5 * scale * (problem.u[row] - problem.l[row]);
+      problem.l[row] = middle - half;
+      problem.u[row] = middle + half;
+    }
   }
 }
 

@@ -23,6 +23,6 @@ void scale_torque_limits(double scale, QpSequence* problems);
 // average; 0 if there is none that can be solved.
 double binding_scale(const QpSequence& problems);
 
-inline constexpr qp::Dimensions kMaxProblem{100, 6, 30};
+inline constexpr qp::Dimensions kMaxProblem{100, 6, 31};
 
 }  // namespace gaitd::benchmarks

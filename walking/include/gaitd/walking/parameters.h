@@ -109,7 +109,7 @@ inline constexpr std::array<GaitdParameter, 9> kSwingParameters = {
     real_parameter("touchdown_velocity", "m/s", 0, 2, 0.3, "downwards at the end of the swing"),
     real_parameter("apex_fraction", "", 0.1, 0.9, 0.45, "part of the swing at the highest point"),
     real_parameter("late_velocity", "m/s", 0, 2, 0.3, "downwards when the touchdown is due"),
-    real_parameter("late_acceleration", "m/s^2", 0, 50, 10, "downwards while it is overdue"),
+    real_parameter("late_acceleration", "m/s^2", 0, 50, 13, "downwards while it is overdue"),
     real_parameter("edge_height", "m", 0.01, 1, 0.12,
                    "step up or down that counts as an edge in full; less of it in proportion"),
     real_parameter("rise_wait", "", 0, 0.5, 0.18,
