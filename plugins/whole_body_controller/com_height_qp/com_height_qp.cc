@@ -9,14 +9,8 @@ GaitdStatus ComHeightQp::process(const GaitdWholeBodyControllerInput& in,
                                  GaitdWholeBodyControllerOutput& out) {
   const GaitdObjectives& objectives = *in.objectives;
   constexpr std::uint32_t kLinearRows = 0b111000;
-  const InverseDynamicsQp::Limits limits{.joint_rate_gain = p_[P::kJointRateGain],
-                                         .horizon = p_[P::kHorizon],
-                                         .joint_acceleration = p_[P::kJointAcceleration],
-                                         .base_acceleration = p_[P::kBaseAcceleration],
-                                         .torque_scale = p_[P::kTorqueScale],
-                                         .rise_speed = p_[P::kRiseSpeed],
-                                         .rise_time = p_[P::kRiseTime]};
-  qp_.begin(*in.robot, objectives, objectives.momentum_mask | kLinearRows, limits);
+  qp_.begin(*in.robot, objectives, objectives.momentum_mask | kLinearRows,
+            InverseDynamicsQp::limits_of(p_));
   for (int i = 0; i < joints_; ++i) {
     const double weight = p_[P::kPrivilegedScale] * objectives.privileged_weight[i];
     if (weight > 0.0) qp_.add_joint(i, objectives.privileged_acceleration[i], weight);

@@ -16,7 +16,7 @@ constexpr double kPositionLead = 0.1;
 constexpr double kRateLead = 3.0;
 
 constexpr double kBrakeTime = 0.05;  // s, in which a falling CoM may be stopped
-constexpr double kLeastRise = 0.3;   // weights, left to the contacts of a robot that rises too fast
+constexpr double kLeastForce = 0.3;  // weights, left to the contacts of a robot that rises too fast
 
 }  // namespace
 
@@ -249,7 +249,7 @@ void InverseDynamicsQp::add_rise_limit(const GaitdRobotState& robot, const Limit
                              : (limits.rise_speed - velocity) / limits.rise_time;
   l_[joints_] = -std::numeric_limits<double>::infinity();
   u_[joints_] = dynamics_.total_mass() *
-                std::max(dynamics_.gravity() + upwards, kLeastRise * dynamics_.gravity());
+                std::max(dynamics_.gravity() + upwards, kLeastForce * dynamics_.gravity());
 }
 
 qp::Problem InverseDynamicsQp::problem() const {

@@ -39,7 +39,9 @@ inline constexpr GaitdParameter kReferenceLeakParameter =
 //   min        sum |P (J vdot - p)|^2 + |P_h (A vdot - b)|^2 + |P_rho rho|^2 + |P_v vdot|^2 + …
 //   s.t.       A vdot + Adot v = W_gravity + B rho + W_external       (six centroidal rows)
 //              tau_min <= M_a vdot + c_a - J_c,a' f <= tau_max        (every joint)
-//              sum of the vertical forces <= m (g + (rise speed - CoM velocity) / rise time)
+//              sum of the vertical forces <= m (g + (rise speed - v_z) / rise time), v_z of the
+//              CoM;
+//                                            more while it falls, so that it can be braked
 //              vdot_min <= vdot <= vdot_max,  rho_min <= rho <= rho_max
 // Call begin(), add what is special to the variant, then solve() and write().
 class InverseDynamicsQp {
@@ -57,6 +59,17 @@ class InverseDynamicsQp {
     double rise_speed;          // m/s, of the CoM that the contacts may build up
     double rise_time;           // s, in which they may
   };
+  // From the parameters of a variant, `P` the enumeration that names them.
+  template <class P>
+  static Limits limits_of(const sdk::Parameters<P>& p) {
+    return {.joint_rate_gain = p[P::kJointRateGain],
+            .horizon = p[P::kHorizon],
+            .joint_acceleration = p[P::kJointAcceleration],
+            .base_acceleration = p[P::kBaseAcceleration],
+            .torque_scale = p[P::kTorqueScale],
+            .rise_speed = p[P::kRiseSpeed],
+            .rise_time = p[P::kRiseTime]};
+  }
 
   explicit InverseDynamicsQp(const GaitdModel& model);
 

@@ -12,14 +12,7 @@ NullspaceQp::NullspaceQp(const GaitdModel& model)
 GaitdStatus NullspaceQp::process(const GaitdWholeBodyControllerInput& in,
                                  GaitdWholeBodyControllerOutput& out) {
   const GaitdObjectives& objectives = *in.objectives;
-  const InverseDynamicsQp::Limits limits{.joint_rate_gain = p_[P::kJointRateGain],
-                                         .horizon = p_[P::kHorizon],
-                                         .joint_acceleration = p_[P::kJointAcceleration],
-                                         .base_acceleration = p_[P::kBaseAcceleration],
-                                         .torque_scale = p_[P::kTorqueScale],
-                                         .rise_speed = p_[P::kRiseSpeed],
-                                         .rise_time = p_[P::kRiseTime]};
-  qp_.begin(*in.robot, objectives, objectives.momentum_mask, limits);
+  qp_.begin(*in.robot, objectives, objectives.momentum_mask, InverseDynamicsQp::limits_of(p_));
   add_privileged(objectives);
   qp_.solve(static_cast<int>(p_[P::kMaxIterations]));
   qp_.write(in.time.period, p_[P::kReferenceLeak], *in.robot, objectives, out);
