@@ -39,7 +39,8 @@ void projector(benchmark::State& state, const std::string& walk) {
   InverseDynamicsQp qp(atlas());
   plugins::NullSpaceProjector projector(6 + joints, InverseDynamicsQp::kMaxRows);
   Eigen::VectorXd row(6 + joints);
-  const InverseDynamicsQp::Limits limits{30.0, 0.02, 2000.0, 1000.0, 1.0};
+  const sdk::Parameters<plugins::NullspaceQp::P> defaults{plugins::NullspaceQp::kParameters};
+  const auto limits = InverseDynamicsQp::limits_of(defaults);
   std::vector<double> least(ticks.size(), 1e9);
   for (auto _ : state) {
     const double before = calibration();

@@ -423,6 +423,38 @@ TEST(NullspaceQp, AFreeHeightIsNotSpentOnAJump) {
   EXPECT_GT(vertical_force(0.7, -1.0), 0.9 * free);
 }
 
+// A chest that is suddenly told to turn hard: what the torques gain in a tick is worth less the
+// more it is, and contacts and limits hold all the same.
+TEST(NullspaceQp, TorquesDoNotJump) {
+  auto largest_change = [](double weight) {
+    Bench b;
+    b.straighten(0.3);
+    NullspaceQp controller(atlas());
+    controller.set_parameter(static_cast<int>(NullspaceQp::P::kTorqueRateWeight), weight);
+    EXPECT_EQ(b.process(controller), GAITD_OK);
+    const auto before = b.out->commands;
+    for (int i = 0; i < b.objectives->task_count; ++i) {
+      GaitdTask& task = b.objectives->tasks[i];
+      if (task.index == atlas().chest_body) task.acceleration[0] = 60.0;
+    }
+    EXPECT_EQ(b.process(controller), GAITD_OK);
+    EXPECT_EQ(b.out->info.status, GAITD_WBC_SOLVED);
+    EXPECT_LT(b.out->info.kkt_residual, 1e-8);
+    double change = 0.0;
+    for (int i = 0; i < atlas().joint_count; ++i) {
+      const double step = b.out->commands.joints[i].torque - before.joints[i].torque;
+      change = std::max(change, std::abs(step) / atlas().joints[i].effort_limit);
+      EXPECT_LE(std::abs(b.out->commands.joints[i].torque), atlas().joints[i].effort_limit + 1e-6);
+    }
+    return change;
+  };
+  const double rate =
+      sdk::Parameters<NullspaceQp::P>(NullspaceQp::kParameters)[NullspaceQp::P::kTorqueRate];
+  const double free = largest_change(0.0);
+  EXPECT_GT(free, 2.0 * rate * 0.001);
+  EXPECT_LT(largest_change(1e6), 0.15);
+}
+
 TEST(NullspaceQp, ThePrivilegedKneeDecidesWhichWayTheBodyMoves) {
   for (double goal : {-50.0, 50.0}) {
     Bench b;

@@ -12,10 +12,11 @@ namespace {
 
 using sdk::view;
 
-constexpr double kHeightRate = 8.0;      // 1/s, of the reference filter of the CoM height
-constexpr double kTouchdownTime = 0.05;  // s, in which the touchdown damping fades
-constexpr double kHeelStrikeTime = 0.1;  // s after touchdown in which the drives damp
-constexpr double kLevelRate = 1.0;       // 1/s, with which a walk levels the pelvis
+constexpr double kHeightRate = 8.0;        // 1/s, of the reference filter of the CoM height
+constexpr double kTouchdownTime = 0.05;    // s, in which the touchdown damping fades
+constexpr double kHeelStrikeTime = 0.1;    // s after touchdown in which the drives damp
+constexpr double kClosingTouchdown = 0.5;  // of the touchdown velocity
+constexpr double kLevelRate = 1.0;         // 1/s, with which a walk levels the pelvis
 constexpr double kToeEdge = 0.01;  // m, points this far behind the toe point are not on the edge
 constexpr double kYawRate = 6.0;   // 1/s, of the reference filter of the heading
 constexpr std::uint32_t kAngularRows = 0b000111;
@@ -361,13 +362,19 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
                                       const GaitdGaitState& gait, const GaitdPose& lift_off,
                                       GaitdObjectives& out) {
   const GaitdFootstep& goal = gait.adjusted[0];
+  SwingParameters swing = swing_parameters_;
+  if (goal.closing != 0) {
+    // Nothing follows: there is time to meet the ground gently.
+    const int touchdown = static_cast<int>(Swing::kTouchdownVelocity);
+    swing.set(touchdown, kClosingTouchdown * swing[Swing::kTouchdownVelocity]);
+  }
   if (swing_step_ != gait.step_index) {
     swing_.begin(lift_off, view(robot.feet[side].twist), gait.footholds[side].pose.position[2],
-                 goal, gait.phase_duration, swing_parameters_);
+                 goal, gait.phase_duration, swing);
     swing_step_ = gait.step_index;
     swing_revision_ = gait.plan_revision;
   } else if (swing_revision_ != gait.plan_revision) {
-    swing_.replan(gait.time_in_phase, goal, gait.phase_duration, swing_parameters_);
+    swing_.replan(gait.time_in_phase, goal, gait.phase_duration, swing);
     swing_revision_ = gait.plan_revision;
   }
   const SwingTrajectory::Sample s = swing_.evaluate(gait.time_in_phase);

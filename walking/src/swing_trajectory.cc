@@ -10,8 +10,11 @@ namespace gaitd::walking {
 namespace {
 
 constexpr double kShortest = 0.01;  // s, of one polynomial
-constexpr double kFastest = 0.7;    // m/s, gained at most by an overdue touchdown
-constexpr double kOnset = 0.05;     // s
+constexpr double kBrisk = 30.0;     // m/s^2, to reach a foothold that moved after the arrival
+constexpr double kPeak =
+    5.77;  // largest acceleration of a quintic from rest to rest, per way / time^2
+constexpr double kFastest = 0.7;  // m/s, gained at most by an overdue touchdown
+constexpr double kOnset = 0.05;   // s
 
 double blend(double a, double b, double share) { return a + share * (b - a); }
 
@@ -29,9 +32,8 @@ Hurry hurry(double late, double acceleration) {
   const double rest = std::max(0.0, kFastest - early.gain) / acceleration;
   const double t = std::min(late - onset, rest);
   const double after = late - onset - t;
-  return {early.gain + acceleration * t,
-          early.way + early.gain * t + 0.5 * acceleration * t * t +
-              (early.gain + acceleration * t) * after};
+  return {early.gain + acceleration * t, early.way + early.gain * t + 0.5 * acceleration * t * t +
+                                             (early.gain + acceleration * t) * after};
 }
 
 bool same_goal(const GaitdFootstep& a, const GaitdFootstep& b) {
@@ -105,14 +107,17 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   const double rise = std::max(0.0, edge(to, parameters));
   const double drop = std::max(0.0, -edge(to, parameters));
   leave_ = std::max(t, rise * parameters[Swing::kRiseWait] * duration_);
-  arrive_ =
-      std::max(blend(1.0, parameters[Swing::kDropArrive], drop) * duration_, leave_ + kShortest);
+  // A foothold that moves late is reached in its own time, and at touchdown at the latest.
+  const Eigen::Vector3d end = sdk::view(to.pose.position);
+  const double move = (end - now.position).head<2>().norm();
+  const double needed = std::sqrt(kPeak * move / kBrisk);
+  arrive_ = std::max({blend(1.0, parameters[Swing::kDropArrive], drop) * duration_,
+                      std::min(leave_ + needed, duration_), leave_ + kShortest});
   level_ = std::max(blend(1.0, parameters[Swing::kRiseLevel], rise) * duration_, t + kShortest);
   const double way = arrive_ - leave_;
   // Who waits does not move.
   const Eigen::Vector3d v = leave_ > t ? Eigen::Vector3d::Zero() : now.velocity;
   const Eigen::Vector3d a = leave_ > t ? Eigen::Vector3d::Zero() : now.acceleration;
-  const Eigen::Vector3d end = sdk::view(to.pose.position);
   x_.fit(now.position.x(), v.x(), a.x(), end.x(), 0.0, 0.0, way);
   y_.fit(now.position.y(), v.y(), a.y(), end.y(), 0.0, 0.0, way);
   const double down = -parameters[Swing::kTouchdownVelocity];

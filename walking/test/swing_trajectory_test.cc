@@ -146,6 +146,20 @@ TEST(SwingTrajectory, StaysAboveTheGroundOnTheWay) {
   }
 }
 
+// Down an edge the foot is above its foothold well before the end. A foothold that moves after that
+// is reached in what is left, not at once.
+TEST(SwingTrajectory, AFootholdThatMovesAfterTheArrivalIsNoJolt) {
+  SwingTrajectory s = swing(pose(0, 0.1, 0), landing(pose(0.3, 0.1, -0.2)));
+  const double moved = 0.9 * kDuration;
+  s.replan(moved, landing(pose(0.32, 0.1, -0.2)), kDuration, parameters());
+  double hardest = 0.0;
+  for (double t = moved; t <= kDuration; t += 1e-4) {
+    hardest = std::max(hardest, s.evaluate(t).acceleration.head<2>().norm());
+  }
+  EXPECT_LT(hardest, 5.8 * 0.02 / std::pow(kDuration - moved, 2));
+  EXPECT_NEAR(s.evaluate(kDuration).position.x(), 0.32, 1e-9);
+}
+
 TEST(SwingTrajectory, KeepsGoingDownWhenTheGroundIsLate) {
   const SwingTrajectory s = swing(pose(0, 0, 0), landing(pose(0.5, 0.1, 0)));
   const double late = parameters()[Swing::kLateVelocity];

@@ -20,6 +20,11 @@ constexpr double kStartAccelerometerBias = 0.05;  // m/s^2
 
 double low_pass(double pole, double dt) { return 1.0 - std::exp(-pole * dt); }
 
+constexpr double kBalancedLoad = 0.5;  // weights; less is flight, or a robot that hangs
+
+constexpr double kPushStanding = 0.6;  // m/s^2 that only a push makes
+constexpr double kPushWalking = 3.0;
+
 // Standard deviation of one sample, from a density.
 double per_sample(double density, double dt) { return density / std::sqrt(dt); }
 
@@ -298,6 +303,30 @@ void InvariantEkf::correct(const GaitdStateEstimatorInput& in, const GaitdRobotS
   }
 }
 
+void InvariantEkf::observe_balance(const GaitdStateEstimatorInput& in,
+                                   const GaitdRobotState& robot) {
+  if (sdk::first_usable_imu(model_, *in.sensors) < 0) return;
+  double load = 0.0;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), loaded = Eigen::Vector3d::Zero();
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    if (!sdk::usable(in.sensors->feet[side])) return;
+    const GaitdFootState& foot = robot.feet[side];
+    if (foot.cop_valid == 0) continue;
+    load += foot.wrench[5];
+    loaded += foot.wrench[5] * sole_point(side, {foot.cop[0], foot.cop[1], 0.0});
+    force += sole_orientation(side) * view(foot.wrench).tail<3>();
+  }
+  if (load < kBalancedLoad * weight_) return;
+  const Eigen::Vector3d line = (kinematics_.com() - loaded / load).normalized();
+  const Eigen::Vector3d balanced = line.dot(force) / model_.total_mass * line;
+  // A push is in it too.
+  const Eigen::Vector3d error = specific_force_ - balanced - filter_.accelerometer_bias;
+  const bool standing = in.gait->phase == GAITD_PHASE_STAND;
+  if (error.head<2>().norm() > (standing ? kPushStanding : kPushWalking)) return;
+  filter_.correct_specific_force(specific_force_, balanced,
+                                 per_sample(p_[P::kBalanceNoise], in.time.period));
+}
+
 void InvariantEkf::write(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
   sdk::Vector6d twist;
   twist << rate_ - filter_.gyro_bias, filter_.orientation.conjugate() * pelvis_velocity();
@@ -363,6 +392,7 @@ GaitdStatus InvariantEkf::process(const GaitdStateEstimatorInput& in, GaitdRobot
   }
   update_trust(in);
   correct(in, out);
+  observe_balance(in, out);
   write(in, out);
   return GAITD_OK;
 }

@@ -17,6 +17,9 @@ namespace gaitd::plugins {
 // the back edge of its sole: together they hold the heading too. They may move more freely up and
 // down than sideways, so that a foot that gives way under its load does not pitch the robot. A foot
 // that has just landed or is on its toe has the front point only.
+//
+// On average the contact forces pass through the CoM: the direction from the CoP to the CoM of the
+// model is that of the specific force, without the bias of the accelerometer.
 class InvariantEkf {
  public:
   enum class P {
@@ -38,9 +41,10 @@ class InvariantEkf {
     kStandingShare,
     kKinematicNoise,
     kTiltNoise,
+    kBalanceNoise,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 18> kParameters = {
+  static constexpr std::array<GaitdParameter, 19> kParameters = {
       sdk::real_parameter("trust_on", "load", 0, 1, 0.35, "share that makes a foot a contact"),
       sdk::real_parameter("trust_off", "load", 0, 1, 0.30, "share below which it is none"),
       sdk::real_parameter("trust_delay", "s", 0, 0.5, 0.02, "that the share must last"),
@@ -66,6 +70,8 @@ class InvariantEkf {
                           "density, of a contact seen through the encoders"),
       sdk::real_parameter("tilt_noise", "rad/sqrtHz", 1e-5, 1, 3e-3,
                           "density, of an IMU that measures its orientation"),
+      sdk::real_parameter("balance_noise", "m/s^2/sqrtHz", 1e-3, 1e6, 0.12,
+                          "density, of the specific force that CoP and CoM tell"),
   };
 
   explicit InvariantEkf(const GaitdModel& model);
@@ -104,6 +110,7 @@ class InvariantEkf {
   void predict(const GaitdStateEstimatorInput& in);
   void update_trust(const GaitdStateEstimatorInput& in);
   void correct(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
+  void observe_balance(const GaitdStateEstimatorInput& in, const GaitdRobotState& robot);
   void write(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void write_feet(GaitdRobotState& out);
   // The joints of a robot whose pelvis stands still at the origin.

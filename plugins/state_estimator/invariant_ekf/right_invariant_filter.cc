@@ -120,6 +120,18 @@ void RightInvariantFilter::correct_tilt(const Eigen::Quaterniond& measured, doub
   correct(cross, spread, innovation);
 }
 
+void RightInvariantFilter::correct_specific_force(const Eigen::Vector3d& accelerometer,
+                                                  const Eigen::Vector3d& measured, double sigma) {
+  Eigen::Vector3d innovation = accelerometer - measured - accelerometer_bias;
+  innovation.z() = 0.0;
+  Gain cross = covariance.middleCols<3>(kAccelerometerBias);
+  cross.col(2).setZero();
+  Eigen::Matrix3d spread = cross.middleRows<3>(kAccelerometerBias);
+  spread.row(2).setZero();
+  spread += sigma * sigma * Eigen::Matrix3d::Identity();
+  correct(cross, spread, innovation);
+}
+
 void RightInvariantFilter::correct(const Gain& cross, const Eigen::Matrix3d& innovation_covariance,
                                    const Eigen::Vector3d& innovation) {
   const Gain gain = cross * innovation_covariance.inverse();

@@ -54,6 +54,11 @@ class RightInvariantFilter {
   // An orientation that was measured; its heading is not used. sigma: rad.
   void correct_tilt(const Eigen::Quaterniond& measured, double sigma);
 
+  // A specific force in the axes of I that was measured by other means and has no bias, beside that
+  // of the accelerometer; its third axis is not used. sigma: m/s^2.
+  void correct_specific_force(const Eigen::Vector3d& accelerometer, const Eigen::Vector3d& measured,
+                              double sigma);
+
   bool has_point(int i) const { return present_[i]; }
   const Eigen::Vector3d& point(int i) const { return points_[i]; }  // m, W
 

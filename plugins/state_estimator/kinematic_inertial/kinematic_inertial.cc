@@ -15,9 +15,22 @@ using sdk::view;
 // The first attitude comes from one noisy sample. For this long (s) the mean over all samples so
 // far, carried along by the gyroscope, takes its place: what the robot does meanwhile averages out.
 constexpr double kAveragingTime = 0.2;
+constexpr double kFirstSample = 0.1;  // s, as which the first one counts: the start is a jolt
 
 // Anchors are at their best while standing: the attitude is levelled this many times faster then.
 constexpr double kStandingFactor = 3.0;
+constexpr double kStandingBalanceFactor = 6.0;  // likewise, of the accelerometer bias
+
+// Share of the weight that the feet must carry before CoP and CoM tell anything.
+constexpr double kBalancedShare = 0.5;
+// m/s^2, most that the accelerometer may show beside the balance: a push is in it too.
+constexpr double kLargestError = 2.0;
+
+// A robot at rest: for so long (s) no more of that (m/s^2), and no foot turned faster (rad/s).
+constexpr double kQuietTime = 0.1;
+constexpr double kQuiet = 1.0;
+constexpr double kStill = 0.2;
+constexpr double kStillTime = 0.2;  // s
 
 double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * hertz * dt); }
 
@@ -38,6 +51,9 @@ KinematicInertial::KinematicInertial(const GaitdModel& model)
 void KinematicInertial::reset() {
   initialised_ = false;
   time_since_start_ = 0.0;
+  time_quiet_ = 0.0;
+  time_still_ = 0.0;
+  turned_.setZero();
   rate_.setZero();
   last_rate_.setZero();
   specific_force_.setZero();
@@ -49,6 +65,7 @@ void KinematicInertial::reset() {
   velocity_W_.setZero();
   gyro_bias_.setZero();
   accelerometer_bias_.setZero();
+  balance_bias_.setZero();
   feet_ = {};
 }
 
@@ -58,7 +75,7 @@ void KinematicInertial::get_state(GaitdStateEstimatorState& s) const {
   sdk::store(orientation_, s.pelvis_orientation);
   view(s.pelvis_velocity) = velocity_W_;
   view(s.gyro_bias) = gyro_bias_;
-  view(s.accelerometer_bias) = accelerometer_bias_;
+  view(s.accelerometer_bias) = balance_bias_ + accelerometer_bias_;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     s.contact[side] = feet_[side].contact;
     view(s.anchor[side]) = feet_[side].anchor;
@@ -74,7 +91,8 @@ void KinematicInertial::set_state(const GaitdStateEstimatorState& s) {
   orientation_ = sdk::quaternion(s.pelvis_orientation);
   velocity_W_ = view(s.pelvis_velocity);
   gyro_bias_ = view(s.gyro_bias);
-  accelerometer_bias_ = view(s.accelerometer_bias);
+  balance_bias_ = view(s.accelerometer_bias);
+  accelerometer_bias_.setZero();
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     Foot& foot = feet_[side];
     foot = {.normal_force = foot.normal_force};
@@ -187,8 +205,8 @@ void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in, doub
   const Eigen::Vector3d turning = lever.squaredNorm() > 0.0 && dt > 0.0
                                       ? Eigen::Vector3d((rate_ - last_rate_) / dt)
                                       : Eigen::Vector3d::Zero();
-  specific_force_ =
-      mount * view(sensor->specific_force) - turning.cross(lever) - rate_.cross(rate_.cross(lever));
+  specific_force_ = mount * view(sensor->specific_force) - turning.cross(lever) -
+                    rate_.cross(rate_.cross(lever)) - balance_bias_;
   last_rate_ = rate_;
 
   orientation_ = (orientation_ * sdk::exp_so3(rate_ * dt)).normalized();
@@ -199,7 +217,7 @@ void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in, doub
     tilt = sdk::log_so3(measured * orientation_.conjugate());
   } else if (time_since_start_ < kAveragingTime) {
     tilt = (orientation_ * specific_force_).cross(Eigen::Vector3d::UnitZ()) / model_.gravity;
-    share = dt / (time_since_start_ + dt);
+    share = dt / (time_since_start_ + kFirstSample);
   } else {
     return;  // level_attitude() does it
   }
@@ -241,6 +259,42 @@ void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobot
   view(out.cop) = last_cop_;
 }
 
+void KinematicInertial::observe_bias(const GaitdStateEstimatorInput& in,
+                                     const GaitdRobotState& robot) {
+  int index = 0;
+  const GaitdImuSensor* sensor = imu(*in.sensors, index);
+  if (sensor == nullptr || sensor->has_orientation != 0) return;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), cop = Eigen::Vector3d::Zero();
+  double total = 0.0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    if (!usable(in.sensors->feet[side])) return;
+    const GaitdFootState& foot = robot.feet[side];
+    if (foot.cop_valid == 0) continue;
+    force += sole_orientation(side) * view(foot.wrench).tail<3>();
+    cop += foot.wrench[5] * view(foot.cop_world);
+    total += foot.wrench[5];
+  }
+  if (total < kBalancedShare * weight_) return;  // in flight, or hanging
+  const Eigen::Vector3d arm = kinematics_.com() - cop / total;
+  const Eigen::Vector3d balanced = force.dot(arm) / arm.squaredNorm() / model_.total_mass * arm;
+  Eigen::Vector3d error = specific_force_ - orientation_.conjugate() * balanced;
+  error.z() = 0.0;
+  const bool standing = in.gait->phase == GAITD_PHASE_STAND;
+  if (!standing || error.norm() > kQuiet) time_quiet_ = 0.0;
+  if (standing && time_quiet_ < kQuietTime) return;
+  error = error.cwiseMax(-kLargestError).cwiseMin(kLargestError);
+  const double faster = standing ? kStandingBalanceFactor : 1.0;
+  const double share = std::min(1.0, faster * p_[P::kBalanceRate] * in.time.period);
+  const double limit = p_[P::kBalanceLimit];
+  const Eigen::Vector3d before = balance_bias_;
+  balance_bias_ = (before + share * error).cwiseMax(-limit).cwiseMin(limit);
+  if (!standing) return;  // levelling does it, smoothly
+  // The accelerometer has tilted the attitude by this bias.
+  const Eigen::Vector3d change = orientation_ * (balance_bias_ - before);
+  const Eigen::Vector3d tilt(-change.y() / model_.gravity, change.x() / model_.gravity, 0.0);
+  orientation_ = (sdk::exp_so3(tilt) * orientation_).normalized();
+}
+
 void KinematicInertial::update_trust(const GaitdStateEstimatorInput& in, double dt) {
   const double total = feet_[0].normal_force + feet_[1].normal_force;
   const double least = 0.2 * weight_;  // in flight no share means anything
@@ -259,6 +313,31 @@ void KinematicInertial::update_trust(const GaitdStateEstimatorInput& in, double 
       f.orientation_anchored = false;
     }
   }
+}
+
+// Feet on which the robot stands do not turn. Only whole windows of rest count, so that the onset
+// of a push is no bias.
+void KinematicInertial::observe_gyro_bias(double dt) {
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  double total = 0.0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const Foot& f = feet_[side];
+    rate += f.normal_force * kinematics_.body_twist(model_.feet[side].body).head<3>();
+    total += f.normal_force;
+  }
+  rate /= std::max(total, 1.0);
+  if (rate.norm() > kStill) time_quiet_ = 0.0;
+  if (time_quiet_ < kQuietTime) {
+    time_still_ = 0.0;
+    turned_.setZero();
+    return;
+  }
+  time_still_ += dt;
+  turned_ += dt * (orientation_.conjugate() * rate);
+  if (time_still_ < kStillTime) return;
+  gyro_bias_ += p_[P::kStillShare] / time_still_ * turned_;
+  time_still_ = 0.0;
+  turned_.setZero();
 }
 
 void KinematicInertial::update_anchors(const GaitdStateEstimatorInput& in, double dt) {
@@ -384,7 +463,10 @@ GaitdStatus KinematicInertial::process(const GaitdStateEstimatorInput& in, Gaitd
   if (time_since_start_ < kAveragingTime) {
     place(in, out);
   } else {
+    time_quiet_ += dt;
+    observe_bias(in, out);
     update_trust(in, dt);
+    observe_gyro_bias(dt);
     update_anchors(in, dt);
     update_kinematics(out);
     update_position(in, dt);

@@ -21,6 +21,10 @@ namespace gaitd::plugins {
 // the anchored feet put the pelvis; its third state is the error of the accelerometer. The
 // horizontal part of that error is what a wrong tilt makes of gravity, free of the accelerations of
 // walking: it levels the attitude, slowly. Feet are trusted by the share of the load they carry.
+//
+// What an accelerometer shows that leans by itself looks like a tilt. But on average the contact
+// forces pass through the CoM, so that the CoP and the CoM of the model tell the direction of the
+// specific force too; the mean difference is the bias of the accelerometer.
 class KinematicInertial {
  public:
   enum class P {
@@ -37,12 +41,17 @@ class KinematicInertial {
     kTiltBiasRate,
     kAnchorRate,
     kBiasRate,
+    kStillShare,
     kAnchorDelay,
     kBiasLimit,
+    kBalanceRate,
+    kBalanceLimit,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 15> kParameters = {
-      sdk::real_parameter("trust_on", "load", 0, 1, 0.35, "share that makes a foot an anchor"),
+  static constexpr std::array<GaitdParameter, 18> kParameters = {
+      sdk::real_parameter("trust_on", "load", 0, 1, 0.48,
+                          "share that makes a foot an anchor: near half, as feet sink in under "
+                          "their load, and rise as they lose it"),
       sdk::real_parameter("trust_off", "load", 0, 1, 0.30, "share below which it is none"),
       sdk::real_parameter("trust_delay", "s", 0, 0.5, 0.02, "that the share must last"),
       sdk::real_parameter("contact_on", "weight", 0, 1, 0.05, "normal force of a contact"),
@@ -61,9 +70,14 @@ class KinematicInertial {
                           "correction of the heading by feet at rest"),
       sdk::real_parameter("bias_rate", "1/s^2", 0, 50, 0.5,
                           "gyroscope bias from the same while standing; a twentieth in a walk"),
+      sdk::real_parameter("still_share", "", 0, 1, 0.8,
+                          "of what the feet of a robot at rest tell of the gyroscope bias"),
       sdk::real_parameter("anchor_delay", "s", 0, 1, 0.1,
                           "after which an anchored foot is taken to be at rest"),
-      sdk::real_parameter("bias_limit", "m/s^2", 0, 5, 0.4, "of the accelerometer bias"),
+      sdk::real_parameter("bias_limit", "m/s^2", 0, 5, 0.4, "of the accelerometer's error"),
+      sdk::real_parameter("balance_rate", "1/s", 0, 10, 0.08,
+                          "accelerometer bias from CoP and CoM; six times faster standing"),
+      sdk::real_parameter("balance_limit", "m/s^2", 0, 5, 0.2, "of that bias"),
   };
 
   explicit KinematicInertial(const GaitdModel& model);
@@ -94,7 +108,9 @@ class KinematicInertial {
   void place(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
   void update_attitude(const GaitdStateEstimatorInput& in, double dt);
   void read_feet(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
+  void observe_bias(const GaitdStateEstimatorInput& in, const GaitdRobotState& robot);
   void update_trust(const GaitdStateEstimatorInput& in, double dt);
+  void observe_gyro_bias(double dt);
   void update_anchors(const GaitdStateEstimatorInput& in, double dt);
   void update_position(const GaitdStateEstimatorInput& in, double dt);
   void level_attitude(double dt, bool standing);
@@ -111,6 +127,9 @@ class KinematicInertial {
 
   bool initialised_ = false;
   double time_since_start_ = 0.0;
+  double time_quiet_ = 0.0;                           // s, for which the robot has been at rest
+  double time_still_ = 0.0;                           // s, of the window in which its feet
+  Eigen::Vector3d turned_ = Eigen::Vector3d::Zero();  // turned by this, rad, pelvis frame
   bool joints_seen_ = false;
   std::array<bool, GAITD_MAX_JOINTS> leg_joint_{};
   std::array<double, GAITD_MAX_JOINTS> joint_{};                     // rad, observed
@@ -121,6 +140,7 @@ class KinematicInertial {
   Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();                   // rad/s, pelvis frame
   Eigen::Vector3d gyro_bias_ = Eigen::Vector3d::Zero();              // pelvis frame
   Eigen::Vector3d accelerometer_bias_ = Eigen::Vector3d::Zero();     // pelvis frame
+  Eigen::Vector3d balance_bias_ = Eigen::Vector3d::Zero();           // likewise, by the balance
   Eigen::Vector3d specific_force_ = Eigen::Vector3d::Zero();         // at the pelvis, its frame
   Eigen::Vector3d last_rate_ = Eigen::Vector3d::Zero();
   // Pelvis twist as late as the observed rates of the leg joints: what is built from both, such as

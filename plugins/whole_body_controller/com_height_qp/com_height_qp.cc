@@ -15,7 +15,7 @@ GaitdStatus ComHeightQp::process(const GaitdWholeBodyControllerInput& in,
     const double weight = p_[P::kPrivilegedScale] * objectives.privileged_weight[i];
     if (weight > 0.0) qp_.add_joint(i, objectives.privileged_acceleration[i], weight);
   }
-  qp_.solve(static_cast<int>(p_[P::kMaxIterations]));
+  qp_.solve(in.time.period, static_cast<int>(p_[P::kMaxIterations]));
   qp_.write(in.time.period, p_[P::kReferenceLeak], *in.robot, objectives, out);
   return GAITD_OK;
 }

@@ -20,11 +20,13 @@ class ComHeightQp {
     kTorqueScale,
     kRiseSpeed,
     kRiseTime,
+    kTorqueRate,
+    kTorqueRateWeight,
     kMaxIterations,
     kReferenceLeak,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 10> kParameters = {
+  static constexpr std::array<GaitdParameter, 12> kParameters = {
       sdk::real_parameter("privileged_scale", "", 0, 10, 0.1,
                           "of the privileged weights; small: it must not disturb the tasks"),
       kJointRateGainParameter,
@@ -34,6 +36,8 @@ class ComHeightQp {
       kTorqueScaleParameter,
       kRiseSpeedParameter,
       kRiseTimeParameter,
+      kTorqueRateParameter,
+      kTorqueRateWeightParameter,
       kMaxIterationsParameter,
       kReferenceLeakParameter,
   };

@@ -16,6 +16,7 @@ constexpr double kPositionLead = 0.1;
 constexpr double kRateLead = 3.0;
 
 constexpr double kBrakeTime = 0.05;  // s, in which a falling CoM may be stopped
+constexpr int kPasses = 4;           // solutions of a tick whose torques would jump
 constexpr double kLeastForce = 0.3;  // weights, left to the contacts of a robot that rises too fast
 
 }  // namespace
@@ -49,6 +50,9 @@ InverseDynamicsQp::InverseDynamicsQp(const GaitdModel& model)
   acceleration_.setZero(nv_);
   rho_.setZero(kMaxRho);
   torque_.setZero(nv_);
+  drag_.setZero(joints_);
+  last_torque_.setZero(joints_);
+  row_.setZero(n);
   reset();
 }
 
@@ -56,6 +60,7 @@ void InverseDynamicsQp::reset() {
   state_ = {};
   state_.size = sizeof(state_);
   references_valid_ = false;
+  last_torque_known_ = false;
   acceleration_.setZero();
   rho_.setZero();
   solver_.reset_warm_start();
@@ -65,6 +70,7 @@ void InverseDynamicsQp::get_state(GaitdWholeBodyControllerState& state) const { 
 void InverseDynamicsQp::set_state(const GaitdWholeBodyControllerState& state) {
   state_ = state;
   references_valid_ = state.contact_count > 0;
+  last_torque_known_ = false;
   solver_.reset_warm_start();
 }
 
@@ -74,6 +80,10 @@ void InverseDynamicsQp::begin(const GaitdRobotState& robot, const GaitdObjective
                    view(robot.pelvis_twist), sdk::head(robot.joint_position, joints_),
                    sdk::head(robot.joint_velocity, joints_));
   momentum_mask_ = mask;
+  limits_ = limits;
+  for (int i = 0; i < joints_; ++i) {
+    drag_[i] = model_.joints[i].damping * robot.joint_velocity[i];
+  }
   add_contacts(objectives);
   size_ = nv_ + rho_count_;
   row_count_ = 0;
@@ -217,7 +227,7 @@ void InverseDynamicsQp::add_limits(const GaitdRobotState& robot, const GaitdObje
   for (int i = 0; i < joints_; ++i) {
     const GaitdJoint& joint = model_.joints[i];
     const double rate = robot.joint_velocity[i];
-    const double bias = dynamics_.bias()[6 + i] + joint.damping * rate;
+    const double bias = dynamics_.bias()[6 + i] + drag_[i];
     const double effort = limits.torque_scale * joint.effort_limit;
     l_[i] = -effort - bias;
     u_[i] = effort - bias;
@@ -266,13 +276,51 @@ qp::Problem InverseDynamicsQp::problem() const {
   return problem;
 }
 
-void InverseDynamicsQp::solve(int max_iterations) {
+void InverseDynamicsQp::compute_torque() {
+  torque_.noalias() = dynamics_.mass_matrix() * acceleration_;
+  torque_ += dynamics_.bias();
+  torque_.noalias() -= contact_.leftCols(rho_count_) * rho_.head(rho_count_);
+  torque_.tail(joints_) += drag_;
+}
+
+bool InverseDynamicsQp::add_jumps(double dt) {
+  if (!last_torque_known_ || limits_.torque_rate_weight <= 0.0) return false;
+  bool found = false;
+  auto row = row_.head(size_);
+  for (int i = 0; i < joints_; ++i) {
+    const double effort = model_.joints[i].effort_limit;
+    const double step = limits_.torque_rate * dt * effort;
+    const double change = torque_[6 + i] - last_torque_[i];
+    if (jumps_[i] || std::abs(change) <= step) continue;
+    jumps_[i] = found = true;
+    const double goal = last_torque_[i] + std::copysign(step, change);
+    const double weight = limits_.torque_rate_weight / (effort * effort);
+    row = C_.row(i).head(size_);
+    for (int c = 0; c < size_; ++c) {
+      H_.col(c).segment(c, size_ - c) += (weight * row[c]) * row.segment(c, size_ - c);
+    }
+    g_.head(size_) -= weight * (goal - dynamics_.bias()[6 + i] - drag_[i]) * row;
+  }
+  return found;
+}
+
+void InverseDynamicsQp::solve(double dt, int max_iterations) {
   qp::Options options;
   options.max_iterations = max_iterations;
-  result_ = solver_.solve(problem(), options);
-  if (!result_.solved()) return;
-  for (int i = 0; i < nv_; ++i) acceleration_[i] = result_.x[i];
-  for (int i = 0; i < rho_count_; ++i) rho_[i] = result_.x[nv_ + i];
+  jumps_.fill(false);
+  iterations_ = 0;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const qp::Result result = solver_.solve(problem(), options);
+    iterations_ += result.iterations;
+    if (pass > 0 && !result.solved()) return;  // the torques of the pass before may jump
+    status_ = result.status;
+    residual_ = result.residuals.scaled.max();
+    if (!result.solved()) return;
+    for (int i = 0; i < nv_; ++i) acceleration_[i] = result.x[i];
+    for (int i = 0; i < rho_count_; ++i) rho_[i] = result.x[nv_ + i];
+    compute_torque();
+    if (!add_jumps(dt)) return;
+  }
 }
 
 void InverseDynamicsQp::remember(const GaitdObjectives& objectives) {
@@ -283,13 +331,15 @@ void InverseDynamicsQp::remember(const GaitdObjectives& objectives) {
   }
   view(state_.pelvis_acceleration) = acceleration_.head<6>();
   sdk::head(state_.joint_acceleration, joints_) = acceleration_.tail(joints_);
+  last_torque_ = torque_.tail(joints_);
+  last_torque_known_ = true;
 }
 
 void InverseDynamicsQp::write(double dt, double reference_leak, const GaitdRobotState& robot,
                               const GaitdObjectives& objectives,
                               GaitdWholeBodyControllerOutput& out) {
   GaitdWbcInfo& info = out.info;
-  switch (result_.status) {
+  switch (status_) {
     case qp::Status::solved:
       info.status = GAITD_WBC_SOLVED;
       break;
@@ -303,20 +353,18 @@ void InverseDynamicsQp::write(double dt, double reference_leak, const GaitdRobot
       info.status = GAITD_WBC_NON_FINITE;
       break;
   }
-  info.iterations = result_.iterations;
-  info.kkt_residual = result_.residuals.scaled.max();
+  info.iterations = iterations_;
+  info.kkt_residual = residual_;
   info.null_trace = 0.0;
   if (info.status != GAITD_WBC_SOLVED) {
     // The next problem must not lean on the forces of this one; the host falls back.
     state_.contact_count = 0;
     references_valid_ = false;
+    last_torque_known_ = false;
     solver_.reset_warm_start();
     return;
   }
   remember(objectives);
-  torque_.noalias() = dynamics_.mass_matrix() * acceleration_;
-  torque_ += dynamics_.bias();
-  torque_.noalias() -= contact_.leftCols(rho_count_) * rho_.head(rho_count_);
   write_commands(dt, reference_leak, robot, objectives, out.commands);
   write_figures(objectives, info);
 }
@@ -344,7 +392,7 @@ void InverseDynamicsQp::write_commands(double dt, double reference_leak,
     q_ref += leak * (q - q_ref) + dt * rate_ref;
     q_ref = std::clamp(q_ref, q - kPositionLead, q + kPositionLead);
     command.mode = GAITD_JOINT_MODE_TORQUE;
-    command.torque = torque_[6 + i] + model_.joints[i].damping * rate;
+    command.torque = torque_[6 + i];
     command.acceleration = acceleration;
     command.velocity = rate_ref;
     command.position = q_ref;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 #include "gaitd/abi/plugin.h"
 #include "gaitd/dynamics/dynamics.h"
@@ -27,6 +28,11 @@ inline constexpr GaitdParameter kRiseSpeedParameter =
                         "of the CoM, upwards, that the contacts may build up: no jumps");
 inline constexpr GaitdParameter kRiseTimeParameter =
     sdk::real_parameter("rise_time", "s", 0.01, 10, 0.15, "in which they may");
+inline constexpr GaitdParameter kTorqueRateParameter =
+    sdk::real_parameter("torque_rate", "limits/s", 1, 1e5, 120,
+                        "change of a joint's torque above which it is penalised");
+inline constexpr GaitdParameter kTorqueRateWeightParameter = sdk::real_parameter(
+    "torque_rate_weight", "", 0, 1e12, 1e6, "of what is above, squared, in effort limits");
 inline constexpr GaitdParameter kMaxIterationsParameter =
     sdk::integer_parameter("max_iterations", "", 10, 10000, 300,
                            "changes of the active set after which the solver gives up");
@@ -39,10 +45,12 @@ inline constexpr GaitdParameter kReferenceLeakParameter =
 //   min        sum |P (J vdot - p)|^2 + |P_h (A vdot - b)|^2 + |P_rho rho|^2 + |P_v vdot|^2 + …
 //   s.t.       A vdot + Adot v = W_gravity + B rho + W_external       (six centroidal rows)
 //              tau_min <= M_a vdot + c_a - J_c,a' f <= tau_max        (every joint)
-//              sum of the vertical forces <= m (g + (rise speed - v_z) / rise time), v_z of the
-//              CoM;
-//                                            more while it falls, so that it can be braked
+//              sum of the vertical forces <= m (g + (rise speed - v_z) / rise time)
+//                                              (v_z of the CoM; more while it falls, to brake)
 //              vdot_min <= vdot <= vdot_max,  rho_min <= rho <= rho_max
+// Torques that would jump from the tick before by more than the torque rate allows are solved for
+// once more, with the cost  weight (tau_i - tau_i,before -+ step)^2 / limit^2  for each of them. A
+// bound would do the same until it contradicts the contacts; a cost never does.
 // Call begin(), add what is special to the variant, then solve() and write().
 class InverseDynamicsQp {
  public:
@@ -58,6 +66,8 @@ class InverseDynamicsQp {
     double torque_scale;        // share of the effort limits that may be used
     double rise_speed;          // m/s, of the CoM that the contacts may build up
     double rise_time;           // s, in which they may
+    double torque_rate;         // effort limits per s, above which a change costs
+    double torque_rate_weight;  // of the square of what is above, in effort limits
   };
   // From the parameters of a variant, `P` the enumeration that names them.
   template <class P>
@@ -68,7 +78,9 @@ class InverseDynamicsQp {
             .base_acceleration = p[P::kBaseAcceleration],
             .torque_scale = p[P::kTorqueScale],
             .rise_speed = p[P::kRiseSpeed],
-            .rise_time = p[P::kRiseTime]};
+            .rise_time = p[P::kRiseTime],
+            .torque_rate = p[P::kTorqueRate],
+            .torque_rate_weight = p[P::kTorqueRateWeight]};
   }
 
   explicit InverseDynamicsQp(const GaitdModel& model);
@@ -90,7 +102,8 @@ class InverseDynamicsQp {
 
   // What solve() solves, as begin() and what was added made it. The views hold until begin().
   qp::Problem problem() const;
-  void solve(int max_iterations);
+  // `dt` (s) since the tick before, `max_iterations` of each of the solutions.
+  void solve(double dt, int max_iterations);
   // Torques, references and figures of the last solve, for a tick of `dt` seconds. The references
   // of the drives are integrated from the solved accelerations and leak towards the measured state
   // with `reference_leak` (1/s): what a drive adds around them makes good for friction and the
@@ -110,6 +123,10 @@ class InverseDynamicsQp {
   // Keeps the sum of the vertical forces from throwing the robot into the air: with the height
   // free, a large force is the cheapest way to a large horizontal one.
   void add_rise_limit(const GaitdRobotState& robot, const Limits& limits);
+  // Torques of the joints by the last solution, with the damping of their drives.
+  void compute_torque();
+  // Adds the cost of each torque that jumps and has none yet; whether there was one.
+  bool add_jumps(double dt);
   double previous_rho(const GaitdObjectives& objectives, int contact, int edge) const;
   void remember(const GaitdObjectives& objectives);
   void write_commands(double dt, double reference_leak, const GaitdRobotState& robot,
@@ -121,7 +138,9 @@ class InverseDynamicsQp {
   const int joints_;
   dynamics::Dynamics dynamics_;
   qp::DenseSolver solver_;
-  qp::Result result_;
+  qp::Status status_ = qp::Status::invalid_dimensions;
+  int iterations_ = 0;     // of all solutions of the tick
+  double residual_ = 0.0;  // of the last one
 
   int row_count_ = 0;
   int rho_count_ = 0;
@@ -139,7 +158,13 @@ class InverseDynamicsQp {
   Eigen::VectorXd g_, b_, l_, u_, lb_, ub_;
   Eigen::VectorXd acceleration_;  // nv, solution
   Eigen::VectorXd rho_;           // kMaxRho, solution
-  Eigen::VectorXd torque_;        // nv
+  Eigen::VectorXd torque_;        // nv; of the joints with drag
+  Eigen::VectorXd drag_;          // joints, N m, that their damping takes
+  Eigen::VectorXd row_;           // size, scratch
+  std::array<bool, GAITD_MAX_JOINTS> jumps_{};
+  Limits limits_{};
+  Eigen::VectorXd last_torque_;  // joints, N m, of the tick before
+  bool last_torque_known_ = false;
 
   GaitdWholeBodyControllerState state_{};
   bool references_valid_ = false;

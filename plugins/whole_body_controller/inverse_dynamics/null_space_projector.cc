@@ -59,9 +59,14 @@ void NullSpaceProjector::row(int column, Eigen::Ref<Eigen::VectorXd> out) const 
   out.setZero();
   const int place = place_[column];
   if (place < 0) return;
-  const auto X = X_.topLeftCorner(rows_, free_);
-  for (int k = 0; k < free_; ++k) {
-    out[column_[k]] = (k == place ? 1.0 : 0.0) - X.col(place).dot(X.col(k));
+  auto row = out.head(free_);
+  for (int r = 0; r < rows_; ++r) row -= X_(r, place) * X_.row(r).head(free_).transpose();
+  row[place] += 1.0;
+  // Spread from the free places to their columns, which never come before them.
+  for (int k = free_ - 1; k >= 0; --k) {
+    const double entry = out[k];
+    out[k] = 0.0;
+    out[column_[k]] = entry;
   }
 }
 

@@ -29,6 +29,8 @@ class NullSpaceProjector {
   double trace() const { return trace_; }
 
  private:
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
   const int columns_;
   int rows_ = 0;
   int free_ = 0;
@@ -36,9 +38,9 @@ class NullSpaceProjector {
   std::vector<bool> claimed_;
   std::vector<int> place_;   // of a column among the free ones, -1 if claimed
   std::vector<int> column_;  // of a free place
-  Eigen::MatrixXd J_;        // max_rows x columns, all columns as added
-  Eigen::MatrixXd X_;        // free columns of J, then L^-1 J
-  Eigen::MatrixXd gram_;     // J J' + alpha^2 I, then its Cholesky factor
+  Rows J_;                   // max_rows x columns, all columns as added
+  Rows X_;                   // free columns of J, then L^-1 J
+  Rows gram_;                // J J' + alpha^2 I, then its Cholesky factor
 };
 
 }  // namespace gaitd::plugins

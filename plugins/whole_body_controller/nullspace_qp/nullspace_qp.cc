@@ -14,7 +14,7 @@ GaitdStatus NullspaceQp::process(const GaitdWholeBodyControllerInput& in,
   const GaitdObjectives& objectives = *in.objectives;
   qp_.begin(*in.robot, objectives, objectives.momentum_mask, InverseDynamicsQp::limits_of(p_));
   add_privileged(objectives);
-  qp_.solve(static_cast<int>(p_[P::kMaxIterations]));
+  qp_.solve(in.time.period, static_cast<int>(p_[P::kMaxIterations]));
   qp_.write(in.time.period, p_[P::kReferenceLeak], *in.robot, objectives, out);
   out.info.null_trace = projector_.trace();
   return GAITD_OK;

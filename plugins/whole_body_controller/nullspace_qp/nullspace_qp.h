@@ -23,11 +23,13 @@ class NullspaceQp {
     kTorqueScale,
     kRiseSpeed,
     kRiseTime,
+    kTorqueRate,
+    kTorqueRateWeight,
     kMaxIterations,
     kReferenceLeak,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 10> kParameters = {
+  static constexpr std::array<GaitdParameter, 12> kParameters = {
       sdk::real_parameter("damping", "", 1e-5, 1, 0.005,
                           "of the projector, for task rows of unit length"),
       kJointRateGainParameter,
@@ -37,6 +39,8 @@ class NullspaceQp {
       kTorqueScaleParameter,
       kRiseSpeedParameter,
       kRiseTimeParameter,
+      kTorqueRateParameter,
+      kTorqueRateWeightParameter,
       kMaxIterationsParameter,
       kReferenceLeakParameter,
   };

@@ -172,7 +172,7 @@ inline constexpr std::array<GaitdParameter, 23> kLegParameters = {
     real_parameter("largest_drop", "leg lengths", 0, 1, 0.25,
                    "of the hip from mid-stance to touchdown; less for longer steps bends the knee"),
     real_parameter("late_knee", "rad", 0, 2, 1.0, "stance knee while a touchdown is overdue"),
-    real_parameter("late_rate", "rad/s", 0, 50, 6, "with which it gets there"),
+    real_parameter("late_rate", "rad/s", 0, 50, 3, "with which it gets there"),
     real_parameter("extend_fraction", "", 0, 1, 0.5, "part of its swing after which a leg extends"),
 };
 
@@ -238,7 +238,7 @@ inline constexpr std::array<GaitdParameter, 48> kObjectiveParameters = {
     real_parameter("reach_drop", "", 0, 0.5, 0.1,
                    "largest lowering for it, over the CoM height in the nominal posture"),
     real_parameter("height_stiffness", "1/s^2", 0, 500, 40, "of the CoM height"),
-    real_parameter("height_damping_ratio", "", 0, 5, 0.8, "of the CoM height"),
+    real_parameter("height_damping_ratio", "", 0, 5, 1.0, "of the CoM height"),
     real_parameter("height_acceleration_limit", "g", 0.01, 1, 0.5, "of the CoM height"),
     real_parameter("momentum_weight", "", 0, 1e6, 1500,
                    "linear momentum rate over the mass, horizontal rows"),
