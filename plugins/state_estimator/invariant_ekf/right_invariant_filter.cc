@@ -110,23 +110,19 @@ void RightInvariantFilter::correct_point(int i, const Eigen::Vector3d& p_IC, dou
 }
 
 void RightInvariantFilter::correct_tilt(const Eigen::Quaterniond& measured, double sigma) {
-  Eigen::Vector3d innovation = sdk::log_so3(measured * orientation.conjugate());
-  innovation.z() = 0.0;
-  Gain cross = covariance.middleCols<3>(kOrientation);
-  cross.col(2).setZero();  // nothing is known of the heading
-  Eigen::Matrix3d spread = cross.middleRows<3>(kOrientation);
-  spread.row(2).setZero();
-  spread += sigma * sigma * Eigen::Matrix3d::Identity();
-  correct(cross, spread, innovation);
+  correct_two_axes(kOrientation, sdk::log_so3(measured * orientation.conjugate()), sigma);
 }
 
 void RightInvariantFilter::correct_specific_force(const Eigen::Vector3d& accelerometer,
                                                   const Eigen::Vector3d& measured, double sigma) {
-  Eigen::Vector3d innovation = accelerometer - measured - accelerometer_bias;
+  correct_two_axes(kAccelerometerBias, accelerometer - measured - accelerometer_bias, sigma);
+}
+
+void RightInvariantFilter::correct_two_axes(int block, Eigen::Vector3d innovation, double sigma) {
   innovation.z() = 0.0;
-  Gain cross = covariance.middleCols<3>(kAccelerometerBias);
+  Gain cross = covariance.middleCols<3>(block);
   cross.col(2).setZero();
-  Eigen::Matrix3d spread = cross.middleRows<3>(kAccelerometerBias);
+  Eigen::Matrix3d spread = cross.middleRows<3>(block);
   spread.row(2).setZero();
   spread += sigma * sigma * Eigen::Matrix3d::Identity();
   correct(cross, spread, innovation);

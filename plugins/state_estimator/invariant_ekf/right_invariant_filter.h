@@ -77,6 +77,8 @@ class RightInvariantFilter {
   using Gain = Eigen::Matrix<double, kSize, 3>;
 
   void transition_rows(const Eigen::Matrix3d& R, double dt);
+  // One block of the error seen directly, but for its third axis.
+  void correct_two_axes(int block, Eigen::Vector3d innovation, double sigma);
   void correct(const Gain& cross, const Eigen::Matrix3d& innovation_covariance,
                const Eigen::Vector3d& innovation);
   static constexpr int block(int i) { return kFirstPoint + 3 * i; }

@@ -196,11 +196,13 @@ void InverseDynamicsQp::add_joint(int joint, double acceleration, double weight)
   g_[6 + joint] -= weight * acceleration;
 }
 
-void InverseDynamicsQp::add_row(const Eigen::VectorXd& row, double target, double weight) {
-  for (int c = 0; c < nv_; ++c) {
-    H_.col(c).segment(c, nv_ - c) += (weight * row[c]) * row.segment(c, nv_ - c);
+void InverseDynamicsQp::add_row(const Eigen::Ref<const Eigen::VectorXd>& row, double target,
+                                double weight) {
+  const Eigen::Index n = row.size();
+  for (Eigen::Index c = 0; c < n; ++c) {
+    H_.col(c).segment(c, n - c) += (weight * row[c]) * row.segment(c, n - c);
   }
-  g_.head(nv_) -= weight * target * row;
+  g_.head(n) -= weight * target * row;
 }
 
 void InverseDynamicsQp::claim(const GaitdObjectives& objectives,
@@ -296,10 +298,7 @@ bool InverseDynamicsQp::add_jumps(double dt) {
     const double goal = last_torque_[i] + std::copysign(step, change);
     const double weight = limits_.torque_rate_weight / (effort * effort);
     row = C_.row(i).head(size_);
-    for (int c = 0; c < size_; ++c) {
-      H_.col(c).segment(c, size_ - c) += (weight * row[c]) * row.segment(c, size_ - c);
-    }
-    g_.head(size_) -= weight * (goal - dynamics_.bias()[6 + i] - drag_[i]) * row;
+    add_row(row, goal - dynamics_.bias()[6 + i] - drag_[i], weight);
   }
   return found;
 }

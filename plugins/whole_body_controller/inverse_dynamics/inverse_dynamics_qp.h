@@ -95,8 +95,8 @@ class InverseDynamicsQp {
              const Limits& limits);
   // Adds weight * (vdot_joint - acceleration)^2.
   void add_joint(int joint, double acceleration, double weight);
-  // Adds weight * (row vdot - target)^2; `row` has velocity_size() entries.
-  void add_row(const Eigen::VectorXd& row, double target, double weight);
+  // Adds weight * (row x - target)^2; `row` has velocity_size() entries, or as many as problem().
+  void add_row(const Eigen::Ref<const Eigen::VectorXd>& row, double target, double weight);
   // Everything that the tasks taken by begin() claim: rows of weight zero claim nothing.
   void claim(const GaitdObjectives& objectives, NullSpaceProjector& projector) const;
 
