@@ -72,6 +72,7 @@ void FakeRobot::serve(double seconds) {
 void FakeRobot::take(int bus, const can::Frame& frame) {
   if (buses_[bus].off) return;
   if (frame.id == can::kRegisterId) {
+    forget_commands(bus);
     answer_register(bus, frame);
     return;
   }
@@ -155,8 +156,22 @@ void FakeRobot::end_cycle() {
   std::erase_if(pending_, [&](const Fault& fault) { return moving && time >= fault.time; });
   answer();
   ++cycle_;
+  begin_cycle();
+}
+
+void FakeRobot::begin_cycle() {
   cycle_start_ = 0;
   for (MotorState& motor : motors_) motor.commanded = false;
+}
+
+// A master that reads registers has not commanded anything yet: what waits on the other buses, or
+// makes half a cycle, is of one that has ended.
+void FakeRobot::forget_commands(int asked) {
+  for (size_t i = 0; i < buses_.size(); ++i) {
+    if (static_cast<int>(i) != asked) buses_[i].bus->drain();
+    buses_[i].heard = true;
+  }
+  begin_cycle();
 }
 
 void FakeRobot::advance_plant() {

@@ -67,7 +67,9 @@ class FakeRobot {
   void take_command(int motor, const can::Frame& frame);
   void answer_register(int bus, const can::Frame& frame);
   bool cycle_complete() const;
+  void begin_cycle();
   void end_cycle();
+  void forget_commands(int asked_bus);
   void advance_plant();
   void answer();
   void answer_sensors(const GaitdSensors& sensors);

@@ -83,6 +83,7 @@ int main(int argc, char** argv) {
   std::printf("ready\n");
   std::fflush(stdout);
   while (stopping == 0) fake.serve(0.05);
+  fake.serve(0.0);  // what is on the buses already
   const std::string report = fake.report().dump(2) + "\n";
   if (report_file.empty()) {
     std::fputs(report.c_str(), stdout);

@@ -17,6 +17,7 @@ constexpr double kTouchdownTime = 0.05;    // s, in which the touchdown damping 
 constexpr double kHeelStrikeTime = 0.1;    // s after touchdown in which the drives damp
 constexpr double kClosingTouchdown = 0.5;  // of the touchdown velocity
 constexpr double kLevelRate = 1.0;         // 1/s, with which a walk levels the pelvis
+constexpr double kNever = 1e9;             // rad
 constexpr double kToeEdge = 0.01;  // m, points this far behind the toe point are not on the edge
 constexpr double kYawRate = 6.0;   // 1/s, of the reference filter of the heading
 constexpr std::uint32_t kAngularRows = 0b000111;
@@ -39,6 +40,13 @@ double heading_target(const GaitdGaitState& gait) {
   const double right = heading(gait.footholds[GAITD_RIGHT].pose);
   if (gait.phase != GAITD_PHASE_SWING) return mean_heading(left, right);
   return mean_heading(heading(gait.footholds[gait.support].pose), heading(gait.adjusted[0].pose));
+}
+
+// One straight leg carries the robot. A sole that tilts then stays tilted: the knee has no way to
+// give. Bent legs bring it back by themselves, and need the edges of the sole against pushes; with
+// two feet on the ground the other one takes the load.
+bool stiff_alone(const GaitdGaitState& gait) {
+  return gait.phase == GAITD_PHASE_SWING && gait.mode == GAITD_MODE_WALK_STRAIGHT;
 }
 
 // s, for which the touchdown is overdue.
@@ -106,6 +114,7 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
     const bool toe = toe_off.active != 0 && toe_off.side == side;
     time_in_toe_off_[side] = toe ? time_in_toe_off_[side] + dt : 0.0;
   }
+  update_rests(dt, robot, gait, toe_off);
   update_contacts(dt, gait, toe_off, out);
   update_momentum(dt, robot, gait, adjustment, out);
   update_upper_body(dt, robot, gait, out);
@@ -145,6 +154,20 @@ void ObjectiveBuilder::update_impedance(const GaitdGaitState& gait, GaitdObjecti
   }
 }
 
+void ObjectiveBuilder::update_rests(double dt, const GaitdRobotState& robot,
+                                    const GaitdGaitState& gait, const GaitdToeOff& toe_off) {
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    if (gait.footholds[side].contact == GAITD_CONTACT_NONE || on_toe(side)) {
+      rests_[side].reset();
+      continue;
+    }
+    const bool flat = stiff_alone(gait) && toe_off.active == 0;
+    const double start = flat ? parameters_[Objective::kTiltStart] : kNever;
+    rests_[side].update(dt, robot.feet[side], gait.footholds[side], weight_,
+                        {start, parameters_[Objective::kTiltFull]});
+  }
+}
+
 bool ObjectiveBuilder::on_toe(int side) const {
   return time_in_toe_off_[side] > parameters_[Objective::kToeRamp];
 }
@@ -175,13 +198,17 @@ void ObjectiveBuilder::update_contacts(double dt, const GaitdGaitState& gait,
     const Eigen::Quaterniond sole = sdk::quaternion(foothold.pose.orientation);
     const double share = load_share(side, gait);
     const int points = toe ? 1 : foothold.polygon_count;
+    const double used = stiff_alone(gait) ? 1.0 - parameters_[Objective::kContactMargin] : 1.0;
+    const Eigen::Vector2d middle = sole_middle(foothold);
     for (int i = 0; i < points && out.contact_count < GAITD_MAX_CONTACTS; ++i) {
       GaitdContactPoint& c = out.contacts[out.contact_count++];
       c.side = side;
       c.body = foot.body;
-      const Eigen::Vector3d in_sole =
-          toe ? Eigen::Vector3d(view(toe_off.toe_point))
-              : Eigen::Vector3d(foothold.contact_polygon[i][0], foothold.contact_polygon[i][1], 0);
+      Eigen::Vector3d in_sole = view(toe_off.toe_point);
+      if (!toe) {
+        const Eigen::Vector2d corner = view(foothold.contact_polygon[i]);
+        in_sole << rests_[side].bearing_point(middle + used * (corner - middle)), 0.0;
+      }
       view(c.point) = view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole;
       view(c.normal) = sole * Eigen::Vector3d::UnitZ();
       view(c.tangent) = sole * Eigen::Vector3d::UnitX();
@@ -316,11 +343,21 @@ void ObjectiveBuilder::add_stance_foot(int side, const GaitdRobotState& robot,
                                        GaitdObjectives& out) const {
   const GaitdFoot& foot = model_.feet[side];
   GaitdTask& task = add_task(out, GAITD_TASK_FRAME, foot.body, kAllRows);
-  view(task.point) = view(foot.sole.origin);
+  const SoleRest& rest = rests_[side];
+  Eigen::Vector3d pivot;
+  pivot << rest.pivot(), 0.0;
+  view(task.point) = view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * pivot;
   const double settled = parameters_[Objective::kStanceDamping];
   const double extra = std::max(0.0, parameters_[Objective::kTouchdownDamping] - settled);
   const double rate = settled + extra * std::exp(-time_in_contact_[side] / kTouchdownTime);
-  view(task.acceleration) = -rate * view(robot.feet[side].twist);
+  sdk::Vector6d twist = view(robot.feet[side].twist);
+  const Eigen::Vector3d turn = twist.head<3>();
+  twist.tail<3>() += turn.cross(sdk::quaternion(robot.feet[side].orientation) * pivot);
+  view(task.acceleration) = -rate * twist;
+  const double stiffness = parameters_[Objective::kTiltStiffness];
+  view(task.acceleration).head<3>() +=
+      rest.share() *
+      (stiffness * rest.way_back() - std::max(0.0, damping(stiffness, 1.0) - rate) * turn);
   auto stop = view(task.acceleration).tail<3>();
   const double hardest = parameters_[Objective::kTouchdownStop];
   if (stop.norm() > hardest) stop *= hardest / stop.norm();

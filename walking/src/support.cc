@@ -79,11 +79,15 @@ SoleExtent sole_extent(const GaitdFoothold& foothold) {
   return e;
 }
 
+Eigen::Vector2d sole_middle(const GaitdFoothold& foothold) {
+  const SoleExtent e = sole_extent(foothold);
+  return {0.5 * (e.x_min + e.x_max), 0.5 * (e.y_min + e.y_max)};
+}
+
 Eigen::Vector2d middle(const GaitdFoothold& a, const GaitdFoothold& b) {
-  const SoleExtent ea = sole_extent(a);
-  const SoleExtent eb = sole_extent(b);
-  return 0.5 * (to_world(a.pose, 0.5 * (ea.x_min + ea.x_max), 0.5 * (ea.y_min + ea.y_max)) +
-                to_world(b.pose, 0.5 * (eb.x_min + eb.x_max), 0.5 * (eb.y_min + eb.y_max)));
+  const Eigen::Vector2d in_a = sole_middle(a);
+  const Eigen::Vector2d in_b = sole_middle(b);
+  return 0.5 * (to_world(a.pose, in_a.x(), in_a.y()) + to_world(b.pose, in_b.x(), in_b.y()));
 }
 
 }  // namespace gaitd::walking

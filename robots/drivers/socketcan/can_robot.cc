@@ -169,6 +169,8 @@ GaitdStatus CanRobot::write(const GaitdJointCommands& commands) {
   for (BusState& bus : buses_) {
     bus.frames.clear();
     bus.motors.clear();
+    // All that was waited for can be here before the end of its cycle is.
+    if (cycle_ > 1 && !bus.cycle_over && !bus.down) ++bus.ends_owed;
     bus.cycle_over = false;
   }
   for (size_t i = 0; i < motors_.size(); ++i) {
@@ -219,7 +221,10 @@ GaitdStatus CanRobot::advance() {
   wait_and_receive(complete() ? 0.0 : options_.lockstep_timeout);
   while (!complete()) {
     const int64_t left = end - now_ns(CLOCK_MONOTONIC);
-    if (left <= 0) break;
+    if (left <= 0) {
+      for (BusState& bus : buses_) bus.ends_owed = 0;  // lost
+      break;
+    }
     wait_and_receive(1e-9 * static_cast<double>(left));
   }
   return GAITD_OK;

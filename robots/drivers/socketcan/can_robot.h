@@ -72,6 +72,7 @@ class CanRobot {
     bool down = false;
     bool passive = false;
     bool cycle_over = false;  // lockstep: nothing more comes in this cycle
+    int ends_owed = 0;        // lockstep: ends of earlier cycles that are still to come
     int unsent_in_row = 0;
     std::array<int16_t, 2048> routes{};   // by identifier: what sends it, see Route
     std::array<int16_t, 256> cheetahs{};  // by motor id: mini-cheetah replies share identifier 0

@@ -21,6 +21,7 @@ bool CanRobot::faulty(int index) const {
 
 void CanRobot::switch_off_bus(int bus) {
   buses_[bus].down = true;
+  buses_[bus].ends_owed = 0;
   for (size_t i = 0; i < motors_.size(); ++i) {
     if (wiring_.motors[i].bus == bus) motors_[i].enabled = false;
   }

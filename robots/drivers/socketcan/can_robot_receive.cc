@@ -73,7 +73,11 @@ void CanRobot::take(int bus, const Received& received) {
       estop_cycle_ = cycle_;
       return;
     case kCycleOver:
-      buses_[bus].cycle_over = true;
+      if (buses_[bus].ends_owed > 0) {
+        --buses_[bus].ends_owed;
+      } else {
+        buses_[bus].cycle_over = true;
+      }
       return;
     default:
       break;

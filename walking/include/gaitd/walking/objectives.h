@@ -8,6 +8,7 @@
 #include "gaitd/walking/com_height.h"
 #include "gaitd/walking/leg_configuration.h"
 #include "gaitd/walking/parameters.h"
+#include "gaitd/walking/sole_rest.h"
 #include "gaitd/walking/swing_trajectory.h"
 
 namespace gaitd::walking {
@@ -54,6 +55,8 @@ class ObjectiveBuilder {
                          GaitdObjectives& out);
   void update_feet(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                    const GaitdPose& lift_off, const GaitdToeOff& toe_off, GaitdObjectives& out);
+  void update_rests(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
+                    const GaitdToeOff& toe_off);
   void add_stance_foot(int side, const GaitdRobotState& robot, GaitdObjectives& out) const;
   void add_toe(int side, const GaitdRobotState& robot, const GaitdGaitState& gait,
                const GaitdToeOff& toe_off, GaitdObjectives& out) const;
@@ -84,13 +87,14 @@ class ObjectiveBuilder {
   SwingParameters swing_parameters_{kSwingParameters};
 
   std::array<LegConfiguration, GAITD_MAX_FEET> legs_;
+  std::array<SoleRest, GAITD_MAX_FEET> rests_;
   SwingTrajectory swing_;
   int swing_step_ = -1;      // step index of the trajectory in swing_
   int swing_revision_ = -1;  // plan revision it was made for
   ReferenceFilter height_;
   ReferenceFilter yaw_;
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // rad, held while standing, level in a walk
-  double pelvis_share_ = 1.0;  // of the weight of the pelvis orientation
+  double pelvis_share_ = 1.0;                       // of the weight of the pelvis orientation
   std::array<double, GAITD_MAX_FEET> time_in_contact_{};
   std::array<double, GAITD_MAX_FEET> time_in_toe_off_{};
   bool impedance_given_ = false;

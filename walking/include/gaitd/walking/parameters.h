@@ -89,8 +89,9 @@ inline constexpr std::array<GaitdParameter, 30> kGaitParameters = {
     boolean_parameter("recovery", true, "a standing robot steps by itself rather than fall"),
     real_parameter("recovery_swing", "s", 0.2, 2, 0.45, "swing of a step that catches the robot"),
     real_parameter("recovery_transfer", "s", 0.05, 1, 0.06, "transfer before it"),
-    real_parameter("recovery_margin", "m", -0.1, 0.1, -0.02,
-                   "ICP inside the edge of the feet at which the robot still steps; negative: past it"),
+    real_parameter(
+        "recovery_margin", "m", -0.1, 0.1, -0.02,
+        "ICP inside the edge of the feet at which the robot still steps; negative: past it"),
 };
 
 enum class Swing {
@@ -206,6 +207,10 @@ enum class Objective {
   kTouchdownDamping,
   kTouchdownStop,
   kStanceWeight,
+  kContactMargin,
+  kTiltStart,
+  kTiltFull,
+  kTiltStiffness,
   kSwingStiffness,
   kSwingHeightStiffness,
   kSwingDampingRatio,
@@ -227,7 +232,7 @@ enum class Objective {
   kStrikeDriveDamping,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 48> kObjectiveParameters = {
+inline constexpr std::array<GaitdParameter, 52> kObjectiveParameters = {
     real_parameter("friction", "", 0.05, 2, 0.7, "coefficient that the controller counts on"),
     real_parameter("com_height", "", 0.5, 1.2, 1.0,
                    "CoM height when standing, over the height in the nominal posture"),
@@ -266,6 +271,13 @@ inline constexpr std::array<GaitdParameter, 48> kObjectiveParameters = {
     real_parameter("touchdown_stop", "m/s^2", 0, 1000, 9,
                    "deceleration that it may ask for: the ground stops the foot anyway"),
     real_parameter("stance_weight", "", 0, 1e6, 1000, "of a foot in contact"),
+    real_parameter(
+        "contact_margin", "half extents", 0, 0.5, 0.09,
+        "of the contact forces of a foot that carries alone to the edge of its foothold"),
+    real_parameter("tilt_start", "rad", 0.001, 1, 0.015,
+                   "tilt of a sole in contact from which it bears less and less as a whole"),
+    real_parameter("tilt_full", "rad", 0.002, 1.1, 0.04, "tilt from which it bears on a line"),
+    real_parameter("tilt_stiffness", "1/s^2", 0, 2000, 150, "with which it comes back"),
     real_parameter("swing_stiffness", "1/s^2", 0, 2000, 150, "of the swing foot"),
     real_parameter("swing_height_stiffness", "1/s^2", 0, 2000, 200,
                    "of the height and orientation of the swing foot"),

@@ -27,6 +27,8 @@ struct SoleExtent {
   double x_min, x_max, y_min, y_max;
 };
 SoleExtent sole_extent(const GaitdFoothold& foothold);
+// m, axes of the sole: the middle of that.
+Eigen::Vector2d sole_middle(const GaitdFoothold& foothold);
 
 // Middle of two footholds' loadable parts, in W (m): where the ICP rests when standing.
 Eigen::Vector2d middle(const GaitdFoothold& a, const GaitdFoothold& b);
