@@ -159,6 +159,7 @@ Frame CanRobot::frame_for(int index, const GaitdJointCommand& command) {
     const double damping = std::isfinite(command.damping) ? command.damping : 0.0;
     return encode_damping(motor.id, motor.ranges, motor.motor_gain(damping));
   }
+  if (told_but_off(index)) return encode_special(motor.id, Special::kEnable);  // a frame was lost
   return command_frame(motor, command);
 }
 
@@ -222,7 +223,10 @@ GaitdStatus CanRobot::advance() {
   while (!complete()) {
     const int64_t left = end - now_ns(CLOCK_MONOTONIC);
     if (left <= 0) {
-      for (BusState& bus : buses_) bus.ends_owed = 0;  // lost
+      for (BusState& bus : buses_) {  // what has not come by now is lost
+        bus.ends_owed = 0;
+        bus.cycle_over = true;
+      }
       break;
     }
     wait_and_receive(1e-9 * static_cast<double>(left));

@@ -94,6 +94,8 @@ class CanRobot {
   Frame command_frame(const Motor& motor, const GaitdJointCommand& command) const;
   void send(int bus);
   void switch_off_bus(int bus);
+  // Switched on, and it says that it is off.
+  bool told_but_off(int motor) const;
   bool faulty(int motor) const;
   bool complete() const;
   void find_conditions();

@@ -12,11 +12,15 @@ constexpr int kSwitchOnCycles = 5;  // until a motor has to say that it is on
 
 }  // namespace
 
+bool CanRobot::told_but_off(int index) const {
+  const MotorState& state = motors_[index];
+  return state.enabled && state.error == static_cast<uint8_t>(MotorError::kOff);
+}
+
 bool CanRobot::faulty(int index) const {
   const MotorState& state = motors_[index];
   if (state.error > static_cast<uint8_t>(MotorError::kOn)) return true;
-  return state.enabled && state.cycles_enabled > kSwitchOnCycles &&
-         state.error == static_cast<uint8_t>(MotorError::kOff);
+  return told_but_off(index) && state.cycles_enabled > kSwitchOnCycles;
 }
 
 void CanRobot::switch_off_bus(int bus) {

@@ -2,9 +2,11 @@
 // A robot of one mini-cheetah motor on slcan: what is on the wire, cycle by cycle.
 #include "can_robot.h"
 
+#include <chrono>
 #include <cmath>
 #include <thread>
 
+#include "sensor_frames.h"
 #include "slcan.h"
 
 namespace gaitd::can {
@@ -19,7 +21,7 @@ struct Bench {
   GaitdSensors sensors{};
   double position = 0.3;  // rad, that the motor shows
 
-  Bench() {
+  explicit Bench(const RobotOptions& options = {}) {
     model.joint_count = 1;
     std::strcpy(model.joints[0].name, "knee");
     Wiring wiring;
@@ -35,8 +37,7 @@ struct Bench {
     motor.position_min = -1;
     motor.position_max = 1;
     wiring.motors.push_back(motor);
-    robot =
-        std::make_unique<CanRobot>(wiring, model, RobotOptions{}, [](int, const std::string&) {});
+    robot = std::make_unique<CanRobot>(wiring, model, options, [](int, const std::string&) {});
     std::vector<std::string> errors;
     std::thread starting([&] { EXPECT_TRUE(robot->start(&errors)); });
     while (wire.take().empty()) {
@@ -119,6 +120,19 @@ TEST(CanRobot, CountsRepliesThatAreMissingLateAndDuplicate) {
   b.answer();
   b.read();
   EXPECT_EQ(before.duplicate + 1, health().duplicate);
+}
+
+TEST(CanRobot, InLockstepTheEndOfAnEarlierCycleEndsNothing) {
+  using Clock = std::chrono::steady_clock;
+  RobotOptions options;
+  options.lockstep = true;
+  options.lockstep_timeout = 0.2;
+  Bench b(options);
+  b.write(GAITD_JOINT_MODE_OFF, 0);
+  b.wire.send(encode_end_of_cycle());  // of the cycle of the start, whose replies were enough
+  const auto begin = Clock::now();
+  b.robot->advance();
+  EXPECT_GE(std::chrono::duration<double>(Clock::now() - begin).count(), 0.19);
 }
 
 TEST(CanRobot, AfterBusOffOnlySwitchesOffUntilTorqueIsCommandedAgain) {
