@@ -42,6 +42,11 @@ double heading_target(const GaitdGaitState& gait) {
   return mean_heading(heading(gait.footholds[gait.support].pose), heading(gait.adjusted[0].pose));
 }
 
+// Of a point of the sole, in the axes of the body of the foot.
+Eigen::Vector3d point_in_body(const GaitdFoot& foot, const Eigen::Vector3d& in_sole) {
+  return view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole;
+}
+
 // One straight leg carries the robot. A sole that tilts then stays tilted: the knee has no way to
 // give. Bent legs bring it back by themselves, and need the edges of the sole against pushes; with
 // two feet on the ground the other one takes the load.
@@ -209,7 +214,7 @@ void ObjectiveBuilder::update_contacts(double dt, const GaitdGaitState& gait,
         const Eigen::Vector2d corner = view(foothold.contact_polygon[i]);
         in_sole << rests_[side].bearing_point(middle + used * (corner - middle)), 0.0;
       }
-      view(c.point) = view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole;
+      view(c.point) = point_in_body(foot, in_sole);
       view(c.normal) = sole * Eigen::Vector3d::UnitZ();
       view(c.tangent) = sole * Eigen::Vector3d::UnitX();
       c.friction = parameters_[Objective::kFriction];
@@ -346,7 +351,7 @@ void ObjectiveBuilder::add_stance_foot(int side, const GaitdRobotState& robot,
   const SoleRest& rest = rests_[side];
   Eigen::Vector3d pivot;
   pivot << rest.pivot(), 0.0;
-  view(task.point) = view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * pivot;
+  view(task.point) = point_in_body(foot, pivot);
   const double settled = parameters_[Objective::kStanceDamping];
   const double extra = std::max(0.0, parameters_[Objective::kTouchdownDamping] - settled);
   const double rate = settled + extra * std::exp(-time_in_contact_[side] / kTouchdownTime);
@@ -368,8 +373,7 @@ void ObjectiveBuilder::add_toe(int side, const GaitdRobotState& robot, const Gai
                                const GaitdToeOff& toe_off, GaitdObjectives& out) const {
   const GaitdFoot& foot = model_.feet[side];
   const Eigen::Vector3d in_sole = view(toe_off.toe_point);
-  const Eigen::Vector3d in_body =
-      view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole;
+  const Eigen::Vector3d in_body = point_in_body(foot, in_sole);
   const GaitdPose& hold = gait.footholds[side].pose;
   // The point is held where the foothold has it; rows along the axes of the foothold.
   GaitdTask& point = add_task(out, GAITD_TASK_FRAME, foot.body, kLinearRows);

@@ -26,7 +26,16 @@ void SoleRest::reset() {
 
 void SoleRest::update(double dt, const GaitdFootState& foot, const GaitdFoothold& foothold,
                       double weight, const Limits& limits) {
+  share_ = 0.0;
+  pivot_.setZero();
+  way_back_.setZero();
   const Eigen::Quaterniond now = sdk::quaternion(foot.orientation);
+  const bool loaded = foot.wrench[5] > kLoad * weight;
+  if (loaded) time_loaded_ += dt;
+  if (time_loaded_ < kLandingTime) {
+    flat_ = now;
+    return;
+  }
   const Eigen::Vector2d cop = sdk::view(foot.cop);
   const Eigen::Vector2d rate =
       (now.conjugate() * Eigen::Vector3d(sdk::view(foot.twist).head<3>())).head<2>();
@@ -35,16 +44,8 @@ void SoleRest::update(double dt, const GaitdFootState& foot, const GaitdFoothold
     sole.add(sdk::view(foothold.contact_polygon[i]));
   }
   sole.make_hull();
-  const bool flat = foot.cop_valid != 0 && foot.wrench[5] > kLoad * weight &&
-                    rate.norm() < kStillRate && sole.inside_distance(cop) > kInside;
-  share_ = 0.0;
-  pivot_.setZero();
-  way_back_.setZero();
-  if (foot.wrench[5] > kLoad * weight) time_loaded_ += dt;
-  if (time_loaded_ < kLandingTime) {
-    flat_ = now;
-    return;
-  }
+  const bool flat = foot.cop_valid != 0 && loaded && rate.norm() < kStillRate &&
+                    sole.inside_distance(cop) > kInside;
   if (flat) flat_ = flat_.slerp(std::min(1.0, kFollowRate * dt), now);
   Eigen::Vector3d back = now.conjugate() * sdk::log_so3(flat_ * now.conjugate());
   back.z() = 0.0;
