@@ -52,7 +52,7 @@ inline constexpr std::array<GaitdParameter, 20> kSafetyParameters = {
     sdk::real_parameter("ready_duration", "s", 0.1, 60, 3, "of the ramp to the standing posture"),
     sdk::real_parameter("ready_tolerance", "rad", 0.001, 1, 0.05,
                         "joint errors that count as in the standing posture"),
-    sdk::real_parameter("ready_settle", "s", 0.01, 10, 0.2,
+    sdk::real_parameter("ready_settle", "s", 0.01, 10, 0.5,
                         "in posture and with loaded feet before standing"),
     sdk::real_parameter("ready_stiffness", "limits/rad", 0, 100, 8,
                         "joint stiffness while readying, in effort limits"),

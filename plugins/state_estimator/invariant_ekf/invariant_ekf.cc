@@ -18,11 +18,15 @@ constexpr double kStartTilt = 0.005;              // rad, of a state that was ha
 constexpr double kStartGyroBias = 0.005;          // rad/s
 constexpr double kStartAccelerometerBias = 0.05;  // m/s^2
 
+// s, in which a robot that is set on its feet sways: its CoP tells nothing.
+constexpr double kJolt = 0.1;
+
 double low_pass(double pole, double dt) { return 1.0 - std::exp(-pole * dt); }
 
 constexpr double kBalancedLoad = 0.5;  // weights; less is flight, or a robot that hangs
 
-constexpr double kPushStanding = 0.6;  // m/s^2 that only a push makes
+constexpr double kStandingBalance = 0.2;  // of the noise of a walk
+constexpr double kPushStanding = 0.6;     // m/s^2 that only a push makes
 constexpr double kPushWalking = 3.0;
 
 // Standard deviation of one sample, from a density.
@@ -101,6 +105,7 @@ void InvariantEkf::get_state(GaitdStateEstimatorState& s) const {
 void InvariantEkf::set_state(const GaitdStateEstimatorState& s) {
   initialised_ = s.initialised != 0;
   imu_ = 0;
+  time_since_start_ = kJolt;
   filter_.reset();
   filter_.orientation = sdk::quaternion(s.pelvis_orientation);
   filter_.gyro_bias = view(s.gyro_bias);
@@ -323,8 +328,9 @@ void InvariantEkf::observe_balance(const GaitdStateEstimatorInput& in,
   const Eigen::Vector3d error = specific_force_ - balanced - filter_.accelerometer_bias;
   const bool standing = in.gait->phase == GAITD_PHASE_STAND;
   if (error.head<2>().norm() > (standing ? kPushStanding : kPushWalking)) return;
+  const double share = standing ? kStandingBalance : 1.0;
   filter_.correct_specific_force(specific_force_, balanced,
-                                 per_sample(p_[P::kBalanceNoise], in.time.period));
+                                 per_sample(share * p_[P::kBalanceNoise], in.time.period));
 }
 
 void InvariantEkf::write(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
@@ -387,13 +393,15 @@ GaitdStatus InvariantEkf::process(const GaitdStateEstimatorInput& in, GaitdRobot
   read_forces(in, out);
   if (!initialised_) {
     initialise(in, out);
+    time_since_start_ = 0.0;
   } else {
     predict(in);
   }
   update_trust(in);
   correct(in, out);
-  observe_balance(in, out);
+  if (time_since_start_ >= kJolt) observe_balance(in, out);
   write(in, out);
+  time_since_start_ += in.time.period;
   return GAITD_OK;
 }
 

@@ -129,6 +129,7 @@ class InvariantEkf {
   int imu_ = 0;
 
   bool initialised_ = false;
+  double time_since_start_ = 0.0;  // s
   std::array<bool, GAITD_MAX_JOINTS> is_leg_joint_{};
   bool joints_seen_ = false;
   std::array<double, GAITD_MAX_JOINTS> joint_{};  // rad

@@ -12,10 +12,12 @@ namespace {
 using sdk::usable;
 using sdk::view;
 
-// The first attitude comes from one noisy sample. For this long (s) the mean over all samples so
-// far, carried along by the gyroscope, takes its place: what the robot does meanwhile averages out.
-constexpr double kAveragingTime = 0.2;
-constexpr double kFirstSample = 0.1;  // s, as which the first one counts: the start is a jolt
+// The first attitude comes from one noisy sample. Until kAveragingTime (s) the mean over all
+// samples so far, carried along by the gyroscope, takes its place: what the robot does averages
+// out. A robot that is set on its feet sways: the means begin after kJolt.
+constexpr double kAveragingTime = 0.4;
+constexpr double kJolt = 0.1;
+constexpr double kFirstSample = 0.02;  // s, as which the first one counts
 
 // Anchors are at their best while standing: the attitude is levelled this many times faster then.
 constexpr double kStandingFactor = 3.0;
@@ -155,6 +157,10 @@ Eigen::Vector3d KinematicInertial::sole_point(int side, const Eigen::Vector3d& i
       foot.body, view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole);
 }
 
+double KinematicInertial::averaging_share(double dt) const {
+  return time_since_start_ < kJolt ? 0.0 : dt / (time_since_start_ - kJolt + kFirstSample);
+}
+
 bool KinematicInertial::complete(const GaitdSensors& sensors) const {
   int index = 0;
   if (imu(sensors, index) == nullptr) return false;
@@ -217,7 +223,7 @@ void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in, doub
     tilt = sdk::log_so3(measured * orientation_.conjugate());
   } else if (time_since_start_ < kAveragingTime) {
     tilt = (orientation_ * specific_force_).cross(Eigen::Vector3d::UnitZ()) / model_.gravity;
-    share = dt / (time_since_start_ + kFirstSample);
+    share = averaging_share(dt);
   } else {
     return;  // level_attitude() does it
   }
@@ -279,12 +285,14 @@ void KinematicInertial::observe_bias(const GaitdStateEstimatorInput& in,
   const Eigen::Vector3d balanced = force.dot(arm) / arm.squaredNorm() / model_.total_mass * arm;
   Eigen::Vector3d error = specific_force_ - orientation_.conjugate() * balanced;
   error.z() = 0.0;
+  const bool starting = time_since_start_ < kAveragingTime;
   const bool standing = in.gait->phase == GAITD_PHASE_STAND;
   if (!standing || error.norm() > kQuiet) time_quiet_ = 0.0;
-  if (standing && time_quiet_ < kQuietTime) return;
+  if (standing && !starting && time_quiet_ < kQuietTime) return;
   error = error.cwiseMax(-kLargestError).cwiseMin(kLargestError);
   const double faster = standing ? kStandingBalanceFactor : 1.0;
-  const double share = std::min(1.0, faster * p_[P::kBalanceRate] * in.time.period);
+  const double share = starting ? averaging_share(in.time.period)
+                                : std::min(1.0, faster * p_[P::kBalanceRate] * in.time.period);
   const double limit = p_[P::kBalanceLimit];
   const Eigen::Vector3d before = balance_bias_;
   balance_bias_ = (before + share * error).cwiseMax(-limit).cwiseMin(limit);
@@ -461,6 +469,7 @@ GaitdStatus KinematicInertial::process(const GaitdStateEstimatorInput& in, Gaitd
   update_kinematics(out);
   read_feet(in, out);
   if (time_since_start_ < kAveragingTime) {
+    observe_bias(in, out);
     place(in, out);
   } else {
     time_quiet_ += dt;

@@ -103,6 +103,8 @@ class KinematicInertial {
   const GaitdImuSensor* imu(const GaitdSensors& sensors, int& index) const;
   // An IMU and every joint have something to say.
   bool complete(const GaitdSensors& sensors) const;
+  // Of one more sample, in the means of the start.
+  double averaging_share(double dt) const;
   void read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
   void place(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
