@@ -31,6 +31,7 @@ constexpr double kLargestError = 2.0;
 // A robot at rest: for so long (s) no more of that (m/s^2), and no foot turned faster (rad/s).
 constexpr double kQuietTime = 0.1;
 constexpr double kQuiet = 1.0;
+constexpr double kShakingPole = 50.0;  // 1/s: what the drives shake the IMU by averages out
 constexpr double kStill = 0.2;
 constexpr double kStillTime = 0.2;  // s
 
@@ -54,6 +55,7 @@ void KinematicInertial::reset() {
   initialised_ = false;
   time_since_start_ = 0.0;
   time_quiet_ = 0.0;
+  shaking_.setZero();
   time_still_ = 0.0;
   turned_.setZero();
   rate_.setZero();
@@ -287,7 +289,8 @@ void KinematicInertial::observe_bias(const GaitdStateEstimatorInput& in,
   error.z() = 0.0;
   const bool starting = time_since_start_ < kAveragingTime;
   const bool standing = in.gait->phase == GAITD_PHASE_STAND;
-  if (!standing || error.norm() > kQuiet) time_quiet_ = 0.0;
+  shaking_ += std::min(1.0, kShakingPole * in.time.period) * (error - shaking_);
+  if (!standing || shaking_.norm() > kQuiet) time_quiet_ = 0.0;
   if (standing && !starting && time_quiet_ < kQuietTime) return;
   error = error.cwiseMax(-kLargestError).cwiseMin(kLargestError);
   const double faster = standing ? kStandingBalanceFactor : 1.0;
@@ -468,12 +471,12 @@ GaitdStatus KinematicInertial::process(const GaitdStateEstimatorInput& in, Gaitd
   update_attitude(in, dt);
   update_kinematics(out);
   read_feet(in, out);
+  time_quiet_ += dt;
+  observe_bias(in, out);
   if (time_since_start_ < kAveragingTime) {
-    observe_bias(in, out);
+    observe_gyro_bias(dt);
     place(in, out);
   } else {
-    time_quiet_ += dt;
-    observe_bias(in, out);
     update_trust(in, dt);
     observe_gyro_bias(dt);
     update_anchors(in, dt);

@@ -129,9 +129,10 @@ class KinematicInertial {
 
   bool initialised_ = false;
   double time_since_start_ = 0.0;
-  double time_quiet_ = 0.0;                           // s, for which the robot has been at rest
-  double time_still_ = 0.0;                           // s, of the window in which its feet
-  Eigen::Vector3d turned_ = Eigen::Vector3d::Zero();  // turned by this, rad, pelvis frame
+  double time_quiet_ = 0.0;                            // s, for which the robot has been at rest
+  Eigen::Vector3d shaking_ = Eigen::Vector3d::Zero();  // m/s^2, accelerometer beside the balance
+  double time_still_ = 0.0;                            // s, of the window in which its feet
+  Eigen::Vector3d turned_ = Eigen::Vector3d::Zero();   // turned by this, rad, pelvis frame
   bool joints_seen_ = false;
   std::array<bool, GAITD_MAX_JOINTS> leg_joint_{};
   std::array<double, GAITD_MAX_JOINTS> joint_{};                     // rad, observed

@@ -16,7 +16,7 @@ GaitdStatus ComHeightQp::process(const GaitdWholeBodyControllerInput& in,
     if (weight > 0.0) qp_.add_joint(i, objectives.privileged_acceleration[i], weight);
   }
   qp_.solve(in.time.period, static_cast<int>(p_[P::kMaxIterations]));
-  qp_.write(in.time.period, p_[P::kReferenceLeak], *in.robot, objectives, out);
+  qp_.write(in.time.period, InverseDynamicsQp::drives_of(p_), *in.robot, objectives, out);
   return GAITD_OK;
 }
 

@@ -24,9 +24,11 @@ class ComHeightQp {
     kTorqueRateWeight,
     kMaxIterations,
     kReferenceLeak,
+    kFootFeedback,
+    kFootFeedbackLimit,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 12> kParameters = {
+  static constexpr std::array<GaitdParameter, 14> kParameters = {
       sdk::real_parameter("privileged_scale", "", 0, 10, 0.1,
                           "of the privileged weights; small: it must not disturb the tasks"),
       kJointRateGainParameter,
@@ -40,6 +42,8 @@ class ComHeightQp {
       kTorqueRateWeightParameter,
       kMaxIterationsParameter,
       kReferenceLeakParameter,
+      kFootFeedbackParameter,
+      kFootFeedbackLimitParameter,
   };
 
   explicit ComHeightQp(const GaitdModel& model);

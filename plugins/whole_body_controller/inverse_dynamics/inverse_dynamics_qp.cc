@@ -28,7 +28,8 @@ InverseDynamicsQp::InverseDynamicsQp(const GaitdModel& model)
       nv_(6 + model.joint_count),
       joints_(model.joint_count),
       dynamics_(model),
-      solver_({nv_ + kMaxRho, 6, model.joint_count + 1}) {
+      solver_({nv_ + kMaxRho, 6, model.joint_count + 1}),
+      foot_feedback_(model) {
   const int n = nv_ + kMaxRho;
   rows_.resize(kMaxRows, nv_);
   targets_.resize(kMaxRows);
@@ -64,6 +65,7 @@ void InverseDynamicsQp::reset() {
   acceleration_.setZero();
   rho_.setZero();
   solver_.reset_warm_start();
+  foot_feedback_.reset();
 }
 
 void InverseDynamicsQp::get_state(GaitdWholeBodyControllerState& state) const { state = state_; }
@@ -334,7 +336,7 @@ void InverseDynamicsQp::remember(const GaitdObjectives& objectives) {
   last_torque_known_ = true;
 }
 
-void InverseDynamicsQp::write(double dt, double reference_leak, const GaitdRobotState& robot,
+void InverseDynamicsQp::write(double dt, const Drives& drives, const GaitdRobotState& robot,
                               const GaitdObjectives& objectives,
                               GaitdWholeBodyControllerOutput& out) {
   GaitdWbcInfo& info = out.info;
@@ -364,8 +366,10 @@ void InverseDynamicsQp::write(double dt, double reference_leak, const GaitdRobot
     return;
   }
   remember(objectives);
-  write_commands(dt, reference_leak, robot, objectives, out.commands);
+  write_commands(dt, drives.reference_leak, robot, objectives, out.commands);
   write_figures(objectives, info);
+  foot_feedback_.update(dt, drives.foot_feedback, drives.foot_feedback_limit, dynamics_, robot,
+                        objectives, info, out.commands);
 }
 
 void InverseDynamicsQp::write_commands(double dt, double reference_leak,

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "foot_feedback.h"
 #include "gaitd/abi/plugin.h"
 #include "gaitd/dynamics/dynamics.h"
 #include "gaitd/qp/dense_solver.h"
@@ -39,6 +40,11 @@ inline constexpr GaitdParameter kMaxIterationsParameter =
 inline constexpr GaitdParameter kReferenceLeakParameter =
     sdk::real_parameter("reference_leak", "1/s", 0, 1000, 8,
                         "with which the references of the drives follow the joints");
+inline constexpr GaitdParameter kFootFeedbackParameter =
+    sdk::real_parameter("foot_feedback", "1/s", 0, 200, 15,
+                        "of the ankles, on what the foot sensors tell of the CoP; 0: none");
+inline constexpr GaitdParameter kFootFeedbackLimitParameter = sdk::real_parameter(
+    "foot_feedback_limit", "limits", 0, 1, 0.012, "of an ankle's torque, for it");
 
 // The quadratic program that every whole-body controller here solves (theory section 4):
 //   unknowns   z = [vdot (6+n); rho], rho the multipliers of the friction-pyramid edges
@@ -69,6 +75,12 @@ class InverseDynamicsQp {
     double torque_rate;         // effort limits per s, above which a change costs
     double torque_rate_weight;  // of the square of what is above, in effort limits
   };
+  // How the drives follow what was solved.
+  struct Drives {
+    double reference_leak;       // 1/s, of the references
+    double foot_feedback;        // 1/s, see FootFeedback
+    double foot_feedback_limit;  // effort limits
+  };
   // From the parameters of a variant, `P` the enumeration that names them.
   template <class P>
   static Limits limits_of(const sdk::Parameters<P>& p) {
@@ -81,6 +93,12 @@ class InverseDynamicsQp {
             .rise_time = p[P::kRiseTime],
             .torque_rate = p[P::kTorqueRate],
             .torque_rate_weight = p[P::kTorqueRateWeight]};
+  }
+  template <class P>
+  static Drives drives_of(const sdk::Parameters<P>& p) {
+    return {.reference_leak = p[P::kReferenceLeak],
+            .foot_feedback = p[P::kFootFeedback],
+            .foot_feedback_limit = p[P::kFootFeedbackLimit]};
   }
 
   explicit InverseDynamicsQp(const GaitdModel& model);
@@ -105,10 +123,9 @@ class InverseDynamicsQp {
   // `dt` (s) since the tick before, `max_iterations` of each of the solutions.
   void solve(double dt, int max_iterations);
   // Torques, references and figures of the last solve, for a tick of `dt` seconds. The references
-  // of the drives are integrated from the solved accelerations and leak towards the measured state
-  // with `reference_leak` (1/s): what a drive adds around them makes good for friction and the
-  // like.
-  void write(double dt, double reference_leak, const GaitdRobotState& robot,
+  // of the drives are integrated from the solved accelerations and leak towards the measured state:
+  // what a drive adds around them makes good for friction and the like, as the foot feedback does.
+  void write(double dt, const Drives& drives, const GaitdRobotState& robot,
              const GaitdObjectives& objectives, GaitdWholeBodyControllerOutput& out);
 
   int velocity_size() const { return nv_; }
@@ -166,6 +183,7 @@ class InverseDynamicsQp {
   Eigen::VectorXd last_torque_;  // joints, N m, of the tick before
   bool last_torque_known_ = false;
 
+  FootFeedback foot_feedback_;
   GaitdWholeBodyControllerState state_{};
   bool references_valid_ = false;
 };

@@ -15,7 +15,7 @@ GaitdStatus NullspaceQp::process(const GaitdWholeBodyControllerInput& in,
   qp_.begin(*in.robot, objectives, objectives.momentum_mask, InverseDynamicsQp::limits_of(p_));
   add_privileged(objectives);
   qp_.solve(in.time.period, static_cast<int>(p_[P::kMaxIterations]));
-  qp_.write(in.time.period, p_[P::kReferenceLeak], *in.robot, objectives, out);
+  qp_.write(in.time.period, InverseDynamicsQp::drives_of(p_), *in.robot, objectives, out);
   out.info.null_trace = projector_.trace();
   return GAITD_OK;
 }

@@ -27,9 +27,11 @@ class NullspaceQp {
     kTorqueRateWeight,
     kMaxIterations,
     kReferenceLeak,
+    kFootFeedback,
+    kFootFeedbackLimit,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 12> kParameters = {
+  static constexpr std::array<GaitdParameter, 14> kParameters = {
       sdk::real_parameter("damping", "", 1e-5, 1, 0.005,
                           "of the projector, for task rows of unit length"),
       kJointRateGainParameter,
@@ -43,6 +45,8 @@ class NullspaceQp {
       kTorqueRateWeightParameter,
       kMaxIterationsParameter,
       kReferenceLeakParameter,
+      kFootFeedbackParameter,
+      kFootFeedbackLimitParameter,
   };
 
   explicit NullspaceQp(const GaitdModel& model);
