@@ -33,7 +33,8 @@ constexpr double kQuietTime = 0.1;
 constexpr double kQuiet = 1.0;
 constexpr double kShakingPole = 50.0;  // 1/s: what the drives shake the IMU by averages out
 constexpr double kStill = 0.2;
-constexpr double kStillTime = 0.2;  // s
+constexpr double kLargestDrift = 0.01;  // rad/s, taken for a bias
+constexpr double kStillTime = 0.2;      // s
 
 double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * hertz * dt); }
 
@@ -346,7 +347,8 @@ void KinematicInertial::observe_gyro_bias(double dt) {
   time_still_ += dt;
   turned_ += dt * (orientation_.conjugate() * rate);
   if (time_still_ < kStillTime) return;
-  gyro_bias_ += p_[P::kStillShare] / time_still_ * turned_;
+  const Eigen::Vector3d found = turned_ / time_still_;
+  if (found.norm() < kLargestDrift) gyro_bias_ += p_[P::kStillShare] * found;
   time_still_ = 0.0;
   turned_.setZero();
 }
