@@ -125,7 +125,10 @@ Findings check_support(const LogCase& log) {
   for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] = log.controlled(i) && error[i] > kLost;
   auto episode = last_episode(log, wrong, 0.01, 0.2);
   if (!episode) return {};
-  while (episode->begin > 0 && error[episode->begin] > kBegan) --episode->begin;
+  while (episode->begin > 0 && log.controlled(episode->begin - 1) &&
+         error[episode->begin] > kBegan) {
+    --episode->begin;
+  }
   int on_edge = 0;
   std::size_t first_on_edge = 0;
   for (std::size_t i = episode->begin; i < std::min(log.end(), episode->end); ++i) {
