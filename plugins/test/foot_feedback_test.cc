@@ -28,7 +28,8 @@ struct Bench {
                     sdk::head(robot.joint_velocity, n));
     for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
       const GaitdFoot& foot = atlas().feet[side];
-      for (int i = 0; i < foot.point_count; ++i) add_point(side, {foot.points[i][0], foot.points[i][1], 0.0});
+      for (int i = 0; i < foot.point_count; ++i)
+        add_point(side, {foot.points[i][0], foot.points[i][1], 0.0});
       load(side, {0.0, 0.0});
       wanted.foot_wrench[side][5] = half_weight();
     }

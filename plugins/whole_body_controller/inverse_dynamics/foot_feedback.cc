@@ -12,7 +12,7 @@ namespace {
 using sdk::view;
 
 constexpr double kLeastLoad = 0.1;    // weights
-constexpr double kForgetRate = 40.0;  // 1/s, of a foot that is not on the ground
+constexpr double kForgetRate = 40.0;  // 1/s, of what no longer applies
 constexpr int kFlatPoints = 3;
 constexpr double kLag = 0.005;  // s, from a command to what the foot sensors tell of it
 // Half extents: nearer to the edge a sole may tilt by a correction. There pushes are caught.
@@ -49,7 +49,7 @@ void FootFeedback::update(double dt, double gain, double limit, const dynamics::
     const Eigen::Quaterniond sole = sdk::quaternion(foot.orientation);
     const Eigen::Vector3d m = sole.conjugate() * view(wanted.foot_wrench[side]).head<3>();
     const double load = (sole.conjugate() * view(wanted.foot_wrench[side]).tail<3>()).z();
-    Eigen::Vector2d low, high;
+    Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();
     if (flat(side, objectives, low, high) && foot.cop_valid != 0 && foot.wrench[5] > least &&
         load > least) {
       const Eigen::Vector2d goal = Eigen::Vector2d(-m.y(), m.x()) / load;
