@@ -14,7 +14,8 @@ using Limits = sdk::Parameters<SafetyParameter>;
 // Encoder noise and play, on top of what the fastest joint can do between two readings (rad).
 constexpr double kJointPlay = 0.05;
 constexpr double kLongestBounce = 0.15;  // s
-constexpr double kRestingSpeed = 0.05;   // m/s, of a foot on the ground
+constexpr double kLongestHover = 0.05;   // s, of a soft landing just above the ground
+constexpr double kRestingSpeed = 0.03;   // m/s, of a foot on the ground
 // Joints are overtaken by impacts; only this multiple of the limit is impossible.
 constexpr double kVelocityRatio = 3.0;
 
@@ -145,9 +146,9 @@ void SensorMonitor::check(double dt, const Limits& p, TickData& d) {
     const bool zero = foot.force[0] == 0.0 && foot.force[1] == 0.0 && foot.force[2] == 0.0;
     count_repeats(h, foot.info, last_.feet[side].info,
                   same(foot.force, last_.feet[side].force) && (carries || !zero));
-    // A foot that bounces carries nothing for a while.
-    const bool bounces = zero && !rests && h.unchanged < kLongestBounce;
-    pass(h, credible, bounces ? 0.0 : frozen(h), Suspicion::kFrozen, before.feet[side],
+    // A foot that bounces or hovers carries nothing for a while.
+    const bool in_air = zero && h.unchanged < (rests ? kLongestHover : kLongestBounce);
+    pass(h, credible, in_air ? 0.0 : frozen(h), Suspicion::kFrozen, before.feet[side],
          d.sensors.feet[side], side == GAITD_LEFT ? "left foot force" : "right foot force");
   }
   last_ = now;

@@ -190,9 +190,8 @@ bool GaitMachine::icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& pl
   const Eigen::Vector2d error = sdk::view(robot.icp) - sdk::view(plan.icp);
   const Eigen::Vector3d local = heading.conjugate() * Eigen::Vector3d(error.x(), error.y(), 0.0);
   const GaitdPose& leading = state_.footholds[other_side(state_.next_side)].pose;
-  const Eigen::Vector3d next =
-      heading.conjugate() *
-      (sdk::view(state_.adjusted[0].pose.position) - sdk::view(leading.position));
+  const Eigen::Vector3d next = heading.conjugate() * (sdk::view(state_.adjusted[0].pose.position) -
+                                                      sdk::view(leading.position));
   const double behind = next.x() < 0.0 ? local.x() : -local.x();
   const double inside = side_sign(state_.next_side) * local.y();
   return behind <= parameters_[Gait::kIcpErrorForward] &&
@@ -249,7 +248,8 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
       if (adjustment.active != 0) adjust(adjustment);
       const double weight = model_.total_mass * model_.gravity;
       const bool loaded =
-          robot.feet[state_.next_side].normal_force > parameters_[Gait::kTouchdownForce] * weight;
+          robot.feet[state_.next_side].normal_force >
+          std::max(parameters_[Gait::kTouchdownForce] * weight, parameters_[Gait::kTouchdownLeast]);
       const bool credible =
           state_.time_in_phase >= parameters_[Gait::kTouchdownFraction] * state_.phase_duration;
       state_.late_contact = over && !loaded ? 1 : 0;

@@ -13,8 +13,7 @@ constexpr double kShortest = 0.01;  // s, of one polynomial
 constexpr double kBrisk = 30.0;     // m/s^2, to reach a foothold that moved after the arrival
 constexpr double kPeak =
     5.77;  // largest acceleration of a quintic from rest to rest, per way / time^2
-constexpr double kFastest = 0.7;  // m/s, gained at most by an overdue touchdown
-constexpr double kOnset = 0.05;   // s
+constexpr double kOnset = 0.05;  // s
 
 double blend(double a, double b, double share) { return a + share * (b - a); }
 
@@ -23,13 +22,15 @@ struct Hurry {
 };
 
 // Speed and way that an overdue touchdown gains in `late` seconds: the acceleration sets in over
-// kOnset, so that a touchdown that is only a little late is not a hard one, and ends at kFastest.
-Hurry hurry(double late, double acceleration) {
+// kOnset, so that a touchdown that is only a little late is not a hard one, and ends at `most`
+// (m/s).
+Hurry hurry(double late, double acceleration, double most) {
+  acceleration = std::min(acceleration, 2.0 * most / kOnset);
   if (acceleration <= 0.0) return {0.0, 0.0};
   const double jerk = acceleration / kOnset;
   const double onset = std::min(late, kOnset);
   const Hurry early{0.5 * jerk * onset * onset, jerk * onset * onset * onset / 6.0};
-  const double rest = std::max(0.0, kFastest - early.gain) / acceleration;
+  const double rest = std::max(0.0, most - early.gain) / acceleration;
   const double t = std::min(late - onset, rest);
   const double after = late - onset - t;
   return {early.gain + acceleration * t, early.way + early.gain * t + 0.5 * acceleration * t * t +
@@ -103,6 +104,7 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   late_velocity_ = parameters[Swing::kLateVelocity];
   goal_ = to;
   late_acceleration_ = parameters[Swing::kLateAcceleration];
+  late_gain_ = std::max(0.0, parameters[Swing::kLateSpeed] - late_velocity_);
   const double T = duration_ - t;
   const double rise = std::max(0.0, edge(to, parameters));
   const double drop = std::max(0.0, -edge(to, parameters));
@@ -167,7 +169,7 @@ SwingTrajectory::Sample SwingTrajectory::evaluate(double t) const {
   s.angular_acceleration = acceleration + 0.5 * turn.cross(acceleration);
   if (t > duration_) {
     const double late = t - duration_;
-    const auto [gain, way] = hurry(late, late_acceleration_);
+    const auto [gain, way] = hurry(late, late_acceleration_, late_gain_);
     s.position.z() -= late_velocity_ * late + way;
     s.velocity = {0.0, 0.0, -late_velocity_ - gain};
     s.acceleration.setZero();

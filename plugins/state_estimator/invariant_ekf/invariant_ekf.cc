@@ -171,6 +171,8 @@ Eigen::Quaterniond InvariantEkf::sole_orientation(int side) const {
 
 void InvariantEkf::read_forces(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
   const double share = low_pass(2.0 * M_PI * p_[P::kForceFilter], in.time.period);
+  // What the thresholds are shares of.
+  const double full = std::max(weight_, p_[P::kContactLeast] / p_[P::kContactOn]);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     Foot& f = feet_[side];
     GaitdFootState& state = out.feet[side];
@@ -178,7 +180,7 @@ void InvariantEkf::read_forces(const GaitdStateEstimatorInput& in, GaitdRobotSta
     view(state.wrench) = wrench;
     f.normal_force += share * (std::max(0.0, wrench[5]) - f.normal_force);
     const P threshold = f.contact == GAITD_CONTACT_NONE ? P::kContactOn : P::kContactOff;
-    f.contact = f.normal_force > p_[threshold] * weight_ ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
+    f.contact = f.normal_force > p_[threshold] * full ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
     state.contact = f.contact;
     state.normal_force = f.normal_force;
     state.cop_valid = f.contact != GAITD_CONTACT_NONE && wrench[5] > 0.01 * weight_ ? 1 : 0;

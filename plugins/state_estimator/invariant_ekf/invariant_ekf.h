@@ -29,6 +29,7 @@ class InvariantEkf {
     kRestDelay,
     kContactOn,
     kContactOff,
+    kContactLeast,
     kForceFilter,
     kLegPole,
     kUpperBodyPole,
@@ -44,14 +45,18 @@ class InvariantEkf {
     kBalanceNoise,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 19> kParameters = {
+  static constexpr std::array<GaitdParameter, 20> kParameters = {
       sdk::real_parameter("trust_on", "load", 0, 1, 0.35, "share that makes a foot a contact"),
       sdk::real_parameter("trust_off", "load", 0, 1, 0.30, "share below which it is none"),
       sdk::real_parameter("trust_delay", "s", 0, 0.5, 0.02, "that the share must last"),
       sdk::real_parameter("rest_delay", "s", 0, 1, 0.1,
                           "after which a foot has come to rest and holds the heading too"),
-      sdk::real_parameter("contact_on", "weight", 0, 1, 0.05, "normal force of a reported contact"),
+      sdk::real_parameter("contact_on", "weight", 0.001, 1, 0.05,
+                          "normal force of a reported contact"),
       sdk::real_parameter("contact_off", "weight", 0, 1, 0.03, "normal force of no contact"),
+      sdk::real_parameter("contact_least", "N", 0, 1000, 40,
+                          "normal force of a contact of a light robot: above offset and noise of "
+                          "its sensors"),
       sdk::real_parameter("force_filter", "Hz", 1, 500, 80, "low-pass of the normal force"),
       sdk::real_parameter("leg_pole", "1/s", 1, 2000, 300,
                           "two low-passes of the rates of leg joints and of the pelvis twist"),

@@ -236,6 +236,8 @@ void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in, doub
 
 void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
   const double blend = low_pass(p_[P::kForceFilter], in.time.period);
+  // What the thresholds are shares of.
+  const double full = std::max(weight_, p_[P::kContactLeast] / p_[P::kContactOn]);
   Eigen::Vector2d weighted = Eigen::Vector2d::Zero();
   double total = 0.0;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
@@ -250,7 +252,7 @@ void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobot
     f.normal_force += blend * (std::max(0.0, force.z()) - f.normal_force);
     state.normal_force = f.normal_force;
     const double threshold =
-        p_[f.contact == GAITD_CONTACT_NONE ? P::kContactOn : P::kContactOff] * weight_;
+        p_[f.contact == GAITD_CONTACT_NONE ? P::kContactOn : P::kContactOff] * full;
     f.contact = f.normal_force > threshold ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
     state.contact = f.contact;
     state.cop_valid = f.contact != GAITD_CONTACT_NONE && force.z() > 0.01 * weight_ ? 1 : 0;

@@ -33,6 +33,7 @@ class KinematicInertial {
     kTrustDelay,
     kContactOn,
     kContactOff,
+    kContactLeast,
     kForceFilter,
     kLegPole,
     kUpperBodyPole,
@@ -48,14 +49,17 @@ class KinematicInertial {
     kBalanceLimit,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 18> kParameters = {
+  static constexpr std::array<GaitdParameter, 19> kParameters = {
       sdk::real_parameter("trust_on", "load", 0, 1, 0.48,
                           "share that makes a foot an anchor: near half, as feet sink in under "
                           "their load, and rise as they lose it"),
       sdk::real_parameter("trust_off", "load", 0, 1, 0.30, "share below which it is none"),
       sdk::real_parameter("trust_delay", "s", 0, 0.5, 0.02, "that the share must last"),
-      sdk::real_parameter("contact_on", "weight", 0, 1, 0.05, "normal force of a contact"),
+      sdk::real_parameter("contact_on", "weight", 0.001, 1, 0.05, "normal force of a contact"),
       sdk::real_parameter("contact_off", "weight", 0, 1, 0.03, "normal force of no contact"),
+      sdk::real_parameter("contact_least", "N", 0, 1000, 40,
+                          "normal force of a contact of a light robot: above offset and noise of "
+                          "its sensors"),
       sdk::real_parameter("force_filter", "Hz", 1, 500, 80, "low-pass of the normal force"),
       sdk::real_parameter("leg_pole", "1/s", 0, 2000, 300,
                           "observer of the rates of leg joints; 0: the rates of the sensors"),

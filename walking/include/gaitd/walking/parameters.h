@@ -17,6 +17,7 @@ enum class Gait {
   kFinalTransferDuration,
   kSwingHeight,
   kTouchdownForce,
+  kTouchdownLeast,
   kTouchdownFraction,
   kIcpErrorForward,
   kIcpErrorSideways,
@@ -42,7 +43,7 @@ enum class Gait {
   kRecoveryMargin,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 30> kGaitParameters = {
+inline constexpr std::array<GaitdParameter, 31> kGaitParameters = {
     real_parameter("omega", "1/s", 0, 10, 0,
                    "natural frequency of the ICP; 0: sqrt(g / nominal CoM height)"),
     real_parameter("swing_duration", "s", 0.2, 10, 0.6, "of footsteps that give none"),
@@ -54,6 +55,8 @@ inline constexpr std::array<GaitdParameter, 30> kGaitParameters = {
                    "apex above the higher of lift-off and touchdown"),
     real_parameter("touchdown_force", "weight", 0.005, 0.5, 0.06,
                    "normal force of the swing foot that ends the swing, in body weights"),
+    real_parameter("touchdown_least", "N", 0, 1000, 45,
+                   "likewise, of a light robot: above offset and noise of its force sensors"),
     real_parameter("touchdown_fraction", "", 0, 1, 0.6,
                    "part of the swing before which a touchdown is not believed"),
     real_parameter("icp_error_forward", "m", 0.005, 1, 0.05,
@@ -99,6 +102,7 @@ enum class Swing {
   kApexFraction,
   kLateVelocity,
   kLateAcceleration,
+  kLateSpeed,
   kEdgeHeight,
   kRiseWait,
   kRiseLevel,
@@ -106,11 +110,12 @@ enum class Swing {
   kDropApex,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 9> kSwingParameters = {
+inline constexpr std::array<GaitdParameter, 10> kSwingParameters = {
     real_parameter("touchdown_velocity", "m/s", 0, 2, 0.3, "downwards at the end of the swing"),
     real_parameter("apex_fraction", "", 0.1, 0.9, 0.45, "part of the swing at the highest point"),
     real_parameter("late_velocity", "m/s", 0, 2, 0.3, "downwards when the touchdown is due"),
     real_parameter("late_acceleration", "m/s^2", 0, 50, 13, "downwards while it is overdue"),
+    real_parameter("late_speed", "m/s", 0, 5, 1, "downwards at most while it is overdue"),
     real_parameter("edge_height", "m", 0.01, 1, 0.12,
                    "step up or down that counts as an edge in full; less of it in proportion"),
     real_parameter("rise_wait", "", 0, 0.5, 0.18,

@@ -61,6 +61,7 @@ class SwingTrajectory {
   double apex_height_ = 0.0;
   double late_velocity_ = 0.0;
   double late_acceleration_ = 0.0;
+  double late_gain_ = 0.0;  // m/s, on top of late_velocity_ at most
   Quintic x_, y_, z_up_, z_down_;
   Quintic turn_[3];  // rotation vector from from_orientation_, W, rad
   Eigen::Quaterniond from_orientation_ = Eigen::Quaterniond::Identity();
