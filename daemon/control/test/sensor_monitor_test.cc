@@ -181,6 +181,26 @@ TEST(SensorMonitor, AFootSensorMayRepeatNothingInTheAirButNotUnderLoad) {
   }
 }
 
+TEST(SensorMonitor, AFootThatComesDownLateAndSoftlyHasADeadSensorOnlyIfItStaysThere) {
+  Bench b;
+  b.run(20);
+  b.data->gait.footholds[0].contact = GAITD_CONTACT_NONE;
+  b.data->gait.next_side = 0;
+  b.data->gait.late_contact = 1;  // and the foot does not move
+  const auto zeros = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      b.next();
+      for (double& force : b.data->readings.feet[0].force) force = 0.0;
+      b.check();
+    }
+  };
+  zeros(45);
+  EXPECT_EQ(b.data->sensors.feet[0].info.age, 0.0);
+  zeros(15);
+  EXPECT_GT(b.data->sensors.feet[0].info.age, 0.02);
+  EXPECT_EQ(b.monitor.suspect().suspicion, Suspicion::kFrozen);
+}
+
 TEST(SensorMonitor, AJointThatIsToldToMoveAndDoesNotIsStuck) {
   for (const bool commanded : {false, true}) {
     Bench b;

@@ -53,8 +53,8 @@ bool IcpCriteria::far_enough(const GaitdFoothold& trailing, const GaitdFoothold&
   const double yaw = sdk::yaw_of(sdk::quaternion(trailing.pose.orientation));
   const Eigen::Vector3d d =
       sdk::from_yaw(-yaw) * (view(leading.pose.position) - view(trailing.pose.position));
-  return d.x() >= p_[P::kMinForward] ||
-         (std::abs(d.z()) >= p_[P::kMinHeight] && d.x() >= 0.5 * p_[P::kMinForward]);
+  const double least = p_[P::kMinForward] * foot_length_;
+  return d.x() >= least || (std::abs(d.z()) >= p_[P::kMinHeight] && d.x() >= 0.5 * least);
 }
 
 IcpCriteria::Candidate IcpCriteria::candidate(const GaitdGaitState& gait) const {

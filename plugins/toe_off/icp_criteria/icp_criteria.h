@@ -35,14 +35,15 @@ class IcpCriteria {
     kCount
   };
   static constexpr std::array<GaitdParameter, 10> kParameters = {
-      sdk::real_parameter("min_forward", "m", 0, 1, 0.2, "leading foot ahead of the trailing one"),
+      sdk::real_parameter("min_forward", "foot lengths", 0, 10, 0.75,
+                          "leading foot ahead of the trailing one"),
       sdk::real_parameter("min_height", "m", 0.01, 1, 0.1,
                           "or higher or lower by this much, and ahead"),
       sdk::real_parameter("icp_margin", "m", -0.1, 0.1, 0,
                           "how far inside the predicted polygon both ICPs must be"),
       sdk::real_parameter("icp_distance", "", 0, 2, 0.25,
                           "of the ICPs to the leading foothold, over that of the toe point"),
-      sdk::real_parameter("cop_distance", "foot lengths", 0, 1, 0.54,
+      sdk::real_parameter("cop_distance", "foot lengths", 0, 1, 0.8,
                           "of the trailing CoP to the toe point"),
       sdk::real_parameter("cmp_distance", "m", 0, 0.5, 0.03,
                           "of the desired CMP to the predicted polygon"),
