@@ -72,7 +72,8 @@ bool GaitMachine::recover(double dt, const GaitdRobotState& robot) {
   const double load = robot.feet[GAITD_LEFT].normal_force + robot.feet[GAITD_RIGHT].normal_force;
   const ConvexPolygon feet = support_polygon(model_, state_);
   const Eigen::Vector2d icp = sdk::view(robot.icp);
-  const bool held = feet.inside_distance(icp) >= parameters_[Gait::kRecoveryMargin];
+  const double margin = parameters_[Gait::kRecoveryMargin] * model_.nominal_com_height;
+  const bool held = feet.inside_distance(icp) >= margin;
   if (held || load < kLoaded * model_.total_mass * model_.gravity) {
     time_unheld_ = 0.0;
     return false;

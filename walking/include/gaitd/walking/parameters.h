@@ -93,7 +93,7 @@ inline constexpr std::array<GaitdParameter, 31> kGaitParameters = {
     real_parameter("recovery_swing", "s", 0.2, 2, 0.45, "swing of a step that catches the robot"),
     real_parameter("recovery_transfer", "s", 0.05, 1, 0.06, "transfer before it"),
     real_parameter(
-        "recovery_margin", "m", -0.1, 0.1, -0.02,
+        "recovery_margin", "com heights", -0.1, 0.1, -0.017,
         "ICP inside the edge of the feet at which the robot still steps; negative: past it"),
 };
 
