@@ -37,6 +37,22 @@ robot large 0.42 0.657 0.274 --size 1.2
 robot long 0.35 0.6 0.25 --legs 1.12 --feet 0.85 --leg-mass 1.3
 robot top-heavy 0.35 0.6 0.25 --feet 0.8 --torso-mass 1.2
 
+# Standing and pushed forward, the small one steps by itself: 0.6^3 of the 700 N of
+# push-bent-step-forward, for 0.2 s times the root of 0.6.
+cat >"$scratch/small-pushed.yaml" <<SCENARIO
+schema: gaitd.scenario/1
+name: small-pushed
+robot: $scratch/small/robot.yaml
+duration: 10
+seed: 3
+mode: walk-bent
+sensors: {noise: nominal}
+actuators: {model: nominal}
+disturbances:
+  - {link: utorso, point: [0, 0, 0.18], force: [151, 0, 0], duration: 0.155, when: {time: 2.0}}
+expect: {no_fall: true}
+SCENARIO
+
 # Without noise too: a foot sensor that says zero until a late touchdown is not a dead one.
 sed 's/noise: nominal/noise: none/; s/model: nominal/model: ideal/' \
   "$scratch/small-walk-straight-kinematic_inertial.yaml" >"$scratch/small-ideal.yaml"

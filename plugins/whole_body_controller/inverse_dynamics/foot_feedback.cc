@@ -39,55 +39,65 @@ bool FootFeedback::flat(int side, const GaitdObjectives& objectives, Eigen::Vect
   return points >= kFlatPoints;
 }
 
+void FootFeedback::integrate(int side, double dt, double gain, const GaitdFootState& foot,
+                             const GaitdObjectives& objectives, const GaitdWbcInfo& wanted) {
+  const double least = kLeastLoad * model_.total_mass * model_.gravity;
+  Eigen::Vector2d& moment = moment_[side];
+  const Eigen::Quaterniond sole = sdk::quaternion(foot.orientation);
+  const Eigen::Vector3d m = sole.conjugate() * view(wanted.foot_wrench[side]).head<3>();
+  const double load = (sole.conjugate() * view(wanted.foot_wrench[side]).tail<3>()).z();
+  Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();
+  if (!flat(side, objectives, low, high) || foot.cop_valid == 0 || foot.wrench[5] <= least ||
+      load <= least) {
+    was_flat_[side] = false;
+    moment *= std::max(0.0, 1.0 - kForgetRate * dt);
+    return;
+  }
+  const Eigen::Vector2d goal = Eigen::Vector2d(-m.y(), m.x()) / load;
+  Eigen::Vector2d& expected = expected_[side];
+  if (!was_flat_[side]) expected = view(foot.cop);
+  was_flat_[side] = true;
+  expected += std::min(1.0, dt / kLag) * (goal - expected);
+  // The CoP along x goes with the moment about y.
+  const Eigen::Vector2d error = expected - view(foot.cop);
+  const Eigen::Vector2d change = foot.wrench[5] * Eigen::Vector2d(error.y(), -error.x());
+  for (int k = 0; k < 2; ++k) {
+    const int along = 1 - k;
+    const bool inside = expected[along] > low[along] && expected[along] < high[along];
+    moment[k] += inside ? std::min(1.0, gain * dt) * change[k]
+                        : -std::min(1.0, kForgetRate * dt) * moment[k];
+  }
+}
+
+void FootFeedback::add(int side, double limit, const dynamics::Dynamics& dynamics,
+                       const GaitdFootState& foot, GaitdJointCommands& commands) {
+  const GaitdLeg& leg = model_.legs[side];
+  const Eigen::Quaterniond sole = sdk::quaternion(foot.orientation);
+  double scale = 1.0;  // both joints alike: half of a correction would turn it
+  std::array<double, 2> torque{};
+  const std::array<int, 2> joints{leg.ankle_pitch, leg.ankle_roll};
+  for (int k = 0; k < 2; ++k) {
+    const GaitdJoint& joint = model_.joints[joints[k]];
+    const Eigen::Vector3d axis = dynamics.R_WB(joint.child_body) * view(joint.axis);
+    const Eigen::Vector3d in_sole = sole.conjugate() * axis;
+    torque[k] = -in_sole.head<2>().dot(moment_[side]);
+    const double most = limit * joint.effort_limit;
+    if (std::abs(torque[k]) > most) scale = std::min(scale, most / std::abs(torque[k]));
+  }
+  moment_[side] *= scale;
+  for (int k = 0; k < 2; ++k) {
+    const double effort = model_.joints[joints[k]].effort_limit;
+    double& command = commands.joints[joints[k]].torque;
+    command = std::clamp(command + scale * torque[k], -effort, effort);
+  }
+}
+
 void FootFeedback::update(double dt, double gain, double limit, const dynamics::Dynamics& dynamics,
                           const GaitdRobotState& robot, const GaitdObjectives& objectives,
                           const GaitdWbcInfo& wanted, GaitdJointCommands& commands) {
-  const double least = kLeastLoad * model_.total_mass * model_.gravity;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    Eigen::Vector2d& moment = moment_[side];
-    const GaitdFootState& foot = robot.feet[side];
-    const Eigen::Quaterniond sole = sdk::quaternion(foot.orientation);
-    const Eigen::Vector3d m = sole.conjugate() * view(wanted.foot_wrench[side]).head<3>();
-    const double load = (sole.conjugate() * view(wanted.foot_wrench[side]).tail<3>()).z();
-    Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();
-    if (flat(side, objectives, low, high) && foot.cop_valid != 0 && foot.wrench[5] > least &&
-        load > least) {
-      const Eigen::Vector2d goal = Eigen::Vector2d(-m.y(), m.x()) / load;
-      Eigen::Vector2d& expected = expected_[side];
-      if (!was_flat_[side]) expected = view(foot.cop);
-      was_flat_[side] = true;
-      expected += std::min(1.0, dt / kLag) * (goal - expected);
-      // The CoP along x goes with the moment about y.
-      const Eigen::Vector2d error = expected - view(foot.cop);
-      const Eigen::Vector2d change = foot.wrench[5] * Eigen::Vector2d(error.y(), -error.x());
-      for (int k = 0; k < 2; ++k) {
-        const int along = 1 - k;
-        const bool inside = expected[along] > low[along] && expected[along] < high[along];
-        moment[k] += inside ? std::min(1.0, gain * dt) * change[k]
-                            : -std::min(1.0, kForgetRate * dt) * moment[k];
-      }
-    } else {
-      was_flat_[side] = false;
-      moment *= std::max(0.0, 1.0 - kForgetRate * dt);
-    }
-    const GaitdLeg& leg = model_.legs[side];
-    double scale = 1.0;  // both joints alike: half of a correction would turn it
-    std::array<double, 2> torque{};
-    const std::array<int, 2> joints{leg.ankle_pitch, leg.ankle_roll};
-    for (int k = 0; k < 2; ++k) {
-      const GaitdJoint& joint = model_.joints[joints[k]];
-      const Eigen::Vector3d axis = dynamics.R_WB(joint.child_body) * view(joint.axis);
-      const Eigen::Vector3d in_sole = sole.conjugate() * axis;
-      torque[k] = -in_sole.head<2>().dot(moment);
-      const double most = limit * joint.effort_limit;
-      if (std::abs(torque[k]) > most) scale = std::min(scale, most / std::abs(torque[k]));
-    }
-    moment *= scale;
-    for (int k = 0; k < 2; ++k) {
-      const double effort = model_.joints[joints[k]].effort_limit;
-      double& command = commands.joints[joints[k]].torque;
-      command = std::clamp(command + scale * torque[k], -effort, effort);
-    }
+    integrate(side, dt, gain, robot.feet[side], objectives, wanted);
+    add(side, limit, dynamics, robot.feet[side], commands);
   }
 }
 

@@ -34,6 +34,12 @@ class FootFeedback {
   // CoP is looked after, m, sole frame.
   bool flat(int side, const GaitdObjectives& objectives, Eigen::Vector2d& low,
             Eigen::Vector2d& high) const;
+  // Brings the moment of a foot up to date.
+  void integrate(int side, double dt, double gain, const GaitdFootState& foot,
+                 const GaitdObjectives& objectives, const GaitdWbcInfo& wanted);
+  // Adds it to the torques of the ankle, within the limit.
+  void add(int side, double limit, const dynamics::Dynamics& dynamics, const GaitdFootState& foot,
+           GaitdJointCommands& commands);
 
   const GaitdModel model_;
   std::array<Eigen::Vector2d, GAITD_MAX_FEET> expected_{};  // m, CoP in the sole frame
