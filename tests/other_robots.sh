@@ -50,7 +50,9 @@ sensors: {noise: nominal}
 actuators: {model: nominal}
 disturbances:
   - {link: utorso, point: [0, 0, 0.18], force: [151, 0, 0], duration: 0.155, when: {time: 2.0}}
-expect: {no_fall: true}
+expect:
+  no_fall: true
+  checks: [{signal: gait/step_index, stat: max, min: 1}]
 SCENARIO
 
 # Without noise too: a foot sensor that says zero until a late touchdown is not a dead one.

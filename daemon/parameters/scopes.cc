@@ -50,6 +50,8 @@ constexpr Rule kRules[] = {
     {"swing.touchdown_velocity", {kLater, kNextSwing}},
     {"swing.apex_fraction", {kLater, kNextSwing}},
     {"swing.late_velocity", {kLater, kNextSwing}},
+    {"swing.late_acceleration", {kLater, kNextSwing}},
+    {"swing.late_speed", {kLater, kNextSwing}},
     {"legs.straighten_rate", {kAtRest, kKnee}},
     {"legs.collapse_duration", {kAtRest, kKnee}},
     {"objectives.contact_ramp", {kAtRest, "a foot that carries the robot would lose its load"}},

@@ -311,6 +311,7 @@ TEST(SwingTrajectory, AnOverdueTouchdownIsSoughtFasterAndFaster) {
     const double after = s.evaluate(kDuration + late + dt).position.z();
     EXPECT_NEAR((after - before) / (2 * dt), s.evaluate(kDuration + late).velocity.z(), 1e-6);
   }
+  EXPECT_GT(s.evaluate(kDuration + 10.0).velocity.z(), -1.5);  // not without end
 }
 
 TEST(SwingTrajectory, AnOverdueTouchdownIsNoFasterThanTheParameterSays) {
