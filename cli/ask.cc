@@ -7,7 +7,6 @@
 
 #include "cli/failure.h"
 #include "cli/print.h"
-#include "daemon/server/socket_path.h"
 
 namespace gaitd::cli {
 namespace {
@@ -45,21 +44,42 @@ std::string full_name(const CLI::App* command) {
   return before.empty() ? command->get_name() : before + " " + command->get_name();
 }
 
+constexpr int kEstopTries = 100;
+
+bool turned_away(const daemon::RpcResult& result) {
+  const auto* error = std::get_if<daemon::RpcError>(&result);
+  return error != nullptr &&
+         (error->code == daemon::rpc_code::kBusy || error->code == kConnectionLost);
+}
+
+daemon::Role needed_role(const std::string& method, const json& params) {
+  const json name = params.is_object() ? params.value("name", json()) : json();
+  const bool guarded = name.is_string() && daemon::is_guarded(name.get<std::string>());
+  return method == "param.set" && guarded ? daemon::Role::kAdminister : daemon::least_role(method);
+}
+
 }  // namespace
 
-std::unique_ptr<RpcClient> connect(const Context& context, const std::string& command) {
+std::unique_ptr<RpcClient> connect(const Context& context, const std::string& command,
+                                   daemon::Role role) {
   std::string error;
-  auto client = RpcClient::connect(
-      daemon::connect_paths(context.socket, daemon::SocketPlaces::of_this_process()), &error);
+  auto client = RpcClient::connect(Destination::of(context.socket, role), &error);
   if (!client) fail(context, kNoDaemon, command, error);
   return client;
 }
 
 int ask(const Context& context, const std::string& command, const std::string& method,
         const json& params, std::chrono::milliseconds timeout) {
-  const auto client = connect(context, command);
+  auto client = connect(context, command, needed_role(method, params));
   if (!client) return kNoDaemon;
   daemon::RpcResult result = client->call(method, params, timeout);
+  // Whoever wants to stop the robot does not go away because many knock at the door.
+  for (int again = 0; method == "estop" && again < kEstopTries && turned_away(result); ++again) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    client = connect(context, command, daemon::Role::kObserve);
+    if (!client) return kNoDaemon;
+    result = client->call(method, params, timeout);
+  }
   if (auto* error = std::get_if<daemon::RpcError>(&result)) {
     // Two programs of different versions may not know the same methods and params.
     if (error->code == daemon::rpc_code::kMethodNotFound ||
@@ -70,7 +90,11 @@ int ask(const Context& context, const std::string& command, const std::string& m
     return fail(context, command, method, *error);
   }
   if (method == "arm" || method == "sim.reset") wait_until_ready(client.get());
-  const json& value = std::get<json>(result);
+  json& value = std::get<json>(result);
+  // Whoever did not name the socket learns which one it was.
+  if (context.socket.empty() && value.is_object() && value.contains("accepted")) {
+    value["socket"] = client->path();
+  }
   std::cout << (context.json ? json_text(value) : result_text(command, method, value))
             << std::flush;
   return kDone;

@@ -49,7 +49,7 @@ json find_joint(RpcClient* client, const std::string& name) {
 }
 
 int list(const Context& context) {
-  const auto client = connect(context, "joint list");
+  const auto client = connect(context, "joint list", daemon::Role::kObserve);
   if (!client) return kNoDaemon;
   const json answer = call(client.get(), "joint.list", nullptr);
   if (context.json) {
@@ -70,7 +70,7 @@ int list(const Context& context) {
 int test(const Context& context, const Arguments& arguments) {
   using std::chrono::milliseconds;
   const std::string command = "joint test";
-  const auto client = connect(context, command);
+  const auto client = connect(context, command, daemon::Role::kAdminister);
   if (!client) return kNoDaemon;
   const json before = find_joint(client.get(), arguments.joint);
   const daemon::RpcResult started = client->call("joint.test", {{"joint", arguments.joint},

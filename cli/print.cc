@@ -155,7 +155,9 @@ std::string result_text(const std::string& command, const std::string& method, c
   if (method == "plugin.list") return plugin_list_text(result);
   if (result.value("accepted", json()) == true && result.contains("tick")) {
     const json note = result.value("note", json());
+    const json socket = result.value("socket", json());
     return command + ": accepted at tick " + plain(result["tick"]) +
+           (socket.is_string() ? " by " + socket.get<std::string>() : "") +
            (note.is_string() ? "; " + note.get<std::string>() : "") + "\n";
   }
   return object_text(result, {"state", "mode", "phase", "support", "step_index", "time", "faults",

@@ -2,6 +2,7 @@
 #include "cli/rpc_client.h"
 
 #include <poll.h>
+#include <pwd.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -9,6 +10,8 @@
 
 #include <cerrno>
 #include <cstring>
+
+#include "daemon/server/socket_path.h"
 
 namespace gaitd::cli {
 namespace {
@@ -54,6 +57,41 @@ std::string why_not(const std::string& path, int error) {
   }
 }
 
+// The sockets of a place that may do, the best first.
+std::vector<std::string> sockets_of(const std::string& place, daemon::Role role) {
+  using daemon::Role;
+  std::vector<Role> order = {Role::kCommand, Role::kAdminister};
+  if (role == Role::kObserve) order = {Role::kCommand, Role::kObserve, Role::kAdminister};
+  if (role == Role::kAdminister) order = {Role::kAdminister, Role::kCommand};
+  std::vector<std::string> paths;
+  for (const Role one : order) paths.push_back(daemon::role_socket(place, one));
+  return paths;
+}
+
+std::string user_name(uid_t uid) {
+  std::vector<char> buffer(16384);
+  passwd entry{};
+  passwd* found = nullptr;
+  const int failed = getpwuid_r(uid, &entry, buffer.data(), buffer.size(), &found);
+  return failed == 0 && found != nullptr ? found->pw_name : "";
+}
+
+// Empty if whoever listens is to be believed.
+std::string why_not_believed(int fd, const std::string& path) {
+  ucred peer{};
+  socklen_t size = sizeof(peer);
+  if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) {
+    return "\n  " + path + ": cannot tell who listens: " + std::strerror(errno);
+  }
+  if (peer.uid == 0 || peer.uid == geteuid()) return "";
+  const std::string name = user_name(peer.uid);
+  const std::string system = daemon::SocketPlaces().system_directory + "/";
+  if (name == "gaitd" && path.starts_with(system)) return "";
+  return "\n  " + path + ": the one who listens is user " + std::to_string(peer.uid) +
+         (name.empty() ? "" : " (" + name + ")") +
+         ", not root, not you and not the service gaitd: not believed";
+}
+
 daemon::RpcError broken(const std::string& what) {
   return {daemon::rpc_code::kInternalError, what, nullptr};
 }
@@ -63,13 +101,36 @@ constexpr const char* kGone =
 
 }  // namespace
 
-std::unique_ptr<RpcClient> RpcClient::connect(const std::vector<std::string>& paths,
-                                              std::string* error) {
+Destination Destination::of(const std::string& socket, daemon::Role role) {
+  return {daemon::connect_paths(socket, daemon::SocketPlaces::of_this_process()), !socket.empty(),
+          role};
+}
+
+std::unique_ptr<RpcClient> RpcClient::connect(const Destination& destination, std::string* error) {
   std::string reasons;
-  for (const std::string& path : paths) {
-    const int fd = connect_to(path);
-    if (fd >= 0) return std::unique_ptr<RpcClient>(new RpcClient(fd));
-    reasons += why_not(path, errno);
+  bool further = true;
+  for (const std::string& place : destination.paths) {
+    if (!further) break;
+    for (const std::string& path : sockets_of(place, destination.role)) {
+      const int fd = connect_to(path);
+      if (fd < 0) {
+        // The other sockets of a place tell nothing more where its gaitd is not.
+        if (path == place || errno != ENOENT) reasons += why_not(path, errno);
+        further = further && errno != EACCES && errno != EPERM;
+        continue;
+      }
+      const std::string stranger = destination.given ? "" : why_not_believed(fd, path);
+      if (stranger.empty()) return std::unique_ptr<RpcClient>(new RpcClient(fd, path));
+      close(fd);
+      reasons += stranger;
+      further = false;
+      break;
+    }
+  }
+  if (!further) {
+    reasons +=
+        "\n  not looking further: a gaitd elsewhere would not be this one; name it with --socket "
+        "if it is the one you mean";
   }
   *error =
       "no gaitd can be reached:" + reasons +

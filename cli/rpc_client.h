@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/server/rpc.h"
@@ -14,16 +15,31 @@ namespace gaitd::cli {
 /// Code of the error that a lost connection is reported as; no code of JSON-RPC.
 inline constexpr int kConnectionLost = 1;
 
+/// Where a gaitd is looked for, and what for.
+struct Destination {
+  std::vector<std::string> paths;  ///< of the sockets of commands, in this order
+  /// The user named the socket: whoever listens there is whom he means. Elsewhere only a gaitd of
+  /// root, of this user or, in the directory of the system, of the user gaitd is believed.
+  bool given = false;
+  daemon::Role role = daemon::Role::kCommand;  ///< the least that the request needs
+
+  /// `socket` of the command line; empty: the usual places.
+  static Destination of(const std::string& socket, daemon::Role role);
+};
+
 /// A blocking connection to gaitd, one request at a time.
 class RpcClient {
  public:
-  /// Connects to the first of `paths` where a daemon listens. Null if there is none: `error` names
-  /// the places, why each failed, and how to start a daemon.
-  static std::unique_ptr<RpcClient> connect(const std::vector<std::string>& paths,
-                                            std::string* error);
+  /// Connects to the first place where a daemon listens, by a socket whose role is enough if this
+  /// user may use one. It looks no further where somebody listens whom this user may not speak to,
+  /// or who is not to be believed. Null if there is none: `error` names the places, why each
+  /// failed, and how to start a daemon.
+  static std::unique_ptr<RpcClient> connect(const Destination& destination, std::string* error);
   ~RpcClient();
   RpcClient(const RpcClient&) = delete;
   RpcClient& operator=(const RpcClient&) = delete;
+
+  const std::string& path() const { return path_; }  ///< of the socket
 
   /// Sends one request and waits for its answer. Params may be null. A lost connection, silence
   /// beyond the time and bytes that are no answer come back as errors too.
@@ -31,12 +47,13 @@ class RpcClient {
                          std::chrono::milliseconds timeout = std::chrono::seconds(10));
 
  private:
-  explicit RpcClient(int fd) : fd_(fd) {}
+  RpcClient(int fd, std::string path) : fd_(fd), path_(std::move(path)) {}
   bool send_all(const std::string& bytes);
   // The next line, or empty with what went wrong in `problem`.
   std::string read_line(std::chrono::steady_clock::time_point deadline, daemon::RpcError* problem);
 
   int fd_;
+  std::string path_;
   int next_id_ = 1;
   std::string buffer_;
 };

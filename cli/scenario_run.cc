@@ -88,7 +88,7 @@ std::optional<Scenario> load(const RunOptions& options, RunReport* report) {
 // The simulated time of the daemon there, if it answers at once.
 std::optional<double> simulated_time(const std::string& socket) {
   std::string ignored;
-  const auto client = RpcClient::connect({socket}, &ignored);
+  const auto client = RpcClient::connect({{socket}, true, daemon::Role::kObserve}, &ignored);
   if (!client) return std::nullopt;
   const daemon::RpcResult status = client->call("status", nullptr, std::chrono::milliseconds(500));
   const json* result = std::get_if<json>(&status);

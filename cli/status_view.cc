@@ -35,6 +35,13 @@ std::string right(const std::string& value, std::size_t width) {
   return value.size() < width ? std::string(width - value.size(), ' ') + value : value;
 }
 
+// What a control loop that hangs said last is not how the robot is now.
+std::string state(const json& status) {
+  const std::string last = text(at(status, "state"));
+  if (at(status, "stale") != true) return last;
+  return "STALE: no tick for " + number(at(status, "age"), 1) + " s, then " + last;
+}
+
 std::string faults(const json& status) {
   std::string names;
   const json list = at(status, "faults");
@@ -88,7 +95,7 @@ std::vector<std::string> status_screen(const json& status) {
           text(at(status, "backend")) + ", " + text(at(status, "clock")) + "  tick " +
           text(at(status, "tick")) + "  " + number(at(status, "time"), 2) + " s",
       "",
-      "state      " + text(at(status, "state")),
+      "state      " + state(status),
       "faults     " + faults(status),
       "health     " + health(at(status, "health")),
       "gait       " + gait(status),
@@ -112,9 +119,9 @@ std::vector<std::string> status_screen(const json& status) {
 }
 
 std::string status_line(const json& status) {
-  return number(at(status, "time"), 2) + " s  " + text(at(status, "state")) + "  " + gait(status) +
-         "  step " + steps(status) + "  ICP error " + number(at(status, "icp_error"), 1, 1e-3) +
-         " mm  tick " + number(at(status, "tick_longest_us"), 0) + " µs  faults " + faults(status);
+  return number(at(status, "time"), 2) + " s  " + state(status) + "  " + gait(status) + "  step " +
+         steps(status) + "  ICP error " + number(at(status, "icp_error"), 1, 1e-3) + " mm  tick " +
+         number(at(status, "tick_longest_us"), 0) + " µs  faults " + faults(status);
 }
 
 }  // namespace gaitd::cli

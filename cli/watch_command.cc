@@ -78,14 +78,13 @@ int watch(const Context& context, const WatchOptions& options) {
   const StopSignals signals;
   std::signal(SIGPIPE, SIG_IGN);  // a reader that has enough is no failure
   const milliseconds interval(std::lround(1e3 * options.interval));
-  const std::vector<std::string> paths =
-      daemon::connect_paths(context.socket, daemon::SocketPlaces::of_this_process());
+  const Destination destination = Destination::of(context.socket, daemon::Role::kObserve);
   std::string error;
-  std::unique_ptr<RpcClient> client = RpcClient::connect(paths, &error);
+  std::unique_ptr<RpcClient> client = RpcClient::connect(destination, &error);
   if (!client && !options.reconnect) return fail(context, kNoDaemon, "watch", error);
   Output output(context.json, options.once);
   do {
-    if (!client) client = RpcClient::connect(paths, &error);
+    if (!client) client = RpcClient::connect(destination, &error);
     if (!client) {
       if (!output.show_waiting(error)) return kDone;
       continue;

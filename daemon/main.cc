@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // gaitd: the walking daemon.
 #include <pthread.h>
+#include <spdlog/async.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
+#include <memory>
 #include <thread>
 
 #include "daemon/app/application.h"
@@ -14,14 +17,17 @@
 
 namespace {
 
-// SIGINT and SIGTERM are blocked in every thread and waited for in one of their own.
+// SIGINT, SIGTERM and SIGHUP (the terminal has gone) are blocked in every thread and waited for in
+// one of their own. That somebody does not read what gaitd says is no reason to end.
 class StopSignals {
  public:
   StopSignals() {
     sigemptyset(&set_);
     sigaddset(&set_, SIGINT);
     sigaddset(&set_, SIGTERM);
+    sigaddset(&set_, SIGHUP);
     pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files ends the log, not the robot
   }
   template <class Function>
@@ -44,6 +50,25 @@ class StopSignals {
   std::atomic<bool> done_{false};
 };
 
+// Nobody who has something to say waits for the terminal or the journal: a thread of its own writes
+// it, and when too much waits the oldest is dropped.
+class Messages {
+ public:
+  Messages() {
+    spdlog::init_thread_pool(kWaiting, 1);
+    spdlog::set_default_logger(std::make_shared<spdlog::async_logger>(
+        "gaitd", std::make_shared<spdlog::sinks::stdout_color_sink_mt>(), spdlog::thread_pool(),
+        spdlog::async_overflow_policy::overrun_oldest));
+    spdlog::set_pattern("[%H:%M:%S.%e] %^%l%$ %v");
+  }
+  ~Messages() { spdlog::shutdown(); }  // says what waits
+  Messages(const Messages&) = delete;
+  Messages& operator=(const Messages&) = delete;
+
+ private:
+  static constexpr std::size_t kWaiting = 1024;
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -58,13 +83,11 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
-  spdlog::set_pattern("[%H:%M:%S.%e] %^%l%$ %v");
-
   StopSignals signals;
+  const Messages messages;
   try {
     gaitd::daemon::Issues issues;
-    if (!options.check_file.empty() &&
-        !gaitd::daemon::choose_checked_file(&options, &issues)) {
+    if (!options.check_file.empty() && !gaitd::daemon::choose_checked_file(&options, &issues)) {
       spdlog::error("{}", issues.error_text());
       return 1;
     }

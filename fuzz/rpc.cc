@@ -74,19 +74,22 @@ void check_answer(const std::string& line) {
 
 void handle(Server* server, std::string_view line) {
   int answers = 0;
-  handle_line(server->methods, RpcLimits{}, line, [&](std::string answer) {
+  handle_line(server->methods, RpcLimits{}, Caller{}, line, [&](std::string answer) {
     ++answers;
     check_answer(answer);
   });
   static Command command;
-  while (server->bridge.try_pop(command)) {
-    check_command(command);
-    CommandReply reply;
-    reply.request = command.request;
-    reply.accepted = true;
-    server->bridge.push(reply);
+  bool taken = true;
+  while (server->bridge.waiting() && taken) {
+    for (taken = false; server->bridge.try_pop(command); taken = true) {
+      check_command(command);
+      CommandReply reply;
+      reply.request = command.request;
+      reply.accepted = true;
+      server->bridge.push(reply);
+    }
+    server->bridge.poll(CommandBridge::Clock::now());
   }
-  server->bridge.poll(CommandBridge::Clock::now());
   fuzz::require(answers <= 1, "at most one answer to a line");
   fuzz::require(!server->bridge.waiting(), "every command is answered");
 }

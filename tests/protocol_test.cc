@@ -120,7 +120,7 @@ class Protocol : public ::testing::Test {
     }
     std::string error;
     for (int i = 0; i < 600 && !client_; ++i) {
-      client_ = RpcClient::connect({socket}, &error);
+      client_ = RpcClient::connect({{socket}, true, daemon::Role::kAdminister}, &error);
       ASSERT_EQ(waitpid(pid_, nullptr, WNOHANG), 0) << workspace_.read("gaitd.txt");
       if (!client_) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
@@ -194,6 +194,9 @@ TEST_F(Protocol, ThePageHasEveryMethodWithAnExample) {
   std::istringstream names(error->message.substr(list + marker.size()));
   for (std::string name; std::getline(names >> std::ws, name, ',');) methods.insert(name);
   EXPECT_EQ(documented_methods(), methods);
+  std::set<std::string> with_rights;
+  for (const auto& [method, least] : daemon::method_rights()) with_rights.emplace(method);
+  EXPECT_EQ(with_rights, methods) << "methods with a row in the table of rights";
 
   std::set<std::string> shown;
   for (const Example& example : read_examples()) {

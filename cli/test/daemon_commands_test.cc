@@ -2,9 +2,12 @@
 // The gaitctl program against a server with methods of the test.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 #include "cli/test/cli_process.h"
 #include "daemon/server/command_server.h"
@@ -22,8 +25,8 @@ class Gaitctl : public ::testing::Test {
  protected:
   Gaitctl() {
     daemon::Methods methods;
-    for (const char* name : {"arm", "disarm", "estop", "reset", "mode", "walk", "footsteps",
-                             "pause", "resume", "stop", "abort", "sim.push", "sim.reset"}) {
+    for (const char* name : {"arm", "disarm", "reset", "mode", "walk", "footsteps", "pause",
+                             "resume", "stop", "abort", "sim.push", "sim.reset"}) {
       methods.add(name, [this, name](const json& params) -> RpcResult {
         if (params.is_object() && params.value("mode", "") == "stand") {
           return RpcError{daemon::rpc_code::kInvalidParams,
@@ -62,7 +65,7 @@ class Gaitctl : public ::testing::Test {
     std::string error;
     daemon::ServerOptions options;
     options.socket_path = workspace_.file("gaitd.sock");
-    server_ = daemon::CommandServer::start(options, std::move(methods), nullptr, &error);
+    server_ = daemon::CommandServer::start(options, std::move(methods), nullptr, &estop_, &error);
     EXPECT_TRUE(server_) << error;
   }
 
@@ -83,14 +86,29 @@ class Gaitctl : public ::testing::Test {
   std::mutex mutex_;
   std::string method_;
   json params_;
+  daemon::EstopFlag estop_;
   std::unique_ptr<daemon::CommandServer> server_;
 };
 
 TEST_F(Gaitctl, SendsEachPlainCommand) {
-  for (const char* name : {"arm", "disarm", "estop", "reset", "pause", "stop", "abort"}) {
+  for (const char* name : {"arm", "disarm", "reset", "pause", "stop", "abort"}) {
     EXPECT_EQ(sent(name), (json{{"method", name}, {"params", nullptr}}));
   }
   EXPECT_EQ(sent("sim reset")["method"], "sim.reset");
+}
+
+TEST_F(Gaitctl, RaisesTheEstop) {
+  std::atomic<bool> done{false};
+  std::thread control([&] {
+    for (std::int64_t tick = 0; !done; ++tick) {
+      estop_.take(tick);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  EXPECT_EQ(gaitctl("estop").exit_code, 0);
+  EXPECT_TRUE(estop_.acted_on(1));
+  done = true;
+  control.join();
 }
 
 TEST_F(Gaitctl, SendsOnlyTheOptionsOfWalkThatWereGiven) {

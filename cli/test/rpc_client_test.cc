@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <functional>
@@ -26,7 +29,8 @@ class Client : public ::testing::Test {
     auto socket = daemon::ListeningSocket::open(workspace_.file("s"), &error);
     EXPECT_TRUE(socket) << error;
     const int listener = socket->release();
-    const auto client = RpcClient::connect({workspace_.file("none"), workspace_.file("s")}, &error);
+    const auto client = RpcClient::connect(
+        {{workspace_.file("none"), workspace_.file("s")}, true, daemon::Role::kObserve}, &error);
     EXPECT_TRUE(client) << error;
     const int fd = accept(listener, nullptr, nullptr);
     std::thread thread([&] {
@@ -79,6 +83,54 @@ TEST_F(Client, ReportsWhatIsNoAnswer) {
               write_text(fd, "{\"id\":1,\"error\":{\"code\":\"x\",\"message\":7}}\n");
             })),
             "");
+}
+
+// An impostor needs another user: only root can make one here.
+class Stranger : public Client {
+ protected:
+  // A socket at `name` on which user 65534 listens, of the given mode.
+  void listen_as_stranger(const std::string& name, mode_t mode) {
+    int said[2];
+    ASSERT_EQ(pipe(said), 0);
+    chmod(workspace_.file("").c_str(), 0777);
+    child_ = fork();
+    if (child_ == 0) {
+      const int fd = socket(AF_UNIX, SOCK_STREAM, 0);
+      sockaddr_un address{};
+      address.sun_family = AF_UNIX;
+      workspace_.file(name).copy(address.sun_path, sizeof(address.sun_path) - 1);
+      if (setuid(65534) != 0 || bind(fd, reinterpret_cast<sockaddr*>(&address), sizeof(address)) ||
+          chmod(address.sun_path, mode) != 0 || listen(fd, 5) != 0) {
+        _exit(1);
+      }
+      if (write(said[1], "!", 1) != 1) _exit(1);
+      pause();
+    }
+    char byte = 0;
+    ASSERT_EQ(read(said[0], &byte, 1), 1);
+    close(said[0]);
+    close(said[1]);
+  }
+  ~Stranger() override {
+    if (child_ <= 0) return;
+    kill(child_, SIGKILL);
+    waitpid(child_, nullptr, 0);
+  }
+  pid_t child_ = -1;
+};
+
+TEST_F(Stranger, IsOnlyBelievedWhereTheUserNamedHim) {
+  if (geteuid() != 0) return;  // nobody else can be made here
+  listen_as_stranger("s", 0666);
+  std::string error;
+  auto own = daemon::ListeningSocket::open(workspace_.file("own"), &error);
+  ASSERT_TRUE(own) << error;
+  const std::vector<std::string> places{workspace_.file("s"), workspace_.file("own")};
+  EXPECT_FALSE(RpcClient::connect({places, false, daemon::Role::kObserve}, &error));
+  EXPECT_NE(error.find("is user 65534"), std::string::npos) << error;
+  EXPECT_NE(error.find("not looking further"), std::string::npos) << error;
+  EXPECT_TRUE(RpcClient::connect({{places[0]}, true, daemon::Role::kObserve}, &error)) << error;
+  EXPECT_TRUE(RpcClient::connect({{places[1]}, false, daemon::Role::kObserve}, &error)) << error;
 }
 
 }  // namespace

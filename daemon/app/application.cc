@@ -14,7 +14,6 @@
 #include "daemon/app/check_config.h"
 #include "daemon/app/metadata.h"
 #include "daemon/app/realtime.h"
-#include "daemon/app/service_manager.h"
 #include "daemon/config/command_parse.h"
 #include "daemon/control/command_json.h"
 #include "daemon/control/impedance.h"
@@ -371,14 +370,22 @@ nlohmann::json Application::status() const {
   }
   s["health"] = health();
   const Telemetry::LogStatus log = telemetry_->log_status();
-  s["log"] = {{"file", log.file},
-              {"part", log.part},
-              {"open", log.open},
-              {"error", log.error},
-              {"ticks", log.ticks},
-              {"bytes", log.bytes},
-              {"dropouts", telemetry_->dropouts()}};
+  s["log"] = {
+      {"file", log.file},       {"part", log.part},       {"open", log.open},
+      {"error", log.error},     {"ticks", log.ticks},     {"bytes", log.bytes},
+      {"waiting", log.waiting}, {"stalled", log.stalled}, {"dropouts", telemetry_->dropouts()}};
+  add_age(&s);
   return s;
+}
+
+// Whether what the status says still holds: a control loop that hangs says nothing any more.
+void Application::add_age(nlohmann::json* status) const {
+  constexpr double kStale = 0.1;          // s
+  constexpr double kStaleLockstep = 1.0;  // s, where a tick may take its time
+  const ControlLoop* loop = running_loop_;
+  const double age = loop == nullptr ? 0.0 : loop->pulse().age();
+  (*status)["age"] = age;
+  (*status)["stale"] = age > (config_.clock == GAITD_CLOCK_LOCKSTEP ? kStaleLockstep : kStale);
 }
 
 void Application::prepare_swaps() {
@@ -434,7 +441,7 @@ bool Application::start_server() {
   ServerOptions options;
   options.socket_path = config_.socket;
   std::string error;
-  server_ = CommandServer::start(options, std::move(methods), bridge_.get(), &error);
+  server_ = CommandServer::start(options, std::move(methods), bridge_.get(), &estop_, &error);
   if (server_ == nullptr) {
     spdlog::error("{}", error);
     return false;
@@ -464,10 +471,9 @@ bool Application::report_overruns(std::uint64_t* told) const {
 
 // Says on the terminal what other threads cannot: faults, when they come and go, and where the log
 // goes on or why it ended.
-void Application::watch_telemetry(const std::atomic<bool>& running) const {
+void Application::watch_telemetry(const std::atomic<bool>& running, ServiceManager* manager) const {
   const int signal = find_signal(telemetry_->table(), "safety/faults");
   const int state = find_signal(telemetry_->table(), "safety/state");
-  ServiceManager manager;
   std::vector<double> values;
   std::uint32_t last_faults = 0;
   Telemetry::LogStatus last_log = telemetry_->log_status();
@@ -489,8 +495,7 @@ void Application::watch_telemetry(const std::atomic<bool>& running) const {
     for (std::size_t i = 0; i < kFaultNames.size(); ++i) {
       if ((faults >> i & 1u) != 0) names += std::string(" ") + kFaultNames[i];
     }
-    manager.update(telemetry_->newest_tick(),
-                   kSafetyStateNames[static_cast<std::size_t>(values[state])] + names);
+    manager->tell(kSafetyStateNames[static_cast<std::size_t>(values[state])] + names);
     if (faults == last_faults) continue;
     if (faults != 0) {
       spdlog::error("fault:{}; the joints are damped until `gaitctl reset`", names);
@@ -499,7 +504,6 @@ void Application::watch_telemetry(const std::atomic<bool>& running) const {
     }
     last_faults = faults;
   }
-  manager.stopping();
 }
 
 bool Application::become_realtime() {
@@ -531,22 +535,25 @@ int Application::run() {
   options.overrun_run = config_.realtime.overrun_run;
   loop_ = std::make_unique<ControlLoop>(options, robot_->model, pipeline_.get(), backend,
                                         telemetry_.get(), bridge_.get(), player_.get(),
-                                        &swaps_->port(), tick_watch_.get());
+                                        &swaps_->port(), tick_watch_.get(), &estop_);
   running_loop_ = loop_.get();
   if (stop_requested_) loop_->stop();
   LoopReport report;
   bool allowed = true;
   std::atomic<bool> running{true};
-  std::thread watch([&] { watch_telemetry(running); });
+  auto manager = std::make_unique<ServiceManager>([this] { return loop_->pulse().rounds(); });
+  std::thread watch([&] { watch_telemetry(running, manager.get()); });
   std::thread control([&] {
     if (paced) allowed = become_realtime();
     if (allowed) report = loop_->run();
   });
   control.join();
-  swaps_->stop();
+  // Before anything that could wait, for a disk or a library that is being loaded.
+  backend.vtable->stop(backend.self);
   running = false;
   watch.join();
-  backend.vtable->stop(backend.self);
+  manager.reset();
+  swaps_->stop();
   server_.reset();
   const double simulated = static_cast<double>(report.ticks) * config_.period;
   const double factor = report.wall_seconds > 0.0 ? simulated / report.wall_seconds : 0.0;

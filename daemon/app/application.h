@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "daemon/app/realtime.h"
+#include "daemon/app/service_manager.h"
+#include "daemon/command/estop_flag.h"
 #include "daemon/config/daemon_config.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/scenario.h"
@@ -62,7 +64,7 @@ class Application {
   void prepare_swaps();
   bool start_server();
   std::string default_log_file() const;
-  void watch_telemetry(const std::atomic<bool>& running) const;
+  void watch_telemetry(const std::atomic<bool>& running, ServiceManager* manager) const;
   bool report_overruns(std::uint64_t* told) const;  // false: there are no more
   // On the control thread. False: not what is required.
   bool become_realtime();
@@ -70,6 +72,7 @@ class Application {
   // Where the value that holds for a key was written.
   Location place_of(std::string_view key) const;
   nlohmann::json status() const;
+  void add_age(nlohmann::json* status) const;
   nlohmann::json health() const;
   nlohmann::json joints() const;
   LogMetadata metadata() const;
@@ -89,6 +92,7 @@ class Application {
   bool truth_ = false;
   std::string log_file_;
   std::unique_ptr<Telemetry> telemetry_;
+  EstopFlag estop_;
   std::unique_ptr<CommandBridge> bridge_;
   std::unique_ptr<SwapService> swaps_;
   std::unique_ptr<Pipeline> pipeline_;

@@ -1,34 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <chrono>
+#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <thread>
 
 namespace gaitd::daemon {
 
-// What systemd is told through $NOTIFY_SOCKET; without one nothing happens. The watchdog is only
-// fed while the control thread makes ticks.
+// What systemd is told through $NOTIFY_SOCKET; without one nothing happens. No call waits: a
+// message that the manager does not take is dropped. The watchdog is fed by a thread that does
+// nothing else, as long as the control loop makes rounds.
 class ServiceManager {
  public:
-  ServiceManager();
-  ~ServiceManager();
+  // `rounds`: how many the control loop has made.
+  explicit ServiceManager(std::function<std::uint64_t()> rounds);
+  ~ServiceManager();  // STOPPING=1
   ServiceManager(const ServiceManager&) = delete;
   ServiceManager& operator=(const ServiceManager&) = delete;
 
-  // Once per poll, from a thread that may block: `tick` is the newest, -1 before the first;
-  // `state` is shown by `systemctl status`.
-  void update(std::int64_t tick, const std::string& state);
-  void stopping();
+  // `state` is shown by `systemctl status`. From one thread.
+  void tell(const std::string& state);
 
  private:
-  void send(const std::string& text);
+  void feed();
+  void send(const std::string& text) const;
 
   int socket_ = -1;
   bool watchdog_ = false;
-  bool ready_ = false;
-  std::int64_t last_tick_ = -1;
+  std::function<std::uint64_t()> rounds_;
   std::string last_state_;
+  std::atomic<bool> stopping_{false};
+  std::thread feeder_;
 };
 
 }  // namespace gaitd::daemon

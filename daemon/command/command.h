@@ -39,6 +39,7 @@ struct JointTest {
 struct Command {
   CommandType type = CommandType::kStop;
   std::uint64_t request = 0;  // echoed in the reply
+  std::uint64_t estops = 0;   // of a client: e-stops that had been read before it
   int mode = GAITD_MODE_STAND;
   walking::WalkCommand walk;
   bool replace = false;

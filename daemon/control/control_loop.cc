@@ -30,7 +30,7 @@ std::int64_t now_ns() {
 ControlLoop::ControlLoop(const LoopOptions& options, const GaitdModel& model, Pipeline* pipeline,
                          const GaitdBackendInstance& backend, Telemetry* telemetry,
                          CommandBridge* bridge, ScenarioPlayer* scenario, SwapPort* swaps,
-                         TickWatch* watch)
+                         TickWatch* watch, EstopFlag* estop)
     : options_(options),
       model_(model),
       pipeline_(pipeline),
@@ -40,6 +40,7 @@ ControlLoop::ControlLoop(const LoopOptions& options, const GaitdModel& model, Pi
       scenario_(scenario),
       swaps_(swaps),
       watch_(watch),
+      estop_(estop),
       command_(std::make_unique<Command>()) {}
 
 LoopReport ControlLoop::run() {
@@ -49,7 +50,9 @@ LoopReport ControlLoop::run() {
   if (options_.arm) pipeline_->safety().arm();
   const bool lockstep = options_.clock == GAITD_CLOCK_LOCKSTEP;
   while (!stop_.load(std::memory_order_relaxed)) {
-    if (lockstep) telemetry_->wait_for_space();
+    if (lockstep) telemetry_->wait_for_space(64, &stop_);
+    pulse_.beat();
+    take_estop();
     take_commands();
     take_swaps();
     const Outcome outcome = tick();
@@ -106,6 +109,14 @@ ControlLoop::Outcome ControlLoop::tick() {
   return Outcome::kTicked;
 }
 
+// Before everything else that is asked of the robot.
+void ControlLoop::take_estop() {
+  if (!estop_->take(tick_) || (pipeline_->safety().faults() & kFaultEstop) != 0) return;
+  *command_ = Command{};
+  command_->type = CommandType::kEstop;
+  execute(*command_, false);
+}
+
 void ControlLoop::take_commands() {
   // Commands of a scenario wait until the robot stands.
   if (scenario_ != nullptr && pipeline_->safety().state() != SafetyState::kReadying) {
@@ -115,13 +126,19 @@ void ControlLoop::take_commands() {
       backend_.vtable->disturb(backend_.self, push);
     }
   }
-  while (bridge_ != nullptr && bridge_->try_pop(*command_)) execute(*command_, true);
+  if (bridge_ == nullptr) return;
+  for (std::size_t i = 0; i < CommandBridge::kPerTick && bridge_->try_pop(*command_); ++i) {
+    execute(*command_, true);
+  }
 }
 
 void ControlLoop::execute(const Command& command, bool from_client) {
   const bool simulation =
       command.type == CommandType::kPush || command.type == CommandType::kSimReset;
-  CommandReply reply = simulation                           ? simulate(command)
+  const bool clears = command.type == CommandType::kReset || command.type == CommandType::kSimReset;
+  const bool outdated = from_client && clears && command.estops < estop_->asked();
+  CommandReply reply = outdated                             ? refuse_outdated(command)
+                       : simulation                         ? simulate(command)
                        : command.type == CommandType::kSwap ? request_swap(command)
                                                             : pipeline_->execute(command);
   reply.tick = tick_;
@@ -140,8 +157,17 @@ void ControlLoop::execute(const Command& command, bool from_client) {
     telemetry_->push_event(EventKind::kCommand, tick_, time,
                            command_text(command, reply, text, sizeof(text)));
   }
-  telemetry_->push_input(tick_, time, command, owner, place);
+  if (!outdated) telemetry_->push_input(tick_, time, command, owner, place);
   if (from_client) bridge_->push(reply);
+}
+
+// A reset that was on its way when somebody stopped the robot does not know of that stop.
+CommandReply ControlLoop::refuse_outdated(const Command& command) {
+  CommandReply reply;
+  reply.request = command.request;
+  std::snprintf(reply.message.data(), reply.message.size(),
+                "an e-stop was asked for after this command; look why, then send it again");
+  return reply;
 }
 
 // A fault that does not come from the data of a tick: an input of the next one.
@@ -216,7 +242,6 @@ void ControlLoop::take_swaps() {
 
 void ControlLoop::record() {
   TickSlot* slot = telemetry_->begin_tick();
-  if (slot == nullptr) return;
   const TickData& data = pipeline_->data();
   slot->tick = data.time.tick;
   slot->time = data.time.time;

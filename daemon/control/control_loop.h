@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <memory>
 
+#include "daemon/command/estop_flag.h"
 #include "daemon/config/daemon_config.h"
+#include "daemon/control/loop_pulse.h"
 #include "daemon/control/pipeline.h"
 #include "daemon/control/scenario_player.h"
 #include "daemon/control/swap_port.h"
@@ -39,18 +41,21 @@ class ControlLoop {
  public:
   ControlLoop(const LoopOptions& options, const GaitdModel& model, Pipeline* pipeline,
               const GaitdBackendInstance& backend, Telemetry* telemetry, CommandBridge* bridge,
-              ScenarioPlayer* scenario, SwapPort* swaps, TickWatch* watch);
+              ScenarioPlayer* scenario, SwapPort* swaps, TickWatch* watch, EstopFlag* estop);
 
   // Runs until stop() or the end of the scenario. Call on a thread of its own.
   LoopReport run();
   void stop() { stop_.store(true, std::memory_order_relaxed); }
+  const LoopPulse& pulse() const { return pulse_; }
 
  private:
   enum class Outcome { kTicked, kNotReady, kBackendFailed };
   Outcome tick();
+  void take_estop();
   void take_commands();
   void take_swaps();
   void execute(const Command& command, bool from_client);
+  static CommandReply refuse_outdated(const Command& command);
   CommandReply simulate(const Command& command);
   CommandReply request_swap(const Command& command);
   void raise(Fault fault, const char* name);
@@ -68,7 +73,9 @@ class ControlLoop {
   ScenarioPlayer* scenario_;
   SwapPort* swaps_;
   TickWatch* watch_;
+  EstopFlag* estop_;
 
+  LoopPulse pulse_;
   std::atomic<bool> stop_{false};
   std::unique_ptr<Command> command_;  // scratch: too large for the stack
   LoopReport report_;

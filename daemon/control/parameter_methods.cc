@@ -48,12 +48,15 @@ RpcResult get(const LiveParameters& parameters, const json& params) {
 }
 
 void set(const LiveParameters& parameters, CommandBridge* bridge, const json& params,
-         Respond respond) {
+         const Caller& caller, Respond respond) {
   std::string error;
   auto command = parameters.parse_set(params, &error);
   if (!command) return respond(invalid("param.set", error));
   const LiveParameters::Row& row = parameters.row(command->parameter_index);
-  bridge->submit(*command, [&row, respond = std::move(respond)](RpcResult result) {
+  if (is_guarded(row.key) && caller.role < Role::kAdminister) {
+    return respond(no_right("param.set " + row.key, Role::kAdminister, caller));
+  }
+  bridge->submit(*command, caller, [&row, respond = std::move(respond)](RpcResult result) {
     if (auto* done = std::get_if<json>(&result)) {
       (*done)["name"] = row.key;
       (*done)["unit"] = row.declared.unit;
@@ -71,9 +74,10 @@ void add_parameter_methods(Methods* methods, CommandBridge* bridge,
                            const LiveParameters* parameters) {
   methods->add("param.list", [parameters](const json& p) { return list(*parameters, p); });
   methods->add("param.get", [parameters](const json& p) { return get(*parameters, p); });
-  methods->add_async("param.set", [parameters, bridge](const json& p, Respond respond) {
-    set(*parameters, bridge, p, std::move(respond));
-  });
+  methods->add_async("param.set",
+                     [parameters, bridge](const json& p, const Caller& caller, Respond respond) {
+                       set(*parameters, bridge, p, caller, std::move(respond));
+                     });
 }
 
 }  // namespace gaitd::daemon

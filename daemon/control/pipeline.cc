@@ -8,6 +8,7 @@
 
 #include "daemon/control/command_note.h"
 #include "daemon/parameters/swap_parameters.h"
+#include "daemon/server/rights.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -96,6 +97,13 @@ CommandReply Pipeline::set_parameter(const Command& command) {
                   row.effect.text,
                   state == SafetyState::kReadying ? "wait until it stands"
                                                   : "`gaitctl stop`, then set it again");
+    return reply;
+  }
+  if (!layers_.rules().simulation && state != SafetyState::kDisarmed && is_guarded(row.key)) {
+    std::snprintf(text, size,
+                  "%s protects the robot: on hardware it is only changed while disarmed; "
+                  "`gaitctl disarm`, then set it again",
+                  key);
     return reply;
   }
   if (!apply(row.owner, row.index, command.parameter_value)) {

@@ -27,15 +27,28 @@ CommandBridge::CommandBridge(Clock::duration timeout) : timeout_(timeout) {
   }
 }
 
-void CommandBridge::submit(Command command, Respond respond) {
-  command.request = next_request_;
-  if (!commands_.push(command)) {
-    respond(RpcError{rpc_code::kBusy, "busy: " + std::to_string(kCapacity) +
-                                          " commands wait for the control thread already; send "
-                                          "fewer at a time"});
+void CommandBridge::submit(Command command, const Caller& caller, Respond respond) {
+  if (!queue_.has_room(caller.connection)) {
+    respond(RpcError{rpc_code::kBusy, "busy: " + std::to_string(kShare) +
+                                          " commands of this connection wait for the control "
+                                          "thread already; send fewer at a time"});
     return;
   }
-  pending_[next_request_++] = {std::move(respond), Clock::now() + timeout_};
+  command.estops = caller.estops;
+  queue_.push(caller.connection, {std::make_unique<Command>(command), std::move(respond)});
+  feed(Clock::now());
+}
+
+// Into the ring, as many as the control thread may find there at once.
+void CommandBridge::feed(Clock::time_point now) {
+  while (commands_.write_available() > kCapacity - kPerTick) {
+    auto next = queue_.pop();
+    if (!next) return;
+    Waiting& waiting = next->second;
+    waiting.command->request = next_request_;
+    commands_.push(*waiting.command);
+    pending_[next_request_++] = {std::move(waiting.respond), now + timeout_};
+  }
 }
 
 std::uint64_t CommandBridge::open(Respond respond) {
@@ -76,10 +89,15 @@ void CommandBridge::poll(Clock::time_point now) {
   }
   release_held(now);
   release_answers();
+  feed(now);
   std::vector<Respond> late;
   while (!pending_.empty() && pending_.begin()->second.deadline <= now) {
     late.push_back(std::move(pending_.begin()->second.respond));
     pending_.erase(pending_.begin());
+  }
+  // It takes nothing any more: those that wait for their turn need not wait for theirs.
+  if (!late.empty() && commands_.write_available() <= kCapacity - kPerTick) {
+    for (Waiting& one : queue_.clear()) late.push_back(std::move(one.respond));
   }
   for (const Respond& respond : late) {
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(timeout_).count();
@@ -114,6 +132,10 @@ void CommandBridge::abandon() {
   for (auto& [request, respond] : std::exchange(open_, {})) {
     respond(RpcError{rpc_code::kStopping, "gaitd is stopping; the swap may not have been done"});
   }
+  for (const Waiting& one : queue_.clear()) {
+    one.respond(
+        RpcError{rpc_code::kStopping, "gaitd is stopping; the command was not carried out"});
+  }
   auto pending = std::exchange(pending_, {});
   for (auto& [request, entry] : pending) {
     entry.respond(RpcError{rpc_code::kStopping,
@@ -123,14 +145,15 @@ void CommandBridge::abandon() {
 }
 
 void add_command_methods(Methods* methods, CommandBridge* bridge, CommandParser parser) {
-  for (const char* name : {"arm", "disarm", "estop", "reset", "mode", "walk", "footsteps", "pause",
-                           "resume", "stop", "abort", "sim.push", "sim.reset", "joint.test"}) {
-    methods->add_async(name, [bridge, parser, method = std::string(name)](
-                                 const nlohmann::json& params, Respond respond) {
-      auto parsed = parser(method, params);
-      if (auto* error = std::get_if<RpcError>(&parsed)) return respond(std::move(*error));
-      bridge->submit(std::get<Command>(parsed), std::move(respond));
-    });
+  for (const char* name : {"arm", "disarm", "reset", "mode", "walk", "footsteps", "pause", "resume",
+                           "stop", "abort", "sim.push", "sim.reset", "joint.test"}) {
+    methods->add_async(
+        name, [bridge, parser, method = std::string(name)](const nlohmann::json& params,
+                                                           const Caller& caller, Respond respond) {
+          auto parsed = parser(method, params);
+          if (auto* error = std::get_if<RpcError>(&parsed)) return respond(std::move(*error));
+          bridge->submit(std::get<Command>(parsed), caller, std::move(respond));
+        });
   }
 }
 

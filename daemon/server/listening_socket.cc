@@ -18,7 +18,8 @@ namespace gaitd::daemon {
 namespace {
 
 constexpr mode_t kMode = 0660;
-constexpr int kBacklog = 32;
+constexpr mode_t kUserMode = 0600;
+constexpr int kBacklog = 32;  // short: whoever knocks behind a flood waits for all before him
 
 std::string failed(const std::string& path, const std::string& what) {
   return "socket " + path + ": " + what + ": " + std::strerror(errno) +
@@ -43,13 +44,15 @@ bool is_listening(const std::string& path) {
   return result == 0 || (error != ECONNREFUSED && error != ENOENT);
 }
 
-// As far as it may: a user who is not in the group keeps the socket to himself and his own group.
-void give_to_group(const std::string& path, const std::string& name) {
+// As far as it may: a user who is not in the group cannot. Whether the group has it now.
+bool give_to_group(const std::string& path, const std::string& name) {
   std::vector<char> buffer(16384);
   group entry{};
   group* found = nullptr;
-  if (getgrnam_r(name.c_str(), &entry, buffer.data(), buffer.size(), &found) != 0 || !found) return;
-  [[maybe_unused]] const int result = lchown(path.c_str(), static_cast<uid_t>(-1), found->gr_gid);
+  if (getgrnam_r(name.c_str(), &entry, buffer.data(), buffer.size(), &found) != 0 || !found) {
+    return false;
+  }
+  return lchown(path.c_str(), static_cast<uid_t>(-1), found->gr_gid) == 0;
 }
 
 std::string second_daemon(const std::string& path) {
@@ -61,13 +64,14 @@ std::string second_daemon(const std::string& path) {
 }  // namespace
 
 std::unique_ptr<ListeningSocket> ListeningSocket::open(const std::string& path, std::string* error,
-                                                       const std::string& group) {
+                                                       const std::string& group, bool group_only) {
   std::unique_ptr<ListeningSocket> socket(new ListeningSocket(path));
   if (path.size() >= sizeof(sockaddr_un::sun_path)) {
     *error = "socket " + path + ": the path is too long for a socket address";
     return nullptr;
   }
-  if (!socket->lock(error) || !socket->clear_path(error) || !socket->listen(group, error)) {
+  if (!socket->lock(error) || !socket->clear_path(error) ||
+      !socket->listen(group, group_only, error)) {
     return nullptr;
   }
   return socket;
@@ -106,7 +110,7 @@ bool ListeningSocket::clear_path(std::string* error) const {
   return true;
 }
 
-bool ListeningSocket::listen(const std::string& group, std::string* error) {
+bool ListeningSocket::listen(const std::string& group, bool group_only, std::string* error) {
   fd_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const sockaddr_un address = address_of(path_);
   struct stat info {};
@@ -117,9 +121,9 @@ bool ListeningSocket::listen(const std::string& group, std::string* error) {
   }
   device_ = info.st_dev;
   inode_ = info.st_ino;
-  give_to_group(path_, group);
+  const mode_t mode = give_to_group(path_, group) || !group_only ? kMode : kUserMode;
   // Nobody can connect before listen, so nobody gets in under the mode of the umask.
-  if (chmod(path_.c_str(), kMode) != 0 || ::listen(fd_, kBacklog) != 0) {
+  if (chmod(path_.c_str(), mode) != 0 || ::listen(fd_, kBacklog) != 0) {
     *error = failed(path_, "cannot listen");
     return false;
   }

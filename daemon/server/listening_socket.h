@@ -8,15 +8,17 @@
 
 namespace gaitd::daemon {
 
-/// A listening Unix socket of mode 0660 that belongs to one process: a lock on `<path>.lock` keeps
-/// a second daemon out even while the first is starting.
+/// A listening Unix socket that belongs to one process: a lock on `<path>.lock` keeps a second
+/// daemon out even while the first is starting. Its mode is 0660, or 0600 if only its group was to
+/// have it and there is none.
 class ListeningSocket {
  public:
   /// Replaces a socket that nobody listens on. It belongs to `group` where there is one of that
-  /// name and this process may give it away, else to the group of the process. Null with the reason
-  /// in `error`.
+  /// name and this process may give it away; else to the group of the process, or, if `group_only`,
+  /// to its user alone. Null with the reason in `error`.
   static std::unique_ptr<ListeningSocket> open(const std::string& path, std::string* error,
-                                               const std::string& group = "gaitd");
+                                               const std::string& group = "gaitd",
+                                               bool group_only = false);
   /// Removes the socket if it is still the one that was made here.
   ~ListeningSocket();
   ListeningSocket(const ListeningSocket&) = delete;
@@ -30,7 +32,7 @@ class ListeningSocket {
   explicit ListeningSocket(std::string path) : path_(std::move(path)) {}
   bool lock(std::string* error);
   bool clear_path(std::string* error) const;
-  bool listen(const std::string& group, std::string* error);
+  bool listen(const std::string& group, bool group_only, std::string* error);
 
   std::string path_;
   int lock_fd_ = -1;

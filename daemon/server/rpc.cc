@@ -41,6 +41,9 @@ json answer(const json& id, RpcResult result) {
   return out;
 }
 
+// An id that comes back as it came: larger integers and fractions become another number.
+bool is_id(const json& id) { return id.is_null() || id.is_string() || id.is_number_integer(); }
+
 // The deepest nesting of arrays and objects in a text, JSON or not: looked at before parsing, so
 // that nothing deep is ever built.
 int nesting(std::string_view text) {
@@ -103,16 +106,21 @@ class DuplicateKey : public nlohmann::json_sax<json> {
   std::optional<std::string> found_;
 };
 
+}  // namespace
+
 // One request, taken apart. The error is set if it is none.
-struct Request {
+struct Exchange::Request {
   json id = nullptr;
   bool notification = false;
   std::string method;
   json params = nullptr;
   std::optional<RpcError> error;
+
+  static Request invalid(json id, const std::string& what);
+  static Request read(json value);
 };
 
-Request invalid(json id, const std::string& what) {
+Exchange::Request Exchange::Request::invalid(json id, const std::string& what) {
   Request request;
   request.id = std::move(id);
   request.error = RpcError{rpc_code::kInvalidRequest,
@@ -122,11 +130,12 @@ Request invalid(json id, const std::string& what) {
   return request;
 }
 
-Request read_request(json value) {
+Exchange::Request Exchange::Request::read(json value) {
   if (!value.is_object()) return invalid(nullptr, std::string("got ") + value.type_name());
   json id = value.value("id", json());
-  if (!id.is_null() && !id.is_string() && !id.is_number()) {
-    return invalid(nullptr, std::string("id is ") + id.type_name() + ", not a number or string");
+  if (!is_id(id)) {
+    return invalid(nullptr, "id is " + shortened(dump(id), kMaxQuoted) +
+                                ", not a string or an integer of 64 bits");
   }
   if (value.value("jsonrpc", json()) != "2.0") return invalid(id, "jsonrpc is not \"2.0\"");
   const auto method = value.find("method");
@@ -147,30 +156,9 @@ Request read_request(json value) {
   return request;
 }
 
-// Runs the request; `respond` gets the answer now or later, at most once.
-void run(const Methods& methods, const Request& request, Respond respond) {
-  if (request.error) return respond(*request.error);
-  const Methods::AsyncHandler* handler = methods.find(request.method);
-  if (handler == nullptr) {
-    return respond(RpcError{rpc_code::kMethodNotFound, "no method \"" +
-                                                           shortened(request.method, kMaxQuoted) +
-                                                           "\"; there is: " + methods.names()});
-  }
-  std::string failure = "unknown exception";
-  try {
-    return (*handler)(request.params, respond);
-  } catch (const std::exception& e) {
-    failure = e.what();
-  } catch (...) {
-    // Reported below like any other.
-  }
-  respond(RpcError{rpc_code::kInternalError, request.method + ": internal error: " + failure +
-                                                 "; please report it with the request"});
-}
-
 // Collects the answers of one line and sends them when the last has come. Shared by the responders.
-struct Collector {
-  std::function<void(std::string)> send;
+struct Exchange::Collector {
+  Send send;
   bool batch = false;
   std::vector<json> answers;  // null: none (yet, or never)
   std::size_t open = 0;
@@ -186,35 +174,127 @@ struct Collector {
   }
 };
 
-void run_all(const Methods& methods, std::vector<Request> requests, bool batch,
-             std::function<void(std::string)> send) {
-  auto collector = std::make_shared<Collector>();
-  collector->send = std::move(send);
-  collector->batch = batch;
-  collector->answers.resize(requests.size());
+Exchange::Exchange(const Methods& methods, const RpcLimits& limits, const Caller& caller,
+                   std::string_view line, Send send)
+    : methods_(&methods), caller_(caller), collector_(std::make_shared<Collector>()) {
+  read(limits, line, send);
+  collector_->send = std::move(send);
+  collector_->answers.resize(requests_.size());
   // One more than requests: nothing is sent before all of them have been started.
-  collector->open = requests.size() + 1;
-  for (std::size_t i = 0; i < requests.size(); ++i) {
-    const auto done = std::make_shared<bool>(false);
-    run(methods, requests[i],
-        [collector, done, i, id = requests[i].id,
-         silent = requests[i].notification](RpcResult result) {
-          if (std::exchange(*done, true)) return;
-          if (!silent) collector->answers[i] = answer(id, std::move(result));
-          --collector->open;
-          collector->finish();
-        });
-  }
-  --collector->open;
-  collector->finish();
+  collector_->open = requests_.size() + 1;
 }
 
-}  // namespace
+Exchange::~Exchange() = default;
+Exchange::Exchange(Exchange&&) noexcept = default;
+Exchange& Exchange::operator=(Exchange&&) noexcept = default;
+
+void Exchange::read(const RpcLimits& limits, std::string_view line, const Send& send) {
+  const auto refuse = [&send](int code, const std::string& what) {
+    send(error_line({code, what}));
+  };
+  if (nesting(line) > limits.max_depth) {
+    return refuse(rpc_code::kInvalidRequest, "invalid request: nested deeper than " +
+                                                 std::to_string(limits.max_depth) + " levels");
+  }
+  json value;
+  try {
+    value = json::parse(line);
+  } catch (const json::exception& e) {
+    return refuse(rpc_code::kParseError, "not JSON: " + shortened(e.what(), kMaxQuoted) +
+                                             "; expected one JSON object or array per line");
+  }
+  if (const auto twice = DuplicateKey::in(line)) {
+    return refuse(rpc_code::kInvalidRequest,
+                  "invalid request: \"" + shortened(*twice, kMaxQuoted) +
+                      "\" stands twice in one object; leave one of them out");
+  }
+  collector_->batch = value.is_array();
+  if (!value.is_array()) {
+    requests_.push_back(Request::read(std::move(value)));
+  } else if (value.empty() || value.size() > static_cast<std::size_t>(limits.max_batch)) {
+    refuse(rpc_code::kInvalidRequest, "invalid request: a batch of " +
+                                          std::to_string(value.size()) + ", expected 1 to " +
+                                          std::to_string(limits.max_batch));
+  } else {
+    for (json& one : value) requests_.push_back(Request::read(std::move(one)));
+  }
+}
+
+// `respond` gets the answer now or later, at most once.
+void Exchange::run(const Request& request, Respond respond) const {
+  if (request.error) return respond(*request.error);
+  const Methods::AsyncHandler* handler = methods_->find(request.method);
+  if (handler == nullptr) {
+    return respond(RpcError{rpc_code::kMethodNotFound, "no method \"" +
+                                                           shortened(request.method, kMaxQuoted) +
+                                                           "\"; there is: " + methods_->names()});
+  }
+  if (const Role least = least_role(request.method); caller_.role < least) {
+    return respond(no_right(request.method, least, caller_));
+  }
+  std::string failure = "unknown exception";
+  try {
+    return (*handler)(request.params, caller_, respond);
+  } catch (const std::exception& e) {
+    failure = e.what();
+  } catch (...) {
+    // Reported below like any other.
+  }
+  respond(RpcError{rpc_code::kInternalError, request.method + ": internal error: " + failure +
+                                                 "; please report it with the request"});
+}
+
+bool Exchange::step() {
+  if (next_ < requests_.size()) {
+    const std::size_t i = next_++;
+    const Request& request = requests_[i];
+    const auto done = std::make_shared<bool>(false);
+    run(request, [collector = collector_, done, i, id = request.id,
+                  silent = request.notification](RpcResult result) {
+      if (std::exchange(*done, true)) return;
+      if (!silent) collector->answers[i] = answer(id, std::move(result));
+      --collector->open;
+      collector->finish();
+    });
+  }
+  if (next_ < requests_.size()) return true;
+  if (collector_ != nullptr) {
+    --collector_->open;
+    std::exchange(collector_, nullptr)->finish();
+  }
+  return false;
+}
+
+void handle_line(const Methods& methods, const RpcLimits& limits, const Caller& caller,
+                 std::string_view line, Exchange::Send send) {
+  Exchange exchange(methods, limits, caller, line, std::move(send));
+  while (exchange.step()) {
+  }
+}
+
+RpcError no_right(const std::string& what, Role least, const Caller& caller) {
+  const bool admin = least == Role::kAdminister;
+  return {rpc_code::kNoRight,
+          what + ": needs the role " + std::string(role_name(least)) + ", this connection has " +
+              std::string(role_name(caller.role)) + "; use " +
+              (admin ? "gaitd-admin.sock (group gaitd-admin)" : "gaitd.sock (group gaitd)") +
+              " or ask an administrator of the robot",
+          {{"role", role_name(caller.role)}, {"needed", role_name(least)}}};
+}
+
+std::optional<EstopRequest> estop_request(std::string_view line) {
+  if (line.find("\"estop\"") == std::string_view::npos) return std::nullopt;
+  json value = json::parse(line, nullptr, false);
+  if (!value.is_object() || value.value("method", json()) != "estop") return std::nullopt;
+  EstopRequest request;
+  request.notification = !value.contains("id");
+  if (!request.notification && is_id(value["id"])) request.id = value["id"];
+  return request;
+}
 
 void Methods::add(const std::string& name, Handler handler) {
-  handlers_[name] = [handler = std::move(handler)](const json& params, Respond respond) {
-    respond(handler(params));
-  };
+  handlers_[name] = [handler = std::move(handler)](const json& params, const Caller&,
+                                                   Respond respond) { respond(handler(params)); };
 }
 
 void Methods::add_snapshot(const std::string& name, std::function<json()> snapshot) {
@@ -238,40 +318,10 @@ std::string Methods::names() const {
   return out;
 }
 
-void handle_line(const Methods& methods, const RpcLimits& limits, std::string_view line,
-                 std::function<void(std::string)> send) {
-  if (nesting(line) > limits.max_depth) {
-    return send(
-        error_line({rpc_code::kInvalidRequest, "invalid request: nested deeper than " +
-                                                   std::to_string(limits.max_depth) + " levels"}));
-  }
-  json value;
-  try {
-    value = json::parse(line);
-  } catch (const json::exception& e) {
-    return send(
-        error_line({rpc_code::kParseError, "not JSON: " + shortened(e.what(), kMaxQuoted) +
-                                               "; expected one JSON object or array per line"}));
-  }
-  if (const auto twice = DuplicateKey::in(line)) {
-    return send(error_line(
-        {rpc_code::kInvalidRequest, "invalid request: \"" + shortened(*twice, kMaxQuoted) +
-                                        "\" stands twice in one object; leave one of them out"}));
-  }
-  std::vector<Request> requests;
-  const bool batch = value.is_array();
-  if (!batch) {
-    requests.push_back(read_request(std::move(value)));
-  } else if (value.empty() || value.size() > static_cast<std::size_t>(limits.max_batch)) {
-    return send(error_line(
-        {rpc_code::kInvalidRequest, "invalid request: a batch of " + std::to_string(value.size()) +
-                                        ", expected 1 to " + std::to_string(limits.max_batch)}));
-  } else {
-    for (json& one : value) requests.push_back(read_request(std::move(one)));
-  }
-  run_all(methods, std::move(requests), batch, std::move(send));
+std::string answer_line(const json& id, RpcResult result) {
+  return dump(answer(id, std::move(result)));
 }
 
-std::string error_line(const RpcError& error) { return dump(answer(nullptr, error)); }
+std::string error_line(const RpcError& error) { return answer_line(nullptr, error); }
 
 }  // namespace gaitd::daemon

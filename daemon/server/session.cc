@@ -11,8 +11,9 @@ namespace gaitd::daemon {
 
 using boost::system::error_code;
 
-Session::Session(Socket socket, Limits limits, OnLine on_line, OnEnd on_end)
+Session::Session(Socket socket, const Caller& caller, Limits limits, OnLine on_line, OnEnd on_end)
     : socket_(std::move(socket)),
+      caller_(caller),
       limits_(limits),
       on_line_(std::move(on_line)),
       on_end_(std::move(on_end)),
@@ -32,8 +33,14 @@ void Session::read() {
     const std::size_t searched = self->input_.size();
     self->input_.append(self->chunk_.data(), size);
     self->take_lines(searched);
-    if (self->reading_) self->read();
+    if (self->reading_ && !self->paused_) self->read();
   });
+}
+
+void Session::resume() {
+  if (!std::exchange(paused_, false) || !reading_) return;
+  take_lines(0);
+  if (reading_ && !paused_) read();
 }
 
 // Handles every complete line of the input; the first `searched` bytes hold no newline.
@@ -44,9 +51,14 @@ void Session::take_lines(std::size_t searched) {
   for (; reading_ && end != std::string::npos; end = input_.find('\n', begin)) {
     std::string_view line(input_.data() + begin, end - begin);
     if (line.ends_with('\r')) line.remove_suffix(1);
+    if (line.size() <= limits_.max_line && !line.empty() && !on_line_(self, line)) {
+      paused_ = true;
+      line_timer_.cancel();
+      input_.erase(0, begin);
+      return;
+    }
     begin = end + 1;
     if (line.size() > limits_.max_line) break;
-    if (!line.empty()) on_line_(self, line);
   }
   if (!reading_) return;
   const std::size_t unfinished =

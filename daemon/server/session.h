@@ -12,11 +12,14 @@
 #include <string>
 #include <string_view>
 
+#include "daemon/server/rights.h"
+
 namespace gaitd::daemon {
 
-/// One connected client: cuts what it sends into lines and writes the answers back. On the server
-/// thread only. Lives as long as an operation of it or an answer to it is under way: a client that
-/// has closed its sending side still gets its answers, and the last of them closes the connection.
+/// One connected client: cuts what it sends into lines and writes the answers back. On the thread
+/// of the sockets only. Lives as long as an operation of it or an answer to it is under way: a
+/// client that has closed its sending side still gets its answers, and the last of them closes the
+/// connection.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   using Socket = boost::asio::local::stream_protocol::socket;
@@ -25,13 +28,19 @@ class Session : public std::enable_shared_from_this<Session> {
     std::size_t max_output = 0;                  // bytes that the client has not read yet
     std::chrono::milliseconds max_line_time{0};  // from the first byte of a line to its newline
   };
-  using OnLine = std::function<void(const std::shared_ptr<Session>&, std::string_view line)>;
+  /// False: there is no room for this line now; nothing is read until resume(), then it comes
+  /// again.
+  using OnLine = std::function<bool(const std::shared_ptr<Session>&, std::string_view line)>;
   /// Nothing more will be read.
   using OnEnd = std::function<void(const std::shared_ptr<Session>&)>;
 
-  Session(Socket socket, Limits limits, OnLine on_line, OnEnd on_end);
+  Session(Socket socket, const Caller& caller, Limits limits, OnLine on_line, OnEnd on_end);
 
+  const Caller& caller() const { return caller_; }
   void start() { read(); }
+  void resume();
+  /// Reads nothing more; the last answer that is under way closes the connection.
+  void finish() { end_reading(); }
   /// Queues a line for writing, newline added. A client that lets too much pile up is dropped.
   void send(std::string line);
   /// Reads nothing more, and closes when what is queued has been written.
@@ -46,6 +55,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void drop();
 
   Socket socket_;
+  const Caller caller_;
   Limits limits_;
   OnLine on_line_;
   OnEnd on_end_;
@@ -55,6 +65,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::deque<std::string> output_;
   std::size_t output_bytes_ = 0;
   bool reading_ = true;
+  bool paused_ = false;
   bool closing_ = false;
 };
 

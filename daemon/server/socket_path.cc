@@ -60,13 +60,23 @@ std::string listen_path(const std::string& given, const SocketPlaces& places, st
     path = places.user_directory + kName;
   }
   constexpr std::size_t kLongest = sizeof(sockaddr_un::sun_path) - 1;
-  if (path.size() > kLongest) {
+  const std::size_t more = role_socket(path, Role::kObserve).size() - path.size();
+  if (path.size() + more > kLongest) {
     *error = "socket " + path + ": the path has " + std::to_string(path.size()) +
-             " bytes, a socket address holds " + std::to_string(kLongest) +
-             "; give a shorter one with --socket PATH";
+             " bytes, a socket address holds " + std::to_string(kLongest) + ", of which " +
+             std::to_string(more) +
+             " are for the names of the other roles; give a shorter one with --socket PATH";
     return "";
   }
   return path;
+}
+
+std::string role_socket(const std::string& path, Role role) {
+  if (role == Role::kCommand) return path;
+  constexpr std::string_view kEnd = ".sock";
+  const bool named = path.ends_with(kEnd);
+  const std::string stem = named ? path.substr(0, path.size() - kEnd.size()) : path;
+  return stem + (role == Role::kObserve ? "-observe" : "-admin") + (named ? std::string(kEnd) : "");
 }
 
 std::vector<std::string> connect_paths(const std::string& given, const SocketPlaces& places) {

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/server/rights.h"
+
 namespace gaitd::daemon {
 
 /// Where sockets may be. The defaults are those of this machine; tests put their own.
@@ -21,7 +23,11 @@ struct SocketPlaces {
 /// the path is longer than a socket address holds).
 std::string listen_path(const std::string& given, const SocketPlaces& places, std::string* error);
 
+/// The socket of a role beside that of commands: gaitd.sock, gaitd-observe.sock, gaitd-admin.sock.
+std::string role_socket(const std::string& path, Role role);
+
 /// Where a client looks for a daemon, in this order: `given` alone if not empty, else every place.
+/// Each is the path of the socket of commands.
 std::vector<std::string> connect_paths(const std::string& given, const SocketPlaces& places);
 
 }  // namespace gaitd::daemon

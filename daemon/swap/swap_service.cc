@@ -59,34 +59,35 @@ std::string SwapService::variant(int layer) const {
 
 void SwapService::add_methods(Methods* methods) {
   const auto add = [this, methods](const std::string& name, bool rollback) {
-    methods->add_async(name, [this, name, rollback](const json& params, Respond respond) {
-      const auto text = [&params](const char* key) {
-        const auto found = params.is_object() ? params.find(key) : params.end();
-        return found != params.end() && found->is_string() ? found->get<std::string>() : "";
-      };
-      const std::string to = text("to");
-      const auto layer = layer_from_name(text("layer"));
-      if (!layer || *layer >= GAITD_LAYER_COUNT || params.size() != (rollback ? 1 : 2) ||
-          to.empty() != rollback) {
-        std::string layers;
-        for (const std::string_view one : sdk::kLayerNames) {
-          layers += (layers.empty() ? "" : ", ") + std::string(one);
-        }
-        return respond(
-            invalid(name, std::string("expected {\"layer\": ") + "one of " + layers +
-                              (rollback ? "}" : ", \"to\": a variant or the path of a library}")));
-      }
-      Wanted wanted;
-      wanted.request = parts_.bridge->open(std::move(respond));
-      wanted.layer = *layer;
-      wanted.to = to;
-      wanted.tick = parts_.telemetry->newest_tick();
-      {
-        const std::scoped_lock lock(mutex_);
-        wanted_.push_back(std::move(wanted));
-      }
-      wake_.notify_all();
-    });
+    methods->add_async(
+        name, [this, name, rollback](const json& params, const Caller&, Respond respond) {
+          const auto text = [&params](const char* key) {
+            const auto found = params.is_object() ? params.find(key) : params.end();
+            return found != params.end() && found->is_string() ? found->get<std::string>() : "";
+          };
+          const std::string to = text("to");
+          const auto layer = layer_from_name(text("layer"));
+          if (!layer || *layer >= GAITD_LAYER_COUNT || params.size() != (rollback ? 1 : 2) ||
+              to.empty() != rollback) {
+            std::string layers;
+            for (const std::string_view one : sdk::kLayerNames) {
+              layers += (layers.empty() ? "" : ", ") + std::string(one);
+            }
+            return respond(invalid(
+                name, std::string("expected {\"layer\": ") + "one of " + layers +
+                          (rollback ? "}" : ", \"to\": a variant or the path of a library}")));
+          }
+          Wanted wanted;
+          wanted.request = parts_.bridge->open(std::move(respond));
+          wanted.layer = *layer;
+          wanted.to = to;
+          wanted.tick = parts_.telemetry->newest_tick();
+          {
+            const std::scoped_lock lock(mutex_);
+            wanted_.push_back(std::move(wanted));
+          }
+          wake_.notify_all();
+        });
   };
   add("plugin.swap", false);
   add("plugin.rollback", true);

@@ -16,6 +16,12 @@ class RingIndexes {
 
   std::size_t capacity() const { return capacity_; }
 
+  // Any thread: slots that wait for the consumer, at about this moment.
+  std::size_t used() const noexcept {
+    const std::uint64_t read = read_.load(std::memory_order_acquire);
+    return static_cast<std::size_t>(written_.load(std::memory_order_acquire) - read);
+  }
+
   // Producer. Free slots; at least as many stay free until it commits.
   std::size_t free() const noexcept {
     return capacity_ - static_cast<std::size_t>(written_.load(std::memory_order_relaxed) -

@@ -8,11 +8,14 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <deque>
+#include <limits>
 #include <mutex>
 #include <thread>
 #include <utility>
 
 #include "daemon/telemetry/input.h"
+#include "daemon/telemetry/latest_values.h"
 #include "daemon/telemetry/recent_maximum.h"
 #include "daemon/telemetry/ring.h"
 
@@ -36,6 +39,8 @@ struct EventSlot {
 
 constexpr std::size_t kInputs = 128;  // commands that wait for the telemetry thread
 
+std::int64_t now_ns() { return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count(); }
+
 std::size_t ring_ticks(const TelemetryOptions& options) {
   return static_cast<std::size_t>(std::max(2.0, std::ceil(options.ring_seconds / options.period)));
 }
@@ -48,16 +53,16 @@ struct Telemetry::Impl {
         options(telemetry_options),
         tick_ring(ring_ticks(options)),
         event_ring(std::max<std::size_t>(2, options.ring_events)),
+        input_ring(kInputs),
         values(tick_ring.capacity() * table.size()),
         sensors(tick_ring.capacity()),
         slots(tick_ring.capacity()),
         event_slots(event_ring.capacity()),
-        input_ring(kInputs),
         inputs(input_ring.capacity()),
         newest(table.size()),
         log(table) {
     for (std::size_t i = 0; i < table.size(); ++i) {
-      if (table[i].name.starts_with("tick/")) recent.push_back({i, {}});
+      if (table[i].name.starts_with("tick/")) recent.emplace_back(i);
     }
     for (std::size_t i = 0; i < slots.size(); ++i) {
       slots[i].values = std::span(values).subspan(i * table.size(), table.size());
@@ -70,6 +75,9 @@ struct Telemetry::Impl {
   void drain_events();
   bool drain_ticks();
   void report_dropouts();
+  void tell_log_status();
+  template <class Operation>
+  void on_disk(Operation operation);
 
   const SignalTable table;
   const TelemetryOptions options;
@@ -88,23 +96,40 @@ struct Telemetry::Impl {
   std::atomic<bool> running{false};
   std::atomic<bool> stopping{false};
 
-  // Telemetry thread and any other but the control thread.
-  mutable std::mutex newest_mutex;
-  std::vector<double> newest;
-  bool has_newest = false;
+  // Control thread and any other.
   struct Recent {
+    explicit Recent(std::size_t signal) : signal(signal) {}
     std::size_t signal;
-    RecentMaximum maximum;
+    RecentMaximum maximum;  // control thread
+    std::atomic<double> value{std::numeric_limits<double>::quiet_NaN()};
   };
-  std::vector<Recent> recent;
+  LatestValues newest;
+  std::deque<Recent> recent;
   std::atomic<std::int64_t> newest_tick{-1};
-  mutable std::mutex log_mutex;
+  TickSlot unlogged;  // where a tick goes that finds the ring full
+  GaitdSensors unlogged_sensors{};
+  TickSlot* slot = nullptr;  // that is being filled
+
+  // Telemetry thread, while it runs.
   RotatingLog log;
+
+  // Telemetry thread and any other but the control thread.
+  std::atomic<std::int64_t> disk_since{0};  // ns, steady clock, of the operation under way; 0: none
+  mutable std::mutex status_mutex;          // never held while the disk works
+  LogStatus status;
   std::mutex pending_mutex;
   std::vector<Event> pending;
 
   std::thread thread;
 };
+
+// Whatever may wait for the disk.
+template <class Operation>
+void Telemetry::Impl::on_disk(Operation operation) {
+  disk_since.store(now_ns(), std::memory_order_relaxed);
+  operation();
+  disk_since.store(0, std::memory_order_relaxed);
+}
 
 void Telemetry::Impl::run() {
   pthread_setname_np(pthread_self(), "gaitd-telemetry");
@@ -113,14 +138,23 @@ void Telemetry::Impl::run() {
     const bool busy = drain();
     if (Clock::now() - last_flush >= kFlushPeriod) {
       report_dropouts();
-      const std::scoped_lock lock(log_mutex);
-      log.writer().flush();
-      log.rotate_if_full();
+      on_disk([this] {
+        log.writer().flush();
+        log.rotate_if_full();
+      });
+      tell_log_status();
       last_flush = Clock::now();
     }
     if (!busy) std::this_thread::sleep_for(std::chrono::duration<double>(options.poll_period));
   }
   drain();
+}
+
+void Telemetry::Impl::tell_log_status() {
+  LogStatus now{log.file(),  log.part(),          log.writer().is_open(),
+                log.error(), log.ticks_written(), log.bytes_written()};
+  const std::scoped_lock lock(status_mutex);
+  status = std::move(now);
 }
 
 // False if there was no tick.
@@ -152,31 +186,26 @@ void Telemetry::Impl::drain_events() {
                      .text = options.input_text(input),
                      .truncated = false});
   }
-  const std::scoped_lock lock(log_mutex);
-  for (const Event& event : batch) log.writer().write_event(event);
+  if (batch.empty()) return;
+  on_disk([&] {
+    for (const Event& event : batch) log.writer().write_event(event);
+  });
+  tell_log_status();
 }
 
 bool Telemetry::Impl::drain_ticks() {
   if (tick_ring.empty()) return false;
-  const std::scoped_lock lock(log_mutex);
-  // One round of the ring at most, so that events and status queries get their turn.
+  // One round of the ring at most, so that events get their turn.
   for (std::size_t i = 0; i < tick_ring.capacity() && !tick_ring.empty(); ++i) {
     const TickSlot& slot = slots[tick_ring.read_slot()];
-    {
-      const std::scoped_lock newest_lock(newest_mutex);
-      std::copy(slot.values.begin(), slot.values.end(), newest.begin());
-      for (Recent& one : recent) one.maximum.add(slot.time, slot.values[one.signal]);
-      has_newest = true;
-    }
-    newest_tick.store(slot.tick, std::memory_order_release);
-    log.writer().write_tick(slot.tick, slot.time, slot.values, slot.sensors);
+    on_disk([&] { log.writer().write_tick(slot.tick, slot.time, slot.values, slot.sensors); });
     tick_ring.release();
   }
+  tell_log_status();
   return true;
 }
 
 void Telemetry::Impl::report_dropouts() {
-  const std::scoped_lock lock(log_mutex);
   log.set_dropouts(dropouts.load(std::memory_order_relaxed),
                    event_dropouts.load(std::memory_order_relaxed));
 }
@@ -188,8 +217,9 @@ Telemetry::~Telemetry() { close(); }
 
 bool Telemetry::open_log(const std::string& path, const LogMetadata& metadata,
                          const McapOptions& options, std::string* error, const LogLimits& limits) {
-  const std::scoped_lock lock(impl_->log_mutex);
-  return impl_->log.open(path, metadata, options, limits, error);
+  const bool opened = impl_->log.open(path, metadata, options, limits, error);
+  impl_->tell_log_status();
+  return opened;
 }
 
 void Telemetry::start() {
@@ -201,14 +231,31 @@ void Telemetry::start() {
 
 TickSlot* Telemetry::begin_tick() noexcept {
   Impl& impl = *impl_;
-  if (impl.tick_ring.free() == 0) {
-    impl.dropouts.fetch_add(1, std::memory_order_relaxed);
-    return nullptr;
-  }
-  return &impl.slots[impl.tick_ring.write_slot()];
+  impl.slot = impl.tick_ring.free() > 0 ? &impl.slots[impl.tick_ring.write_slot()] : nullptr;
+  if (impl.slot != nullptr) return impl.slot;
+  impl.unlogged.values = impl.newest.next();
+  impl.unlogged.sensors = &impl.unlogged_sensors;
+  return &impl.unlogged;
 }
 
-void Telemetry::commit() noexcept { impl_->tick_ring.commit(); }
+bool Telemetry::commit() noexcept {
+  Impl& impl = *impl_;
+  const bool logged = impl.slot != nullptr;
+  const TickSlot& slot = logged ? *impl.slot : impl.unlogged;
+  for (Impl::Recent& one : impl.recent) {
+    one.maximum.add(slot.time, slot.values[one.signal]);
+    one.value.store(one.maximum.value(), std::memory_order_relaxed);
+  }
+  if (logged) std::copy(slot.values.begin(), slot.values.end(), impl.newest.next().begin());
+  impl.newest.publish();
+  impl.newest_tick.store(slot.tick, std::memory_order_release);
+  if (logged) {
+    impl.tick_ring.commit();
+  } else {
+    impl.dropouts.fetch_add(1, std::memory_order_relaxed);
+  }
+  return logged;
+}
 
 bool Telemetry::push_event(EventKind kind, std::int64_t tick, double time,
                            std::string_view text) noexcept {
@@ -245,12 +292,13 @@ bool Telemetry::push_input(std::int64_t tick, double time, const Command& comman
   return true;
 }
 
-bool Telemetry::wait_for_space(std::size_t events) {
+bool Telemetry::wait_for_space(std::size_t events, const std::atomic<bool>* stop) {
   Impl& impl = *impl_;
   const std::size_t wanted = std::min(events, impl.event_ring.capacity());
   while (impl.tick_ring.free() == 0 || impl.event_ring.free() < wanted ||
          impl.input_ring.free() < std::min(events, impl.input_ring.capacity())) {
     if (!impl.running.load(std::memory_order_acquire)) return false;
+    if (stop != nullptr && stop->load(std::memory_order_relaxed)) return false;
     std::this_thread::sleep_for(kWaitForSpace);
   }
   return impl.running.load(std::memory_order_acquire);
@@ -258,15 +306,15 @@ bool Telemetry::wait_for_space(std::size_t events) {
 
 void Telemetry::record_event(EventKind kind, std::int64_t tick, double time, std::string text) {
   const std::scoped_lock lock(impl_->pending_mutex);
+  if (impl_->pending.size() >= kMaxPending) {
+    impl_->event_dropouts.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
   impl_->pending.push_back(
       {.tick = tick, .time = time, .kind = event_kind_name(kind), .text = std::move(text)});
 }
 
-bool Telemetry::latest(std::vector<double>& values) const {
-  const std::scoped_lock lock(impl_->newest_mutex);
-  if (impl_->has_newest) values = impl_->newest;
-  return impl_->has_newest;
-}
+bool Telemetry::latest(std::vector<double>& values) const { return impl_->newest.copy(values); }
 
 std::int64_t Telemetry::newest_tick() const noexcept {
   return impl_->newest_tick.load(std::memory_order_acquire);
@@ -274,9 +322,9 @@ std::int64_t Telemetry::newest_tick() const noexcept {
 
 std::vector<double> Telemetry::recent_maxima() const {
   std::vector<double> maxima(impl_->table.size(), std::nan(""));
-  const std::scoped_lock lock(impl_->newest_mutex);
-  if (!impl_->has_newest) return maxima;
-  for (const Impl::Recent& one : impl_->recent) maxima[one.signal] = one.maximum.value();
+  for (const Impl::Recent& one : impl_->recent) {
+    maxima[one.signal] = one.value.load(std::memory_order_relaxed);
+  }
   return maxima;
 }
 
@@ -293,10 +341,15 @@ std::uint64_t Telemetry::event_dropouts() const noexcept {
 }
 
 Telemetry::LogStatus Telemetry::log_status() const {
-  const std::scoped_lock lock(impl_->log_mutex);
-  const RotatingLog& log = impl_->log;
-  return {log.file(),  log.part(),          log.writer().is_open(),
-          log.error(), log.ticks_written(), log.bytes_written()};
+  LogStatus status;
+  {
+    const std::scoped_lock lock(impl_->status_mutex);
+    status = impl_->status;
+  }
+  status.waiting = impl_->tick_ring.used();
+  const std::int64_t since = impl_->disk_since.load(std::memory_order_relaxed);
+  if (since != 0) status.stalled = std::max(0.0, 1e-9 * static_cast<double>(now_ns() - since));
+  return status;
 }
 
 bool Telemetry::close(const LogMetadata& metadata, std::string* error) {
@@ -307,8 +360,8 @@ bool Telemetry::close(const LogMetadata& metadata, std::string* error) {
   while (impl.drain()) {
   }
   impl.report_dropouts();
-  const std::scoped_lock lock(impl.log_mutex);
   const bool complete = impl.log.close(metadata);
+  impl.tell_log_status();
   if (error != nullptr) *error = impl.log.error();
   return complete;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -39,8 +40,10 @@ struct TelemetryOptions {
 inline constexpr std::size_t kMaxEventText = 480;  // bytes, of an event from the control thread
 
 // Carries ticks and events from the control thread to the log file and to status queries. The
-// control thread only touches wait-free single-producer rings whose memory exists and is touched
-// beforehand; a thread of its own empties them. Works without a log file too.
+// control thread only touches wait-free buffers whose memory exists and is touched beforehand; a
+// thread of its own empties the rings into the log. That thread alone touches the disk, and it
+// holds no lock then: however long the disk takes, every function here but close() answers at once.
+// Works without a log file too.
 class Telemetry {
  public:
   // The table must be valid (validate_signal_table).
@@ -56,10 +59,11 @@ class Telemetry {
   // [main] Starts the thread, of ordinary priority.
   void start();
 
-  // [rt] The next slot to fill, or null if the ring is full: the tick is then a dropout, and
-  // counted. Values keep what an earlier tick left there: fill all. commit() hands the slot over.
+  // [rt] The next slot to fill. Values keep what an earlier tick left there: fill all. commit()
+  // hands the slot over; false if the ring is full: status queries see the tick, the log lacks it,
+  // and it is counted as a dropout.
   TickSlot* begin_tick() noexcept;
-  void commit() noexcept;
+  bool commit() noexcept;
 
   // [rt] False if the ring was full, and counted. Text beyond kMaxEventText is cut off and marked.
   bool push_event(EventKind kind, std::int64_t tick, double time, std::string_view text) noexcept;
@@ -70,13 +74,15 @@ class Telemetry {
 
   // [control thread, outside the guarded section] In lockstep, before each tick: sleeps until the
   // next tick and `events` events are certain to find room, so that nothing is ever dropped. False
-  // if the thread is not running, so that waiting is of no use.
-  bool wait_for_space(std::size_t events = 64);
+  // if the thread is not running, so that waiting is of no use, or `stop` has become true.
+  bool wait_for_space(std::size_t events = 64, const std::atomic<bool>* stop = nullptr);
 
   // [any thread but rt] An event of any length. Ordered by its tick when read, not by its call.
+  // While more than kMaxPending wait for the disk it is dropped, and counted.
+  static constexpr std::size_t kMaxPending = 4096;
   void record_event(EventKind kind, std::int64_t tick, double time, std::string text);
 
-  // [any thread but rt] The newest tick that the thread has seen. False before the first one.
+  // [any thread but rt] The newest tick. False before the first one.
   bool latest(std::vector<double>& values) const;
 
   // [any thread but rt] Number of the newest tick that latest() gives, or a later one; -1 before
@@ -100,6 +106,8 @@ class Telemetry {
     std::string error;        // first one; the log is not written any more, the robot walks on
     std::uint64_t ticks = 0;  // over all files
     std::uint64_t bytes = 0;
+    std::size_t waiting = 0;  // ticks that are not written yet
+    double stalled = 0.0;     // s that the disk has been at one operation
   };
   LogStatus log_status() const;
 

@@ -56,6 +56,10 @@ Request CommandSource::plain(const std::string& method) {
   return request(Request::Kind::kCommand, {method, nullptr});
 }
 
+Request CommandSource::without_effect() {
+  return request(Request::Kind::kCommand, {"param.set", {{"name", "swap.shadow"}, {"value", 0.2}}});
+}
+
 std::string CommandSource::batch(const std::vector<Request>& requests) {
   std::string line = "[";
   for (const Request& r : requests) line += (line.size() > 1 ? "," : "") + r.line;

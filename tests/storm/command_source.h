@@ -45,6 +45,8 @@ class CommandSource {
   Request next(const Scene& scene);
   // Several requests with an id each as one line; they are answered as one.
   static std::string batch(const std::vector<Request>& requests);
+  // A command that changes nothing, whenever it is taken.
+  Request without_effect();
   // A command of which it is certain what it is called and that it needs no params.
   Request plain(const std::string& method);
   // A line with bytes changed at random: it may be anything afterwards.

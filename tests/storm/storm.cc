@@ -122,10 +122,11 @@ void Storm::burst() {
     synchronise(c);
   }
   if (source_.chance(0.02)) mishap();
-  // Now and then more than the control thread takes at a time.
+  // Now and then more than the control thread takes at a time. In which tick it takes them nobody
+  // can know, so they do nothing.
   if (!source_.chance(0.002)) return;
   std::vector<Request> flood;
-  for (int j = 0; j < 80; ++j) flood.push_back(source_.plain("resume"));
+  for (int j = 0; j < 90; ++j) flood.push_back(source_.without_effect());
   send(connection(0), flood, false);
   synchronise(connection(0));
 }

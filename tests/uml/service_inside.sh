@@ -96,8 +96,10 @@ pid=$(show MainPID)
 ps -L -o cls=,rtprio= -p "$pid" | grep -q 'FF *80' ||
   fail "no thread has SCHED_FIFO 80: $(ps -L -o cls=,rtprio= -p "$pid" | tr '\n' ';')"
 (($(awk '/^VmLck/ { print $2 }' "/proc/$pid/status") > 10000)) || fail "memory is not locked"
-[[ $(stat -c '%a %G' /run/gaitd/gaitd.sock) == "660 gaitd" ]] ||
-  fail "the socket is $(stat -c '%a %G' /run/gaitd/gaitd.sock)"
+for socket in gaitd gaitd-observe gaitd-admin; do
+  [[ $(stat -c '%a %G' "/run/gaitd/$socket.sock") == "660 $socket" ]] ||
+    fail "$socket.sock is $(stat -c '%a %G' "/run/gaitd/$socket.sock")"
+done
 say "ready, disarmed, as user gaitd with SCHED_FIFO 80 and locked memory; no network, /etc read-only"
 
 # With torque on the motors in lockstep with the robot, whatever the speed of this machine.

@@ -54,7 +54,8 @@ uml_kernel() {
 }
 
 # uml_run SCRIPT SECONDS: a script of this folder inside, with $scratch, $GAITD_BUILD and the PATH of
-# outside. It fails the test unless it ends with 0.
+# outside. It fails the test unless it ends with 0. $uml_arguments go to the kernel.
+uml_arguments=()
 uml_run() {
   local code=none
   rm -f "$scratch/code"
@@ -65,7 +66,7 @@ cd $scratch
 source $here/inside.sh
 source $here/$1
 INSIDE
-  uml_kernel "$2" mode=chroot script="$scratch/inside.sh" result="$scratch" 2>&1 | grep --line-buffered -v '^SELinux' || true
+  uml_kernel "$2" mode=chroot script="$scratch/inside.sh" result="$scratch" "${uml_arguments[@]}" 2>&1 | grep --line-buffered -v '^SELinux' || true
   [[ -f $scratch/code ]] && code=$(cat "$scratch/code")
   [[ $code == 0 ]] || fail "$1 ended with $code inside User-Mode Linux"
 }

@@ -24,7 +24,7 @@ class ParameterMethods : public ::testing::Test {
   // The answer, if there is one at once.
   std::shared_ptr<std::optional<RpcResult>> call(const std::string& method, const json& params) {
     auto answer = std::make_shared<std::optional<RpcResult>>();
-    (*methods_.find(method))(params, [answer](RpcResult r) { *answer = std::move(r); });
+    (*methods_.find(method))(params, caller_, [answer](RpcResult r) { *answer = std::move(r); });
     return answer;
   }
   json result(const std::string& method, const json& params) {
@@ -54,6 +54,7 @@ class ParameterMethods : public ::testing::Test {
     bridge_->poll(CommandBridge::Clock::now());
   }
 
+  Caller caller_;
   LiveParameters parameters_;
   std::unique_ptr<CommandBridge> bridge_ = std::make_unique<CommandBridge>();
   Methods methods_;
@@ -109,6 +110,17 @@ TEST_F(ParameterMethods, ARefusalAndAMistakeChangeNothing) {
   auto command = std::make_unique<Command>();
   EXPECT_FALSE(bridge_->try_pop(*command)) << "a mistake must not reach the control thread";
   EXPECT_EQ(parameters_.value(0), 1.0);
+}
+
+TEST_F(ParameterMethods, WhatProtectsTheRobotIsTheAdministrators) {
+  caller_.role = Role::kCommand;
+  const RpcError refused = error("param.set", {{"name", "limits.torque_ratio"}, {"value", 0.8}});
+  EXPECT_EQ(refused.code, rpc_code::kNoRight);
+  EXPECT_NE(refused.message.find("param.set limits.torque_ratio: needs the role administer"),
+            std::string::npos)
+      << refused.message;
+  EXPECT_FALSE(bridge_->waiting());
+  EXPECT_EQ(result("param.get", {{"name", "limits.torque_ratio"}})["value"], 1.0);
 }
 
 }  // namespace

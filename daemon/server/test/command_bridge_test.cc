@@ -14,11 +14,11 @@ using std::chrono::seconds;
 class Bridge : public ::testing::Test {
  protected:
   // Where the answer to a command will be.
-  std::shared_ptr<std::optional<RpcResult>> submit(CommandType type) {
+  std::shared_ptr<std::optional<RpcResult>> submit(CommandType type, std::uint64_t client = 1) {
     auto result = std::make_shared<std::optional<RpcResult>>();
     Command command{};
     command.type = type;
-    bridge_->submit(command, [result](RpcResult r) { *result = std::move(r); });
+    bridge_->submit(command, Caller{client}, [result](RpcResult r) { *result = std::move(r); });
     return result;
   }
   static RpcError error(const std::optional<RpcResult>& result) {
@@ -104,11 +104,40 @@ TEST_F(Bridge, SaysWhenTheControlThreadDoesNotAnswer) {
   EXPECT_EQ(error(*arm).code, rpc_code::kNoAnswer);
 }
 
-TEST_F(Bridge, RefusesMoreThanTheRingHolds) {
-  for (std::size_t i = 0; i < CommandBridge::kCapacity; ++i) {
+TEST_F(Bridge, RefusesMoreThanTheShareOfAClient) {
+  // What the control thread finds in its ring waits there already.
+  for (std::size_t i = 0; i < CommandBridge::kPerTick + CommandBridge::kShare; ++i) {
     EXPECT_FALSE(submit(CommandType::kPause)->has_value());
   }
   EXPECT_EQ(error(*submit(CommandType::kPause)).code, rpc_code::kBusy);
+}
+
+TEST_F(Bridge, WhoFloodsItWaitsForHimselfAndTheOthersDoNot) {
+  for (std::size_t i = 0; i < CommandBridge::kShare; ++i) {
+    submit(CommandType::kResume, 1);
+    submit(CommandType::kResume, 2);
+  }
+  const auto stop = submit(CommandType::kStop, 3);
+  EXPECT_FALSE(stop->has_value());
+  int ticks = 0;
+  for (bool stopped = false; !stopped; ++ticks) {
+    ASSERT_LT(ticks, 3);
+    std::size_t taken = 0;
+    for (; bridge_->try_pop(*command_); ++taken) {
+      stopped |= command_->type == CommandType::kStop;
+      bridge_->push({command_->request, true, ticks, {}});
+    }
+    EXPECT_LE(taken, CommandBridge::kPerTick);
+    bridge_->poll(CommandBridge::Clock::now());
+  }
+  EXPECT_TRUE(stop->has_value());
+}
+
+TEST_F(Bridge, ThoseWhoWaitForTheirTurnAreToldThatTheControlThreadHangs) {
+  for (std::size_t i = 0; i < CommandBridge::kPerTick; ++i) submit(CommandType::kResume);
+  const auto stop = submit(CommandType::kStop, 2);
+  bridge_->poll(CommandBridge::Clock::now() + seconds(6));
+  EXPECT_EQ(error(*stop).code, rpc_code::kNoAnswer);
 }
 
 TEST_F(Bridge, TellsThoseWhoWaitThatGaitdStops) {
@@ -125,16 +154,16 @@ TEST_F(Bridge, MethodsParseBeforeTheySubmit) {
                          const nlohmann::json& params) -> std::variant<Command, RpcError> {
                         if (!params.is_null()) return RpcError{rpc_code::kInvalidParams, method};
                         Command command{};
-                        command.type = CommandType::kEstop;
+                        command.type = CommandType::kArm;
                         return command;
                       });
   std::optional<RpcResult> result;
-  (*methods.find("estop"))({{"a", 1}}, [&](RpcResult r) { result = std::move(r); });
-  EXPECT_EQ(error(result).message, "estop");
+  (*methods.find("arm"))({{"a", 1}}, Caller{}, [&](RpcResult r) { result = std::move(r); });
+  EXPECT_EQ(error(result).message, "arm");
   EXPECT_FALSE(bridge_->try_pop(*command_));
-  (*methods.find("estop"))(nullptr, [&](RpcResult r) { result = std::move(r); });
+  (*methods.find("arm"))(nullptr, Caller{}, [&](RpcResult r) { result = std::move(r); });
   EXPECT_TRUE(bridge_->try_pop(*command_));
-  EXPECT_EQ(command_->type, CommandType::kEstop);
+  EXPECT_EQ(command_->type, CommandType::kArm);
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ class Server : public ::testing::Test {
     bridge_ = std::make_unique<CommandBridge>(timeout);
     control_ = std::thread([this] {
       const auto command = std::make_unique<Command>();
-      while (!stop_) {
+      for (std::int64_t tick = 0; !stop_; ++tick) {
+        if (answering_) estop_.take(tick);
         while (answering_ && bridge_->try_pop(*command)) {
           ++taken_;
           bridge_->push({command->request, true, 42, {}});
@@ -40,13 +41,18 @@ class Server : public ::testing::Test {
     });
     Methods methods;
     methods.add_snapshot("status", [] { return json{{"state", "standing"}}; });
+    methods.add("plugin.list", [this](const json&) -> RpcResult {  // takes long
+      begun_ = true;
+      while (hanging_ && !stop_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      return "done";
+    });
     methods.add("large", [](const json&) -> RpcResult { return std::string(100000, 'x'); });
     add_command_methods(&methods, bridge_.get(),
                         [](const std::string&, const json&) -> std::variant<Command, RpcError> {
                           return Command{};
                         });
     std::string error;
-    server_ = CommandServer::start(options_, std::move(methods), bridge_.get(), &error);
+    server_ = CommandServer::start(options_, std::move(methods), bridge_.get(), &estop_, &error);
     ASSERT_TRUE(server_) << error;
   }
   void expect_alive() {
@@ -54,8 +60,16 @@ class Server : public ::testing::Test {
     EXPECT_EQ(client.ask(kStatus)["result"]["state"], "standing");
   }
 
+  // Until the thread of the requests is busy with a request that takes as long as hanging_.
+  void wait_for_hang() {
+    while (!begun_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+
   SocketDirectory directory_;
   ServerOptions options_;
+  EstopFlag estop_;
+  std::atomic<bool> hanging_{false};
+  std::atomic<bool> begun_{false};
   std::unique_ptr<CommandBridge> bridge_;
   std::atomic<bool> answering_{true};
   std::atomic<bool> stop_{false};
@@ -262,9 +276,105 @@ TEST_F(Server, EndsPromptlyAndTellsThoseWhoWait) {
 TEST_F(Server, ASecondServerOnTheSameSocketIsRefused) {
   start();
   std::string error;
-  EXPECT_FALSE(CommandServer::start(options_, Methods(), nullptr, &error));
+  EXPECT_FALSE(CommandServer::start(options_, Methods(), nullptr, &estop_, &error));
   EXPECT_NE(error.find("another gaitd"), std::string::npos) << error;
   expect_alive();
+}
+
+constexpr const char* kEstop = R"({"jsonrpc":"2.0","id":9,"method":"estop"})";
+constexpr const char* kSlow = R"({"jsonrpc":"2.0","id":8,"method":"plugin.list"})";
+
+TEST_F(Server, AnEstopWaitsForNoOtherRequest) {
+  hanging_ = true;
+  start();
+  RawClient busy(directory_.file());
+  for (int i = 0; i < 100; ++i) busy.send(std::string(kSlow) + "\n");
+  wait_for_hang();
+  for (int i = 0; i < 20; ++i) {
+    RawClient other(directory_.file());
+    const json answer = other.ask(kEstop);
+    EXPECT_EQ(answer["id"], 9);
+    EXPECT_EQ(answer["result"]["accepted"], true) << answer;
+    EXPECT_GE(answer["result"]["tick"], answer["result"]["read_at_tick"]);
+    EXPECT_LE(answer["result"]["tick"].get<int>(), answer["result"]["read_at_tick"].get<int>() + 1);
+  }
+  hanging_ = false;
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(busy.answer()["result"], "done");
+}
+
+TEST_F(Server, AnEstopIsNeverRefusedForItsForm) {
+  start();
+  RawClient client(directory_.file());
+  for (const char* line : {R"({"jsonrpc":"2.0","id":1,"method":"estop","params":[]})",
+                           R"({"jsonrpc":"2.0","id":1,"method":"estop","params":{"a":1}})",
+                           R"({"id":1,"method":"estop"})",
+                           R"({"jsonrpc":"2.0","id":1,"method":"estop","method":"estop"})"}) {
+    EXPECT_EQ(client.ask(line)["result"]["accepted"], true) << line;
+  }
+  // Within a batch, and in a line too long for the lane of its own.
+  EXPECT_EQ(client.ask("[" + std::string(kEstop) + "]")[0]["result"]["accepted"], true);
+  EXPECT_EQ(
+      client.ask(kEstop + std::string(2 * CommandServer::kMaxEstopLine, ' '))["result"]["accepted"],
+      true);
+}
+
+TEST_F(Server, AnEstopThatNobodyActsOnSaysSo) {
+  answering_ = false;
+  start();
+  RawClient client(directory_.file());
+  const json error = client.ask(kEstop)["error"];
+  EXPECT_EQ(error["code"], -32001);
+  EXPECT_NE(error["message"].get<std::string>().find("use the e-stop of the robot"),
+            std::string::npos);
+  answering_ = true;  // it is not forgotten
+  while (!estop_.acted_on(1)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+TEST_F(Server, WhoFillsAllPlacesKeepsNobodyFromOneRequest) {
+  options_.max_clients = 4;
+  start();
+  std::vector<std::unique_ptr<RawClient>> idle;
+  for (int i = 0; i < 20; ++i) idle.push_back(std::make_unique<RawClient>(directory_.file()));
+  for (int i = 0; i < 10; ++i) {
+    RawClient client(directory_.file());
+    EXPECT_EQ(client.ask(kEstop)["result"]["accepted"], true);
+    EXPECT_TRUE(client.ended());
+    RawClient another(directory_.file());
+    EXPECT_EQ(another.ask(kStatus)["result"]["state"], "standing");
+    EXPECT_TRUE(another.ended());
+  }
+  EXPECT_EQ(idle[0]->ask(kStatus)["result"]["state"], "standing");
+  EXPECT_EQ(idle[0]->ask(kStatus)["result"]["state"], "standing");
+}
+
+TEST_F(Server, EverySocketHasItsRole) {
+  start();
+  RawClient own(directory_.file());
+  EXPECT_EQ(own.ask(kSlow)["result"], "done");
+  EXPECT_EQ(own.ask(R"({"jsonrpc":"2.0","id":1,"method":"large"})")["error"], nullptr);
+  RawClient observer(directory_.file("gaitd-observe.sock"));
+  EXPECT_EQ(observer.ask(kStatus)["result"]["state"], "standing");
+  EXPECT_EQ(observer.ask(kArm)["error"]["code"], -32004);
+  EXPECT_EQ(observer.ask(kEstop)["result"]["accepted"], true);
+  RawClient administrator(directory_.file("gaitd-admin.sock"));
+  EXPECT_EQ(administrator.ask(kArm)["result"]["accepted"], true);
+  EXPECT_EQ(administrator.ask(R"({"jsonrpc":"2.0","id":1,"method":"large"})")["error"], nullptr);
+  server_.reset();
+  for (const char* name : {"gaitd.sock", "gaitd-observe.sock", "gaitd-admin.sock"}) {
+    EXPECT_FALSE(std::filesystem::exists(directory_.file(name))) << name;
+  }
+}
+
+TEST_F(Server, AFloodOfLinesIsAnsweredLineByLine) {
+  start();
+  RawClient flood(directory_.file());
+  std::thread sender([&] {
+    for (int i = 0; i < 5000; ++i) flood.send(std::string(kStatus) + "\n");
+  });
+  RawClient quiet(directory_.file());
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(quiet.ask(kStatus)["result"]["state"], "standing");
+  for (int i = 0; i < 5000; ++i) ASSERT_TRUE(flood.answer()["result"].is_object()) << i;
+  sender.join();
 }
 
 }  // namespace

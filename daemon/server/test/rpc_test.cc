@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <map>
+
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -17,14 +20,15 @@ class Rpc : public ::testing::Test {
   Rpc() {
     methods_.add("echo", [](const json& params) -> RpcResult { return params; });
     methods_.add("throw", [](const json&) -> RpcResult { throw std::runtime_error("oh"); });
-    methods_.add_async(
-        "later", [this](const json&, Respond respond) { waiting_.push_back(std::move(respond)); });
+    methods_.add_async("later", [this](const json&, const Caller&, Respond respond) {
+      waiting_.push_back(std::move(respond));
+    });
     methods_.add_snapshot("status", [] { return json{{"state", "standing"}}; });
   }
   // Everything that is sent for one line.
   std::vector<json> all(const std::string& line) {
     sent_.clear();
-    handle_line(methods_, limits_, line, [this](std::string text) {
+    handle_line(methods_, limits_, caller_, line, [this](std::string text) {
       EXPECT_EQ(text.find('\n'), std::string::npos);
       sent_.push_back(json::parse(text));
     });
@@ -39,6 +43,7 @@ class Rpc : public ::testing::Test {
 
   Methods methods_;
   RpcLimits limits_;
+  Caller caller_;
   std::vector<Respond> waiting_;
   std::vector<json> sent_;
 };
@@ -189,6 +194,77 @@ TEST_F(Rpc, AnyBytesAreAnswered) {
       line[random() % line.size()] = static_cast<char>(random() % 256);
     }
     all(line);  // parses what is sent, and a crash or an exception fails
+  }
+}
+
+TEST_F(Rpc, AnIdComesBackAsItCameOrIsRefused) {
+  for (const char* id :
+       {"18446744073709551615", "-9223372036854775808", "\"18446744073709551616\""}) {
+    const json answer =
+        one(std::string(R"({"jsonrpc":"2.0","id":)") + id + R"(,"method":"status"})");
+    EXPECT_EQ(answer["id"].dump(), id);
+  }
+  for (const char* id : {"18446744073709551616", "-9223372036854775809", "1e3", "0.5"}) {
+    const json answer =
+        one(std::string(R"({"jsonrpc":"2.0","id":)") + id + R"(,"method":"status"})");
+    EXPECT_EQ(answer["error"]["code"], -32600) << id;
+    EXPECT_TRUE(answer["id"].is_null());
+  }
+}
+
+TEST_F(Rpc, AMethodNeedsItsRole) {
+  for (const auto& [method, least] : method_rights()) {
+    methods_.add(std::string(method), [](const json&) -> RpcResult { return "done"; });
+    for (const Role role : {Role::kObserve, Role::kCommand, Role::kAdminister}) {
+      caller_.role = role;
+      const json answer = one(json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}}.dump());
+      if (role >= least) {
+        EXPECT_EQ(answer["result"], "done") << method;
+        continue;
+      }
+      EXPECT_EQ(answer["error"]["code"], -32004) << method;
+      EXPECT_EQ(answer["error"]["data"]["needed"], role_name(least));
+    }
+  }
+  caller_.role = Role::kCommand;  // one that nobody thought of
+  EXPECT_EQ(error_code(R"({"jsonrpc":"2.0","id":1,"method":"echo"})"), -32004);
+}
+
+TEST(Rights, GuardWhatProtectsTheRobot) {
+  EXPECT_TRUE(is_guarded("safety.tilt_limit"));
+  EXPECT_TRUE(is_guarded("swap.on_hardware"));
+  EXPECT_TRUE(is_guarded("limits.torque_ratio"));
+  EXPECT_FALSE(is_guarded("gait.swing_duration"));
+  EXPECT_FALSE(is_guarded("swapped.on_hardware"));
+}
+
+TEST(Rights, AreThoseOnTheirPage) {
+  std::ifstream page(SECURITY_PAGE);
+  std::map<std::string, std::string> shown;
+  for (std::string line; std::getline(page, line);) {
+    const std::size_t end = line.find("` | ");
+    if (!line.starts_with("| `") || end == std::string::npos) continue;
+    shown[line.substr(3, end - 3)] = line.substr(end + 4, line.rfind(" |") - end - 4);
+  }
+  std::map<std::string, std::string> real;
+  for (const auto& [method, least] : method_rights()) {
+    real[std::string(method)] = role_name(least);
+  }
+  EXPECT_EQ(shown, real);
+}
+
+TEST(EstopRequest, IsAnyObjectThatAsksForIt) {
+  EXPECT_EQ(estop_request(R"({"jsonrpc":"2.0","id":7,"method":"estop"})")->id, 7);
+  for (const char* line :
+       {R"({"method":"estop"})", R"({"jsonrpc":"2.0","id":1,"method":"estop","params":[]})",
+        R"({"jsonrpc":"2.0","id":1,"method":"estop","params":{"why":"now"},"more":[1]})",
+        R"({"id":1e99,"method":"estop"})", R"({"method":"walk","method":"estop"})"}) {
+    EXPECT_TRUE(estop_request(line)) << line;
+  }
+  EXPECT_TRUE(estop_request(R"({"method":"estop"})")->notification);
+  for (const char* line : {"", "estop", "\"estop\"", R"({"method":"status","params":["estop"]})",
+                           R"([{"method":"estop"}])", R"({"method":"estop")"}) {
+    EXPECT_FALSE(estop_request(line)) << line;
   }
 }
 

@@ -3,10 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
 #include <thread>
 
+#include "daemon/telemetry/latest_values.h"
 #include "daemon/telemetry/test/fixture.h"
 
 namespace gaitd::daemon {
@@ -57,12 +65,8 @@ TEST(Telemetry, AFullRingCountsDropoutsAndTheFileTells) {
   int lost = 0;
   int lost_events = 0;
   for (int tick = 0; tick < 100; ++tick) {  // nobody empties the ring yet
-    TickSlot* slot = telemetry.begin_tick();
-    if (slot != nullptr) {
-      fill(table, tick, slot);
-      telemetry.commit();
-    }
-    lost += slot == nullptr ? 1 : 0;
+    fill(table, tick, telemetry.begin_tick());
+    lost += telemetry.commit() ? 0 : 1;
     lost_events += telemetry.push_event(EventKind::kNote, tick, 0.0, "{}") ? 0 : 1;
   }
   EXPECT_EQ(lost, 36);
@@ -98,6 +102,90 @@ TEST(Telemetry, StatusQueriesSeeTheNewestTickWithoutALog) {
   }
   EXPECT_EQ(values, expected);
   EXPECT_TRUE(telemetry.close());
+}
+
+// A pipe that nobody reads from takes 64 KiB, then a write never returns: a disk that stands still.
+TEST(Telemetry, ADiskThatStandsStillStopsNothingButTheLog) {
+  const std::string path = test_path("log.mcap");
+  std::filesystem::remove(path);
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  const int reader = open(path.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  const SignalTable table = sample_table();
+  Telemetry telemetry(table, {.ring_seconds = 0.064});
+  std::string error;
+  ASSERT_TRUE(telemetry.open_log(path, {}, {.compression = McapCompression::kNone}, &error))
+      << error;
+  telemetry.start();
+  int tick = 0;
+  const auto tick_once = [&] {
+    fill(table, tick, telemetry.begin_tick());
+    telemetry.commit();
+    ++tick;
+  };
+  while (telemetry.dropouts() < 100 || telemetry.log_status().stalled < 0.2) {
+    tick_once();
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  std::vector<double> values;
+  for (int i = 0; i < 1000; ++i) {
+    tick_once();
+    ASSERT_TRUE(telemetry.latest(values));
+    ASSERT_EQ(values, sample_values(table, tick - 1));
+    ASSERT_EQ(telemetry.newest_tick(), tick - 1);
+  }
+  EXPECT_EQ(telemetry.log_status().waiting, 64u);
+  for (int i = 0; i < 5000; ++i) telemetry.record_event(EventKind::kNote, tick, 0.0, "{}");
+  EXPECT_GE(telemetry.event_dropouts(), 5000 - Telemetry::kMaxPending);
+  // In lockstep whoever waits for the disk can still be told to end.
+  std::atomic<bool> stop{true};
+  EXPECT_FALSE(telemetry.wait_for_space(64, &stop));
+  // The disk goes on.
+  std::atomic<bool> done{false};
+  std::thread drain([&] {
+    char bytes[65536];
+    while (!done) {
+      if (read(reader, bytes, sizeof(bytes)) <= 0) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+    }
+  });
+  telemetry.close({}, &error);
+  done = true;
+  drain.join();
+  close(reader);
+  EXPECT_EQ(telemetry.log_status().stalled, 0.0);
+  std::filesystem::remove(path);
+}
+
+TEST(LatestValues, AReaderSeesWholeRowsThatNeverGoBack) {
+  constexpr std::size_t kSize = 200;
+  LatestValues latest(kSize);
+  std::vector<double> values;
+  EXPECT_FALSE(latest.copy(values));
+  std::atomic<bool> done{false};
+  std::vector<std::thread> readers;
+  std::atomic<int> wrong{0};
+  for (int i = 0; i < 2; ++i) {
+    readers.emplace_back([&] {
+      std::vector<double> row;
+      for (double last = 0.0; !done;) {
+        if (!latest.copy(row)) continue;
+        for (const double value : row) wrong += value == row[0] ? 0 : 1;
+        wrong += row[0] < last ? 1 : 0;
+        last = row[0];
+      }
+    });
+  }
+  for (int n = 1; n <= 20000; ++n) {
+    std::ranges::fill(latest.next(), static_cast<double>(n));
+    latest.publish();
+  }
+  ASSERT_TRUE(latest.copy(values));
+  EXPECT_EQ(values, std::vector<double>(kSize, 20000.0));
+  done = true;
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_EQ(wrong, 0);
 }
 
 TEST(Telemetry, AFullDiskDoesNotStopTheTicks) {

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "daemon/server/command_bridge.h"
+#include "daemon/server/estop_answers.h"
+#include "daemon/server/fair_queue.h"
+#include "daemon/server/rpc.h"
+
+namespace gaitd::daemon {
+
+/// The thread that parses and runs requests, apart from the one that reads the sockets: however
+/// long a request takes, an e-stop is read meanwhile. Clients take turns, request by request.
+class RequestWorker {
+ public:
+  /// Lines of one client that wait; its socket is not read while they are as many.
+  static constexpr std::size_t kShare = 16;
+
+  /// `room` is called on the worker's thread with a client that may send again after push() had no
+  /// room. `bridge` (may be null) is polled every millisecond while commands wait; it and `flag`
+  /// outlive the worker.
+  RequestWorker(Methods methods, const RpcLimits& limits, CommandBridge* bridge, EstopFlag* flag,
+                std::function<void(std::uint64_t client)> room);
+  ~RequestWorker();  ///< stops
+  RequestWorker(const RequestWorker&) = delete;
+  RequestWorker& operator=(const RequestWorker&) = delete;
+
+  /// The new thread inherits the caller's mask of signals.
+  void start();
+  /// Answers what waits with the stopping error and joins. Lines that were not begun are dropped.
+  void stop();
+
+  /// [any thread] Queues a line. False: the client's share is used up; `room` will tell. `send`
+  /// takes the answer on the worker's thread.
+  bool push(const Caller& caller, std::string_view line, Exchange::Send send);
+  /// [any thread] Nothing more comes from this client.
+  void retire(std::uint64_t client);
+
+ private:
+  struct Job {
+    Caller caller;
+    std::string line;
+    Exchange::Send send;
+    std::optional<Exchange> begun;
+  };
+  void run();
+  bool next(std::pair<std::uint64_t, Job>* job, bool waiting);
+  void work(std::uint64_t client, Job job);
+  bool waiting() const { return estops_.waiting() || (bridge_ != nullptr && bridge_->waiting()); }
+  void poll();
+
+  Methods methods_;
+  RpcLimits limits_;
+  CommandBridge* bridge_;
+  EstopAnswers estops_;
+  std::function<void(std::uint64_t)> room_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  FairQueue<Job> queue_{kShare};
+  std::set<std::uint64_t> full_;  // clients that push() turned away
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace gaitd::daemon

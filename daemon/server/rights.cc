@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/server/rights.h"
+
+#include <algorithm>
+
+namespace gaitd::daemon {
+namespace {
+
+constexpr MethodRight kRights[] = {
+    {"abort", Role::kCommand},          {"arm", Role::kCommand},
+    {"disarm", Role::kCommand},         {"estop", Role::kObserve},
+    {"footsteps", Role::kCommand},      {"joint.list", Role::kObserve},
+    {"joint.test", Role::kAdminister},  {"mode", Role::kCommand},
+    {"param.get", Role::kObserve},      {"param.list", Role::kObserve},
+    {"param.set", Role::kCommand},      {"pause", Role::kCommand},
+    {"plugin.list", Role::kObserve},    {"plugin.rollback", Role::kAdminister},
+    {"plugin.swap", Role::kAdminister}, {"reset", Role::kCommand},
+    {"resume", Role::kCommand},         {"sim.push", Role::kAdminister},
+    {"sim.reset", Role::kAdminister},   {"status", Role::kObserve},
+    {"stop", Role::kCommand},           {"version", Role::kObserve},
+    {"walk", Role::kCommand},
+};
+static_assert(std::ranges::is_sorted(kRights, {}, &MethodRight::method));
+
+}  // namespace
+
+std::span<const MethodRight> method_rights() { return kRights; }
+
+Role least_role(std::string_view method) {
+  const auto* row = std::ranges::lower_bound(kRights, method, {}, &MethodRight::method);
+  return row != std::end(kRights) && row->method == method ? row->least : Role::kAdminister;
+}
+
+bool is_guarded(std::string_view parameter) {
+  const std::string_view scope = parameter.substr(0, parameter.find('.'));
+  return std::ranges::find(kGuardedScopes, scope) != kGuardedScopes.end();
+}
+
+}  // namespace gaitd::daemon
