@@ -190,7 +190,7 @@ def run(hours, folder):
           f"falls {rows[-1]['falls']}")
     if rows[-1]['dropouts']:
         problems.append(f"{rows[-1]['dropouts']} ticks were not logged")
-    sys.exit('\n'.join(problems))
+    sys.exit('\n'.join(problems) or 0)
 
 
 run(float(sys.argv[1]), sys.argv[2])

@@ -6,7 +6,7 @@ trap thaw EXIT
 python3 -S "$scratch/frozen_disk.py" walk "$scratch/disk" || fail "the walk over a frozen disk"
 
 can_links 3 16
-stall_time=20 start_robot frozen --can can-classic.yaml --period 0.01 \
+stall_time=60 start_robot frozen --can can-classic.yaml --period 0.01 \
   --world '{"terrain": {"ground_z": 0.0}, "start": {"z": 10000.0}}'
 python3 -S "$scratch/frozen_disk.py" stop "$scratch/disk" "$scratch/frozen.json" "$robot" ||
   fail "SIGTERM over a frozen disk"

@@ -1,0 +1,45 @@
+# What a terminal, a reader of the output and a layer that hangs do to gaitd.
+source "$(dirname "$0")/../common.sh"
+
+# Nobody reads what it says: it goes on.
+start_daemon --clock lockstep --set log.enabled=false
+stop_daemon
+mkfifo "$scratch/pipe"
+gaitd --clock lockstep --set log.enabled=false >"$scratch/pipe" 2>&1 &
+daemon=$!
+head -n 1 "$scratch/pipe" >/dev/null # and the reader has gone
+for _ in {1..100}; do
+  gaitctl status >/dev/null 2>&1 && break
+  sleep 0.1
+done
+gaitctl estop >/dev/null # it says something of this
+sleep 0.3
+gaitctl status | grep -qx 'state *fault' || fail "gaitd does not go on without a reader"
+
+# The terminal goes: an orderly end, as by SIGTERM.
+kill -HUP "$daemon"
+code=0
+wait "$daemon" || code=$?
+daemon=
+((code == 0)) || fail "gaitd ended with $code on SIGHUP, expected 0"
+echo "no reader, SIGHUP: in order"
+
+# A layer hangs: the status says that it is stale, an e-stop that nobody acts on it.
+start_daemon --clock lockstep --set log.enabled=false \
+  --set "state_estimator.variant=$GAITD_BUILD/tests/bad_plugins/state_estimator.so"
+for _ in {1..600}; do
+  [[ $(field state) == standing ]] && break
+  sleep 0.1
+done
+gaitctl param set state_estimator.fault 8 >/dev/null 2>&1 & # is never answered
+for _ in {1..100}; do
+  status=$(gaitctl --json status)
+  [[ $status == *'"stale": true'* ]] && break
+  sleep 0.1
+done
+[[ $status == *'"stale": true'* ]] || fail "the status is not stale: $status"
+expect 1 gaitctl estop >"$scratch/estop.txt" 2>&1
+grep -q 'use the e-stop of the robot' "$scratch/estop.txt" || fail "$(cat "$scratch/estop.txt")"
+kill -KILL "$daemon"
+daemon=
+echo "a hanging layer: told"
