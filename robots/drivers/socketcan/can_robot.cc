@@ -63,7 +63,10 @@ CanRobot::CanRobot(Wiring wiring, const GaitdModel& model, const RobotOptions& o
   };
   for (size_t i = 0; i < imus_.size(); ++i) route_sensor(wiring_.imus[i], kImuFrames, kImu, i);
   for (size_t i = 0; i < feet_.size(); ++i) route_sensor(wiring_.feet[i], kFootFrames, kFoot, i);
-  if (wiring_.estop.bus >= 0) buses_[wiring_.estop.bus].routes[wiring_.estop.id] = kEstop;
+  if (wiring_.estop.bus >= 0) {
+    buses_[wiring_.estop.bus].routes[wiring_.estop.id] = kEstop;
+    conditions_ = GAITD_HEALTH_HEARTBEAT;  // until it is heard
+  }
 }
 
 double CanRobot::age(const Moment& moment, int64_t now_ns) const {

@@ -10,6 +10,7 @@
 #include "sensor_frames.h"
 
 namespace gaitd::can {
+
 void CanRobot::wait_and_receive(double seconds) {
   std::array<pollfd, kMaxBuses> descriptors;
   const size_t count = buses_.size();

@@ -3,6 +3,10 @@
 // nothing.
 #include <time.h>
 
+#include <cmath>
+#include <iterator>
+#include <random>
+
 #include "robot_bench.h"
 
 namespace gaitd::can {
@@ -117,6 +121,41 @@ TEST(CanRobot, SamplesThatRepeatThemselvesOrAreMalformedAreCountedAndNotUsed) {
   EXPECT_NEAR(1.0, b.sensors.imus[0].angular_rate[0], 1e-3);
   send(4, 2, 0);
   EXPECT_EQ(2u, b.sensors.imus[0].info.sequence);
+}
+
+TEST(CanRobot, WhateverIsOnTheBusIsReadToFiguresInRangeAndNeverToTorque) {
+  Kit kit;
+  kit.sensors = true;
+  Bench b(kit);
+  std::mt19937 random(1);
+  constexpr uint32_t kIds[] = {0, kReplyId, kImuId, kImuId + 1, kEstopId, 0x7F0, 0x7FF};
+  constexpr unsigned kBytes[] = {0x00, 0x01, 0x55, 0xFF};
+  for (int round = 0; round < 50; ++round) {
+    std::string text;
+    for (int i = 0; i < 60; ++i) {
+      const int length = static_cast<int>(random() % 9);
+      char piece[16];
+      std::snprintf(piece, sizeof(piece), "%st%03X%d", text.empty() ? "" : "\r",
+                    kIds[random() % std::size(kIds)], length);
+      text += piece;
+      for (int k = 0; k < length; ++k) {
+        std::snprintf(piece, sizeof(piece), "%02X", kBytes[random() % std::size(kBytes)]);
+        text += piece;
+      }
+    }
+    b.write(GAITD_JOINT_MODE_DAMPING, 0);
+    b.wire.say(text);
+    b.read();
+    const GaitdJointSensor& joint = b.sensors.joints[0];
+    EXPECT_GE(joint.info.age, 0.0);
+    EXPECT_LE(std::abs(joint.position), kRanges.position);
+    EXPECT_LE(std::abs(joint.velocity), kRanges.velocity);
+    for (const double rate : b.sensors.imus[0].angular_rate) EXPECT_LE(std::abs(rate), 33.0);
+  }
+  EXPECT_GT(b.health().stale, 100u);
+  for (const Frame& frame : b.wire.take()) {
+    EXPECT_EQ(Special::kDisable, decode_special(frame));
+  }
 }
 
 TEST(CanRobot, AnAnswerAboutARegisterIsNoStateOfTheMotor) {
