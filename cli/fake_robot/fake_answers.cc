@@ -70,7 +70,8 @@ void FakeRobot::answer() {
     reply.mosfet_temperature = 40;
     reply.rotor_temperature = 45;
     const uint32_t id = motor.dialect == can::Dialect::kMiniCheetah ? 0 : motor.reply_id;
-    const can::Frame frame = can::encode_reply(id, reply, motor.dialect, motor.ranges);
+    can::Frame frame = can::encode_reply(id, reply, motor.dialect, motor.ranges);
+    if (state.shortened) --frame.length;
     for (int k = 0; k < (state.duplicate ? 2 : 1); ++k) {
       buses_[motor.bus].frames.push_back(frame);
     }
@@ -83,40 +84,46 @@ void FakeRobot::answer() {
   }
 }
 
+void FakeRobot::answer_sample(SenderState* state, const can::Sender& sender,
+                              const double (&first)[3], double first_unit,
+                              const double (&second)[3], double second_unit) {
+  if (state->silent) return;
+  if (!state->stuck) state->counter = cycle_;
+  const auto counter = static_cast<uint16_t>(state->counter);
+  for (can::Frame frame : {can::encode_vector(sender.id, first, first_unit, counter),
+                           can::encode_vector(sender.id + 1, second, second_unit, counter)}) {
+    if (state->shortened) --frame.length;
+    buses_[sender.bus].frames.push_back(frame);
+  }
+}
+
 void FakeRobot::answer_sensors(const GaitdSensors& sensors) {
-  const auto counter = static_cast<uint16_t>(cycle_);
   // The last code of a sensor never rests, as in a real one: who repeats himself is taken as
   // frozen.
   const auto wobble = [this](const double(&value)[3], double unit, double(&out)[3]) {
     std::copy(value, value + 3, out);
     out[0] += static_cast<double>(cycle_ % 2) * unit;
   };
-  for (size_t i = 0; i < wiring_.imus.size(); ++i) {
-    const can::Sender& sender = wiring_.imus[i];
-    const GaitdImuSensor& imu = sensors.imus[sender.index];
-    if (imu_silent_[i]) continue;
-    auto& frames = buses_[sender.bus].frames;
-    frames.push_back(can::encode_vector(sender.id, imu.angular_rate, can::kRateUnit, counter));
+  for (size_t i = 0; i < imus_.size(); ++i) {
+    const GaitdImuSensor& imu = sensors.imus[wiring_.imus[i].index];
     double force[3];
     wobble(imu.specific_force, can::kAccelerationUnit, force);
-    frames.push_back(can::encode_vector(sender.id + 1, force, can::kAccelerationUnit, counter));
+    answer_sample(&imus_[i], wiring_.imus[i], imu.angular_rate, can::kRateUnit, force,
+                  can::kAccelerationUnit);
   }
-  for (size_t i = 0; i < wiring_.feet.size(); ++i) {
-    const can::Sender& sender = wiring_.feet[i];
-    const GaitdFootForceSensor& foot = sensors.feet[sender.index];
-    if (foot_silent_[i]) continue;
-    auto& frames = buses_[sender.bus].frames;
+  for (size_t i = 0; i < feet_.size(); ++i) {
+    const GaitdFootForceSensor& foot = sensors.feet[wiring_.feet[i].index];
     double force[3];
     wobble(foot.force, can::kForceUnit, force);
-    frames.push_back(can::encode_vector(sender.id, force, can::kForceUnit, counter));
-    frames.push_back(can::encode_vector(sender.id + 1, foot.moment, can::kMomentUnit, counter));
+    answer_sample(&feet_[i], wiring_.feet[i], force, can::kForceUnit, foot.moment,
+                  can::kMomentUnit);
   }
   const auto interval =
       std::max<int64_t>(1, static_cast<int64_t>(kEstopInterval / options_.period));
-  if (wiring_.estop.bus >= 0 && !estop_silent_ && cycle_ % interval == 0) {
-    buses_[wiring_.estop.bus].frames.push_back(
-        can::encode_estop(wiring_.estop.id, estop_pressed_, static_cast<uint8_t>(cycle_)));
-  }
+  if (wiring_.estop.bus < 0 || estop_.silent || cycle_ % interval != 0) return;
+  if (!estop_.stuck) ++estop_.counter;
+  buses_[wiring_.estop.bus].frames.push_back(
+      can::encode_estop(wiring_.estop.id, estop_pressed_, static_cast<uint8_t>(estop_.counter)));
 }
 
 }  // namespace gaitd::cli

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "cli/fake_robot/fake_robot.h"
 
@@ -24,6 +25,9 @@ bool FakeRobot::start(std::string* error) {
     if (buses_[i].bus == nullptr) return false;
   }
   // Every fault needs a target that is there.
+  std::vector<std::string> joints, imus;
+  for (int j = 0; j < model_.joint_count; ++j) joints.emplace_back(model_.joints[j].name);
+  for (const can::Sender& imu : wiring_.imus) imus.emplace_back(model_.imus[imu.index].name);
   for (const Fault& fault : options_.faults) {
     const auto has = [&](auto&& names) {
       return std::find(names.begin(), names.end(), fault.target) != names.end();
@@ -31,12 +35,20 @@ bool FakeRobot::start(std::string* error) {
     std::vector<std::string> names;
     switch (fault.kind) {
       case FaultKind::kImu:
-        for (const can::Sender& imu : wiring_.imus) names.emplace_back(model_.imus[imu.index].name);
+      case FaultKind::kImuStuck:
+        names = imus;
         break;
       case FaultKind::kFoot:
+      case FaultKind::kFootStuck:
         names = {"left", "right"};
         break;
+      case FaultKind::kShort:
+        names = joints;
+        names.insert(names.end(), imus.begin(), imus.end());
+        names.insert(names.end(), {"left", "right"});
+        break;
       case FaultKind::kEstop:
+      case FaultKind::kEstopStuck:
       case FaultKind::kHeartbeat:
         names = {""};
         break;
@@ -45,7 +57,7 @@ bool FakeRobot::start(std::string* error) {
         for (const can::Bus& bus : wiring_.buses) names.push_back(bus.name);
         break;
       default:
-        for (int j = 0; j < model_.joint_count; ++j) names.emplace_back(model_.joints[j].name);
+        names = joints;
         break;
     }
     if (!has(names)) {
@@ -64,6 +76,14 @@ bool FakeRobot::apply(const Fault& fault, std::string* error) {
     if (fault.target == model_.joints[wiring_.motors[i].joint].name) joint = static_cast<int>(i);
   }
   MotorState* motor = joint < 0 ? nullptr : &motors_[joint];
+  SenderState* sender = nullptr;
+  for (size_t i = 0; i < imus_.size(); ++i) {
+    if (fault.target == model_.imus[wiring_.imus[i].index].name) sender = &imus_[i];
+  }
+  for (size_t i = 0; i < feet_.size(); ++i) {
+    const bool left = wiring_.feet[i].index == GAITD_LEFT;
+    if (fault.target == (left ? "left" : "right")) sender = &feet_[i];
+  }
   switch (fault.kind) {
     case FaultKind::kSilent:
       motor->silent = true;
@@ -82,19 +102,25 @@ bool FakeRobot::apply(const Fault& fault, std::string* error) {
       motor->duplicate = true;
       break;
     case FaultKind::kImu:
-      for (size_t i = 0; i < imu_silent_.size(); ++i) {
-        if (fault.target == model_.imus[wiring_.imus[i].index].name) imu_silent_[i] = true;
-      }
-      break;
     case FaultKind::kFoot:
-      foot_silent_[fault.target == "left" ? GAITD_LEFT : GAITD_RIGHT] = true;
+      sender->silent = true;
+      break;
+    case FaultKind::kImuStuck:
+    case FaultKind::kFootStuck:
+      sender->stuck = true;
+      break;
+    case FaultKind::kShort:
+      (sender != nullptr ? sender->shortened : motor->shortened) = true;
       break;
     case FaultKind::kEstop:
       estop_pressed_ = true;
       estop_release_ = fault.value > 0 ? now_ + fault.value : 0;
       break;
     case FaultKind::kHeartbeat:
-      estop_silent_ = true;
+      estop_.silent = true;
+      break;
+    case FaultKind::kEstopStuck:
+      estop_.stuck = true;
       break;
     case FaultKind::kDown:
     case FaultKind::kBusOff:
@@ -111,6 +137,9 @@ bool FakeRobot::apply(const Fault& fault, std::string* error) {
       break;
     case FaultKind::kRange:
       motor->range = fault.value;
+      break;
+    case FaultKind::kNanRange:
+      motor->range = std::numeric_limits<double>::quiet_NaN();
       break;
     case FaultKind::kTimeout:
       motor->timeout = fault.value;

@@ -27,8 +27,8 @@ FakeRobot::FakeRobot(const GaitdModel& model, can::Wiring wiring, std::unique_pt
       pending_(options_.faults),
       buses_(wiring_.buses.size()),
       motors_(wiring_.motors.size()),
-      imu_silent_(wiring_.imus.size()),
-      foot_silent_(wiring_.feet.size()) {
+      imus_(wiring_.imus.size()),
+      feet_(wiring_.feet.size()) {
   for (size_t i = 0; i < motors_.size(); ++i) {
     motors_[i].range = wiring_.motors[i].ranges.position;
     motors_[i].timeout = options_.motor_timeout;
@@ -53,15 +53,11 @@ void FakeRobot::serve(double seconds) {
   const bool idle =
       ::poll(descriptors.data(), descriptors.size(), static_cast<int>(1000 * seconds)) == 0;
   now_ = wall();
-  std::array<can::Received, can::CanBus::kBatch> frames;
   for (size_t i = 0; i < buses_.size(); ++i) {
     if (descriptors[i].revents == 0) continue;
     can::BusEvents events;
-    int count = 0;
-    do {
-      count = buses_[i].bus->receive(frames.data(), &events);
-      for (int k = 0; k < count; ++k) take(static_cast<int>(i), frames[k].frame);
-    } while (count == can::CanBus::kBatch);
+    buses_[i].bus->receive(
+        &events, [&](const can::Received& received) { take(static_cast<int>(i), received.frame); });
     if (events.interface_down) buses_[i].heard = false;
   }
   const bool late = idle && now_ > cycle_start_ + options_.patience;

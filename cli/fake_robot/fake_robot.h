@@ -45,6 +45,7 @@ class FakeRobot {
     bool commanded = false;  // in this cycle
     bool silent = false;
     bool duplicate = false;
+    bool shortened = false;
     int lose = 0;  // every so many commands, 0: none
     int64_t commands = 0;
     uint8_t error = 0;
@@ -53,6 +54,12 @@ class FakeRobot {
     double last_command = 0;  // s, wall
     bool damping = false;
     GaitdJointCommand command{};
+  };
+  struct SenderState {
+    bool silent = false;
+    bool shortened = false;
+    bool stuck = false;  // its counter
+    int64_t counter = 0;
   };
   struct BusState {
     std::unique_ptr<can::CanBus> bus;
@@ -73,6 +80,8 @@ class FakeRobot {
   void advance_plant();
   void answer();
   void answer_sensors(const GaitdSensors& sensors);
+  void answer_sample(SenderState* state, const can::Sender& sender, const double (&first)[3],
+                     double first_unit, const double (&second)[3], double second_unit);
   void watch_stalls();
   void set_interface(int bus, bool up);
   void set_bus_off(int bus, bool off);
@@ -86,8 +95,9 @@ class FakeRobot {
   std::vector<Fault> pending_;
   std::vector<BusState> buses_;
   std::vector<MotorState> motors_;
-  std::vector<bool> imu_silent_, foot_silent_;
-  bool estop_pressed_ = false, estop_silent_ = false;
+  std::vector<SenderState> imus_, feet_;
+  SenderState estop_;
+  bool estop_pressed_ = false;
   double estop_release_ = 0;
   int64_t cycle_ = 0;          // complete ones
   int64_t moving_cycles_ = 0;  // since the first motor went on

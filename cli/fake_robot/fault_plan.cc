@@ -7,9 +7,10 @@
 namespace gaitd::cli {
 namespace {
 
-constexpr std::array<const char*, 13> kKinds = {
-    "silent", "error",     "off",  "lose",    "duplicate", "imu",    "foot",
-    "estop",  "heartbeat", "down", "bus-off", "range",     "timeout"};
+constexpr std::array<const char*, 18> kKinds = {
+    "silent",  "error",     "off",         "lose",      "duplicate",  "imu",
+    "foot",    "estop",     "heartbeat",   "down",      "bus-off",    "range",
+    "timeout", "nan-range", "estop-stuck", "imu-stuck", "foot-stuck", "short"};
 
 bool read_number(const std::string& text, double* value) {
   const char* end = text.data() + text.size();

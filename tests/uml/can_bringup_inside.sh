@@ -15,14 +15,30 @@ start_refused() {
 }
 
 start_refused "expected PMAX 26 as robot.yaml says, the motor has 12.5" --fault range:l_leg_kny=12.5
+start_refused "expected PMAX 26 as robot.yaml says, the motor has nan" --fault nan-range:l_leg_kny
 start_refused "TIMEOUT is 0" --fault timeout:back_bkz=0
 start_refused "no answer; check power" --fault silent:neck_ay
+
+# not_armed TEXT FAULT OF THE FAKE ROBOT: nothing is switched on, and the status says why.
+not_armed() {
+  start_robot not_armed --fault "$2"
+  start_gaitd
+  wait_status 60 "*$1*"
+  refused "not armed: the e-stop is silent"
+  stop_gaitd
+  stop_robot
+  echo "$2: not armed, $1"
+}
+
+not_armed "the e-stop was never heard" heartbeat
+not_armed "the e-stop repeats itself" estop-stuck
 
 # One joint moves, on the hoist; the others stay off. Far above the ground nothing weighs anything, and
 # who is let go does not fall over.
 hoist=(--world '{"terrain": {"ground_z": 0.0}, "start": {"z": 900.0}}')
 start_robot joint_test "${hoist[@]}"
 start_gaitd
+wait_healthy
 [[ $(gaitctl joint list) == *$'\n'"l_leg_kny "* ]] || fail "no l_leg_kny in 'gaitctl joint list'"
 gaitctl joint test l_leg_kny --amplitude 0.05 --duration 0.5 || fail "the joint test"
 ask_status
@@ -34,6 +50,7 @@ stop_robot
 stall_time=6
 start_robot killed "${hoist[@]}" --fault lose:l_leg_kny=7 --fault duplicate:r_leg_kny
 start_gaitd --set safety.ready_duration=60
+wait_healthy
 gaitctl --json arm >/dev/null 2>&1 &
 wait_state readying 120
 pause 2

@@ -11,6 +11,7 @@ condition() {
   can_links 5 72
   start_robot "condition$((++conditions))" "$@"
   start_gaitd --set safety.ready_duration=60 --set log.enabled=true --log "$scratch/$fault.mcap"
+  wait_healthy
   gaitctl --json arm >/dev/null 2>&1 &
   wait_state fault 300
   # An interface comes up again: its motors are switched off first, and stay off.
@@ -30,7 +31,10 @@ condition motor 8 --fault off:r_leg_aky@0.2
 condition sensors 22 --fault silent:l_leg_kny@0.2
 condition sensors 22 --fault foot:left@0.2
 condition sensors 22 --fault imu:pelvis_imu@0.2
+condition sensors 22 --fault imu-stuck:pelvis_imu@0.2
+condition sensors 22 --fault short:right@0.2
 condition estop 22 --fault estop@0.2
 condition heartbeat 122 --fault heartbeat@0.2
+condition heartbeat 122 --fault estop-stuck@0.2
 condition bus 2 --fault down:left_leg=0.5@0.2
 condition bus 2 --fault bus-off:right_leg=0.5@0.2

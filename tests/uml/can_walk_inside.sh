@@ -11,6 +11,7 @@ walk() {
   start_robot "walk$buses" "${robot_options[@]}"
   start_gaitd "${gaitd_options[@]}"
   [[ $status == *'"state":"disarmed"'* ]] || fail "a robot comes up disarmed: $status"
+  wait_healthy
   gaitctl arm >/dev/null
   wait_state standing 600
   gaitctl mode walk-straight >/dev/null

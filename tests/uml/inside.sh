@@ -88,6 +88,9 @@ watch_status() { exec gaitctl --json watch --reconnect --interval 0.1 2>/dev/nul
 # wait_state STATE SECONDS
 wait_state() { wait_status "$2" "*\"state\":\"$1\"*"; }
 
+# wait_healthy: motors and buses are in order, and the e-stop has been heard.
+wait_healthy() { wait_status 120 '*"healthy":true*'; }
+
 # ask_status: $status as it is now.
 ask_status() {
   status=$(gaitctl --json status) || fail "gaitd does not answer"

@@ -39,14 +39,15 @@ void read_error_frame(const canfd_frame& frame, BusEvents* events) {
 }  // namespace
 
 std::unique_ptr<CanBus> CanBus::open(const std::string& interface, bool fd,
-                                     const std::vector<uint32_t>& ids, std::string* error) {
+                                     const std::vector<uint32_t>& ids, std::string* error,
+                                     const Clocks& clocks) {
   const auto fail = [&](const char* what, const char* advice) {
     *error = interface + ": " + what + ": " + std::strerror(errno) + "; " + advice;
     return nullptr;
   };
   const int socket = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
   if (socket < 0) return fail("no CAN socket", "load the kernel module can-raw");
-  std::unique_ptr<CanBus> bus(new CanBus(socket, fd));
+  std::unique_ptr<CanBus> bus(new CanBus(socket, fd, clocks));
 
   ifreq request{};
   std::strncpy(request.ifr_name, interface.c_str(), IFNAMSIZ - 1);
@@ -82,7 +83,8 @@ std::unique_ptr<CanBus> CanBus::open(const std::string& interface, bool fd,
   return bus;
 }
 
-CanBus::CanBus(int socket, bool fd) : socket_(socket), fd_(fd) {
+CanBus::CanBus(int socket, bool fd, const Clocks& clocks)
+    : socket_(socket), fd_(fd), times_(clocks) {
   for (int i = 0; i < kBatch; ++i) vectors_[i] = {&buffers_[i], sizeof(canfd_frame)};
 }
 
@@ -108,7 +110,8 @@ int CanBus::send(const Frame* frames, int count, bool* down) {
   return std::max(sent, 0);
 }
 
-int CanBus::receive(Received* frames, BusEvents* events) {
+// True: nothing is left.
+bool CanBus::receive_batch(BusEvents* events, int* count) {
   for (int i = 0; i < kBatch; ++i) {
     vectors_[i].iov_len = sizeof(canfd_frame);
     headers_[i] = {};
@@ -117,38 +120,40 @@ int CanBus::receive(Received* frames, BusEvents* events) {
     headers_[i].msg_hdr.msg_control = controls_[i].data();
     headers_[i].msg_hdr.msg_controllen = kControl;
   }
+  times_.before_read();
   const int got = recvmmsg(socket_, headers_.data(), kBatch, MSG_DONTWAIT, nullptr);
-  if (got < 0) {
-    if (is_down(errno)) events->interface_down = true;
-    return 0;
-  }
-  int count = 0;
+  const bool failed = got < 0 && errno != EAGAIN && errno != EWOULDBLOCK;
+  if (failed && is_down(errno)) events->interface_down = true;
+  const bool emptied = got < kBatch && !failed;
+  times_.after_read(emptied);
   for (int i = 0; i < got; ++i) {
-    Received& received = frames[count];
-    received = {};
-    read_control(headers_[i].msg_hdr, &received, events);
+    Received& received = received_[*count];
+    received.stamp_ns = times_.of(read_control(headers_[i].msg_hdr, events));
     const canfd_frame& in = buffers_[i];
     if ((in.can_id & CAN_ERR_FLAG) != 0) {
       read_error_frame(in, events);
       continue;
     }
     received.frame.id = in.can_id & CAN_SFF_MASK;
-    received.frame.length = std::min<uint8_t>(in.len, 8);
-    std::memcpy(received.frame.data.data(), in.data, received.frame.length);
-    ++count;
+    received.frame.length = in.len;
+    received.frame.data = {};
+    std::memcpy(received.frame.data.data(), in.data,
+                std::min<size_t>(in.len, received.frame.data.size()));
+    ++*count;
   }
-  // Only error frames: the caller asks again until there is nothing.
-  return count == 0 ? receive(frames, events) : count;
+  return emptied;
 }
 
-void CanBus::read_control(const msghdr& header, Received* received, BusEvents* events) {
+// The stamp of the frame, 0 if there is none.
+int64_t CanBus::read_control(const msghdr& header, BusEvents* events) {
   auto* all = const_cast<msghdr*>(&header);
+  int64_t stamp_ns = 0;
   for (cmsghdr* c = CMSG_FIRSTHDR(all); c != nullptr; c = CMSG_NXTHDR(all, c)) {
     if (c->cmsg_level != SOL_SOCKET) continue;
     if (c->cmsg_type == SCM_TIMESTAMPING) {
       timespec stamp;
       std::memcpy(&stamp, CMSG_DATA(c), sizeof(stamp));
-      received->stamp_ns = int64_t{1000000000} * stamp.tv_sec + stamp.tv_nsec;
+      stamp_ns = int64_t{1000000000} * stamp.tv_sec + stamp.tv_nsec;
     } else if (c->cmsg_type == SO_RXQ_OVFL) {
       uint32_t total = 0;
       std::memcpy(&total, CMSG_DATA(c), sizeof(total));
@@ -156,12 +161,14 @@ void CanBus::read_control(const msghdr& header, Received* received, BusEvents* e
       overflow_ = total;
     }
   }
+  return stamp_ns;
 }
 
 void CanBus::drain() {
-  std::array<Received, kBatch> frames;
   BusEvents events;
-  while (receive(frames.data(), &events) > 0) {
+  // A bus that is flooded never ends.
+  constexpr int kMostCalls = 64;
+  for (int i = 0; i < kMostCalls && !receive(&events, [](const Received&) {}); ++i) {
   }
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "can_robot.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,12 +15,6 @@ namespace {
 constexpr double kDownProbe = 0.1;    // s between attempts on a bus that is down
 constexpr double kClearInterval = 1;  // s between attempts to clear the error of a motor
 
-int64_t now_ns(clockid_t clock) {
-  timespec t;
-  clock_gettime(clock, &t);
-  return int64_t{1000000000} * t.tv_sec + t.tv_nsec;
-}
-
 bool finite(const GaitdJointCommand& c) {
   return std::isfinite(c.torque) && std::isfinite(c.position) && std::isfinite(c.velocity) &&
          std::isfinite(c.stiffness) && std::isfinite(c.damping);
@@ -34,12 +26,21 @@ CanRobot::CanRobot(Wiring wiring, const GaitdModel& model, const RobotOptions& o
     : wiring_(std::move(wiring)),
       options_(options),
       log_(std::move(log)),
+      clocks_(*options.clocks),
       buses_(wiring_.buses.size()),
       motors_(wiring_.motors.size()),
-      counters_(std::make_unique<Counters[]>(wiring_.motors.size())),
       imus_(wiring_.imus.size()),
       feet_(wiring_.feet.size()) {
   for (int i = 0; i < model.joint_count; ++i) names_.emplace_back(model.joints[i].name);
+  for (const Motor& motor : wiring_.motors) senders_.push_back("motor of " + names_[motor.joint]);
+  for (const Sender& imu : wiring_.imus) {
+    senders_.push_back("IMU " + std::string(model.imus[imu.index].name));
+  }
+  for (const Sender& foot : wiring_.feet) {
+    senders_.emplace_back(foot.index == GAITD_LEFT ? "left foot sensor" : "right foot sensor");
+  }
+  senders_.emplace_back("e-stop");
+  counters_ = std::make_unique<Counters[]>(senders_.size());
   for (BusState& bus : buses_) {
     bus.frames.reserve(GAITD_MAX_JOINTS);
     bus.motors.reserve(GAITD_MAX_JOINTS);
@@ -62,14 +63,21 @@ CanRobot::CanRobot(Wiring wiring, const GaitdModel& model, const RobotOptions& o
   };
   for (size_t i = 0; i < imus_.size(); ++i) route_sensor(wiring_.imus[i], kImuFrames, kImu, i);
   for (size_t i = 0; i < feet_.size(); ++i) route_sensor(wiring_.feet[i], kFootFrames, kFoot, i);
-  if (wiring_.estop.bus >= 0) buses_[wiring_.estop.bus].routes[wiring_.estop.id] = kEstop;
+  if (wiring_.estop.bus >= 0) {
+    buses_[wiring_.estop.bus].routes[wiring_.estop.id] = kEstop;
+    conditions_ = GAITD_HEALTH_HEARTBEAT;  // until it is heard
+  }
 }
 
-GaitdSignalInfo CanRobot::info(bool valid, uint32_t sequence, int64_t stamp_ns, int64_t cycle,
-                               int64_t now) const {
+double CanRobot::age(const Moment& moment, int64_t now_ns) const {
+  return options_.lockstep ? static_cast<double>(cycle_ - moment.cycle) * options_.period
+                           : 1e-9 * static_cast<double>(now_ns - moment.stamp_ns);
+}
+
+GaitdSignalInfo CanRobot::info(bool valid, uint32_t sequence, const Moment& moment,
+                               int64_t now_ns) const {
   GaitdSignalInfo info{};
-  info.age = options_.lockstep ? static_cast<double>(cycle_ - cycle) * options_.period
-                               : 1e-9 * static_cast<double>(now - stamp_ns);
+  info.age = age(moment, now_ns);
   info.stamp_ns = std::llround(1e9 * (static_cast<double>(cycle_) * options_.period - info.age));
   info.sequence = sequence;
   info.valid = valid ? 1 : 0;
@@ -85,9 +93,9 @@ GaitdStatus CanRobot::read(GaitdSensors* sensors) {
     ++state.owed;
     ++counters_[i].missing;
   }
-  find_conditions();
+  const int64_t now = clocks_.monotonic_ns();
+  find_conditions(now);
 
-  const int64_t now = now_ns(CLOCK_REALTIME);
   sensors->size = sizeof(*sensors);
   sensors->joint_count = static_cast<int32_t>(motors_.size());
   sensors->imu_count = static_cast<int32_t>(imus_.size());
@@ -97,25 +105,25 @@ GaitdStatus CanRobot::read(GaitdSensors* sensors) {
   for (size_t i = 0; i < motors_.size(); ++i) {
     const MotorState& state = motors_[i];
     GaitdJointSensor& joint = sensors->joints[wiring_.motors[i].joint];
-    joint.info = info(state.valid, state.sequence, state.stamp_ns, state.cycle, now);
+    joint.info = info(state.valid, state.sequence, state.moment, now);
     joint.position = state.position;
     joint.velocity = state.velocity;
     joint.torque = state.torque;
   }
   for (size_t i = 0; i < imus_.size(); ++i) {
-    const SenderState& state = imus_[i];
+    const SensorSample& sample = imus_[i];
     GaitdImuSensor& imu = sensors->imus[wiring_.imus[i].index];
-    imu.info = info(state.valid, state.sequence, state.stamp_ns, state.cycle, now);
+    imu.info = info(sample.valid(), sample.sequence(), sample.moment(), now);
     imu.has_orientation = 0;
-    std::copy(state.value[0].begin(), state.value[0].end(), imu.angular_rate);
-    std::copy(state.value[1].begin(), state.value[1].end(), imu.specific_force);
+    std::copy(sample.value(0).begin(), sample.value(0).end(), imu.angular_rate);
+    std::copy(sample.value(1).begin(), sample.value(1).end(), imu.specific_force);
   }
   for (size_t i = 0; i < feet_.size(); ++i) {
-    const SenderState& state = feet_[i];
+    const SensorSample& sample = feet_[i];
     GaitdFootForceSensor& foot = sensors->feet[wiring_.feet[i].index];
-    foot.info = info(state.valid, state.sequence, state.stamp_ns, state.cycle, now);
-    std::copy(state.value[0].begin(), state.value[0].end(), foot.force);
-    std::copy(state.value[1].begin(), state.value[1].end(), foot.moment);
+    foot.info = info(sample.valid(), sample.sequence(), sample.moment(), now);
+    std::copy(sample.value(0).begin(), sample.value(0).end(), foot.force);
+    std::copy(sample.value(1).begin(), sample.value(1).end(), foot.moment);
   }
   return GAITD_OK;
 }
@@ -207,10 +215,10 @@ bool CanRobot::complete() const {
     if (motors_[i].awaiting && !over(wiring_.motors[i].bus)) return false;
   }
   for (size_t i = 0; i < imus_.size(); ++i) {
-    if (imus_[i].cycle != cycle_ && !over(wiring_.imus[i].bus)) return false;
+    if (imus_[i].moment().cycle != cycle_ && !over(wiring_.imus[i].bus)) return false;
   }
   for (size_t i = 0; i < feet_.size(); ++i) {
-    if (feet_[i].cycle != cycle_ && !over(wiring_.feet[i].bus)) return false;
+    if (feet_[i].moment().cycle != cycle_ && !over(wiring_.feet[i].bus)) return false;
   }
   return true;
 }
@@ -218,10 +226,10 @@ bool CanRobot::complete() const {
 GaitdStatus CanRobot::advance() {
   if (!options_.lockstep) return GAITD_NOT_SUPPORTED;
   const int64_t end =
-      now_ns(CLOCK_MONOTONIC) + static_cast<int64_t>(1e9 * options_.lockstep_timeout);
+      clocks_.monotonic_ns() + static_cast<int64_t>(1e9 * options_.lockstep_timeout);
   wait_and_receive(complete() ? 0.0 : options_.lockstep_timeout);
   while (!complete()) {
-    const int64_t left = end - now_ns(CLOCK_MONOTONIC);
+    const int64_t left = end - clocks_.monotonic_ns();
     if (left <= 0) {
       for (BusState& bus : buses_) {  // what has not come by now is lost
         bus.ends_owed = 0;

@@ -10,7 +10,10 @@
 #include <vector>
 
 #include "can_bus.h"
+#include "estop_monitor.h"
 #include "gaitd/abi/backend.h"
+#include "moment.h"
+#include "sensor_sample.h"
 #include "wiring.h"
 
 namespace gaitd::can {
@@ -19,6 +22,7 @@ struct RobotOptions {
   double period = 0.001;          // s
   bool lockstep = false;          // advance() waits for the replies of a cycle
   double lockstep_timeout = 0.5;  // s of wall time that it waits at most
+  Clocks* clocks = &Clocks::system();
 };
 
 // A motor is switched on by the first torque command and off by stop(), by an error of its own and
@@ -32,6 +36,9 @@ class CanRobot {
   using Log = std::function<void(int level, const std::string& line)>;
 
   CanRobot(Wiring wiring, const GaitdModel& model, const RobotOptions& options, Log log);
+  ~CanRobot() { stop(); }
+  CanRobot(const CanRobot&) = delete;
+  CanRobot& operator=(const CanRobot&) = delete;
 
   // Opens the buses, compares the motors with the wiring, switches them off and reads their first
   // state. False: everything that is wrong is in `errors`.
@@ -40,7 +47,8 @@ class CanRobot {
   GaitdStatus write(const GaitdJointCommands& commands);
   GaitdStatus advance();
   void health(GaitdHealth* health) const;
-  // Motors off; reports the counters.
+  // Switches the motors off on every bus that is open, before anything else, and gives up after
+  // 0.1 s with those whose bus takes no frames; then reports the counters and closes the buses.
   void stop();
 
  private:
@@ -52,24 +60,16 @@ class CanRobot {
     int cycles_enabled = 0;
     uint32_t owed = 0;  // replies of earlier cycles that may still come
     uint32_t sequence = 0;
-    int64_t stamp_ns = 0;
-    int64_t cycle = 0;                              // of the last reply
+    Moment moment;                                  // of the last reply
     double position = 0, velocity = 0, torque = 0;  // of the joint
   };
   struct Counters {
     std::atomic<uint32_t> late{0}, missing{0}, duplicate{0}, stale{0};
   };
-  struct SenderState {
-    std::array<std::array<double, 3>, 2> value{};  // of the frames
-    std::array<uint16_t, 2> counter{};
-    bool valid = false;
-    uint32_t sequence = 0;
-    int64_t stamp_ns = 0;
-    int64_t cycle = 0;
-  };
   struct BusState {
     std::unique_ptr<CanBus> bus;
     bool down = false;
+    bool fell = false;  // went down since the last look at the conditions
     bool passive = false;
     bool cycle_over = false;  // lockstep: nothing more comes in this cycle
     int ends_owed = 0;        // lockstep: ends of earlier cycles that are still to come
@@ -81,15 +81,17 @@ class CanRobot {
   };
 
   bool open(std::vector<std::string>* errors);
-  void check_registers(std::vector<std::string>* errors);
+  void check_motors(std::vector<std::string>* errors);
   std::string check_motor(const Motor& motor);
+  void switch_off();
   bool read_register(const Motor& motor, Register address, RegisterValue* value);
   void wait_and_receive(double seconds);
   void receive();
   void receive(int bus);
   void take(int bus, const Received& received);
   void take_reply(int motor, const Received& received);
-  void take_sensor(SenderState* sender, int frame, double unit, const Received& received);
+  void take_sensor(SensorSample* sample, int part, double unit, const Received& received,
+                   Counters* counters);
   Frame frame_for(int motor, const GaitdJointCommand& command);
   Frame command_frame(const Motor& motor, const GaitdJointCommand& command) const;
   void send(int bus);
@@ -98,25 +100,27 @@ class CanRobot {
   bool told_but_off(int motor) const;
   bool faulty(int motor) const;
   bool complete() const;
-  void find_conditions();
-  GaitdSignalInfo info(bool valid, uint32_t sequence, int64_t stamp_ns, int64_t cycle,
-                       int64_t now_ns) const;
+  void find_conditions(int64_t now_ns);
+  EstopLife estop_life(int64_t now_ns) const;
+  double age(const Moment& moment, int64_t now_ns) const;
+  GaitdSignalInfo info(bool valid, uint32_t sequence, const Moment& moment, int64_t now_ns) const;
 
   Wiring wiring_;
   RobotOptions options_;
   Log log_;
   std::vector<std::string> names_;  // of the joints
+  Clocks& clocks_;
   std::vector<BusState> buses_;
   std::vector<MotorState> motors_;
-  std::unique_ptr<Counters[]> counters_;
-  std::vector<SenderState> imus_, feet_;
-  bool estop_pressed_ = false;
-  int64_t estop_cycle_ = 0;
-  int64_t cycle_ = 0;  // counts write()
-  std::array<Received, CanBus::kBatch> received_{};
+  std::vector<SensorSample> imus_, feet_;
+  EstopMonitor estop_;
+  std::vector<std::string> senders_;      // who sends: motors, IMUs, feet, e-stop
+  std::unique_ptr<Counters[]> counters_;  // of each of them
+  int64_t cycle_ = 0;                     // counts write()
   std::atomic<uint32_t> conditions_{0}, lost_{0}, unsent_{0};
   std::atomic<int> bad_motor_{-1}, bad_bus_{-1};
   std::atomic<uint8_t> bad_error_{0};
+  std::atomic<EstopLife> estop_life_{EstopLife::kNeverHeard};
 };
 
 }  // namespace gaitd::can

@@ -10,6 +10,17 @@ namespace {
 constexpr int kPatience = 3;        // cycles in which a bus takes no commands until it is a fault
 constexpr int kSwitchOnCycles = 5;  // until a motor has to say that it is on
 
+const char* estop_life_text(EstopLife life) {
+  switch (life) {
+    case EstopLife::kNeverHeard:
+      return "the e-stop was never heard";
+    case EstopLife::kStuck:
+      return "the e-stop repeats itself: its counter stands still";
+    default:
+      return "the e-stop is silent";
+  }
+}
+
 }  // namespace
 
 bool CanRobot::told_but_off(int index) const {
@@ -25,14 +36,22 @@ bool CanRobot::faulty(int index) const {
 
 void CanRobot::switch_off_bus(int bus) {
   buses_[bus].down = true;
+  buses_[bus].fell = true;
   buses_[bus].ends_owed = 0;
   for (size_t i = 0; i < motors_.size(); ++i) {
     if (wiring_.motors[i].bus == bus) motors_[i].enabled = false;
   }
 }
 
+EstopLife CanRobot::estop_life(int64_t now_ns) const {
+  if (!estop_.heard()) return EstopLife::kNeverHeard;
+  if (age(*estop_.heard(), now_ns) > wiring_.heartbeat) return EstopLife::kSilent;
+  const bool counts = estop_.counted() && age(*estop_.counted(), now_ns) <= wiring_.heartbeat;
+  return counts ? EstopLife::kAlive : EstopLife::kStuck;
+}
+
 // By the thread that reads; what it finds stays until the next read.
-void CanRobot::find_conditions() {
+void CanRobot::find_conditions(int64_t now_ns) {
   uint32_t found = 0;
   for (size_t i = 0; i < motors_.size(); ++i) {
     if (!faulty(static_cast<int>(i))) continue;
@@ -44,14 +63,16 @@ void CanRobot::find_conditions() {
   }
   for (size_t i = 0; i < buses_.size(); ++i) {
     if (buses_[i].passive) found |= GAITD_HEALTH_WARNING;
-    const bool down = buses_[i].down || buses_[i].unsent_in_row >= kPatience;
+    // Also one that came back since: its motors are off, and the daemon has to know.
+    const bool down = buses_[i].down || buses_[i].fell || buses_[i].unsent_in_row >= kPatience;
+    buses_[i].fell = false;
     if (down) found |= GAITD_HEALTH_BUS;
     if (down || buses_[i].passive) bad_bus_ = static_cast<int>(i);
   }
   if (wiring_.estop.bus >= 0) {
-    const double silence = static_cast<double>(cycle_ - estop_cycle_) * options_.period;
-    if (estop_pressed_) found |= GAITD_HEALTH_ESTOP;
-    if (wiring_.heartbeat > 0 && silence > wiring_.heartbeat) found |= GAITD_HEALTH_HEARTBEAT;
+    if (estop_.take_pressed()) found |= GAITD_HEALTH_ESTOP;
+    estop_life_ = estop_life(now_ns);
+    if (estop_life_ != EstopLife::kAlive) found |= GAITD_HEALTH_HEARTBEAT;
   }
   conditions_ = found;
 }
@@ -62,7 +83,7 @@ void CanRobot::health(GaitdHealth* health) const {
   health->conditions = conditions_;
   health->lost = lost_;
   health->unsent = unsent_;
-  for (size_t i = 0; i < motors_.size(); ++i) {
+  for (size_t i = 0; i < senders_.size(); ++i) {
     health->late += counters_[i].late;
     health->missing += counters_[i].missing;
     health->duplicate += counters_[i].duplicate;
@@ -81,7 +102,7 @@ void CanRobot::health(GaitdHealth* health) const {
   } else if ((health->conditions & GAITD_HEALTH_ESTOP) != 0) {
     std::snprintf(text, kSize, "the e-stop is pressed");
   } else if ((health->conditions & GAITD_HEALTH_HEARTBEAT) != 0) {
-    std::snprintf(text, kSize, "the e-stop is silent");
+    std::snprintf(text, kSize, "%s", estop_life_text(estop_life_));
   } else if ((health->conditions & GAITD_HEALTH_WARNING) != 0 && bus >= 0) {
     std::snprintf(text, kSize, "bus %s (%s) is error-passive", wiring_.buses[bus].name.c_str(),
                   wiring_.buses[bus].interface.c_str());

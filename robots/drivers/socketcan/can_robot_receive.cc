@@ -10,11 +10,6 @@
 #include "sensor_frames.h"
 
 namespace gaitd::can {
-namespace {
-
-constexpr int64_t kClockStep = 1'000'000'000;  // ns back: the clock was set, the reply is not old
-
-}  // namespace
 
 void CanRobot::wait_and_receive(double seconds) {
   std::array<pollfd, kMaxBuses> descriptors;
@@ -37,12 +32,10 @@ void CanRobot::receive(int bus) {
   BusState& state = buses_[bus];
   BusEvents events;
   bool heard = false;
-  for (;;) {
-    const int count = state.bus->receive(received_.data(), &events);
-    for (int i = 0; i < count; ++i) take(bus, received_[i]);
-    heard = heard || count > 0;
-    if (count < CanBus::kBatch) break;
-  }
+  state.bus->receive(&events, [&](const Received& received) {
+    heard = true;
+    take(bus, received);
+  });
   if (events.lost > 0) lost_ += events.lost;
   if (events.passive) state.passive = true;
   if (events.active || events.restarted) state.passive = false;
@@ -62,15 +55,18 @@ void CanRobot::take(int bus, const Received& received) {
       return;
     case kImu:
       take_sensor(&imus_[index / kImuFrames], index % kImuFrames,
-                  index % kImuFrames == 0 ? kRateUnit : kAccelerationUnit, received);
+                  index % kImuFrames == 0 ? kRateUnit : kAccelerationUnit, received,
+                  &counters_[motors_.size() + index / kImuFrames]);
       return;
     case kFoot:
       take_sensor(&feet_[index / kFootFrames], index % kFootFrames,
-                  index % kFootFrames == 0 ? kForceUnit : kMomentUnit, received);
+                  index % kFootFrames == 0 ? kForceUnit : kMomentUnit, received,
+                  &counters_[motors_.size() + imus_.size() + index / kFootFrames]);
       return;
     case kEstop:
-      estop_pressed_ = decode_estop(received.frame);
-      estop_cycle_ = cycle_;
+      if (!estop_.take(received.frame, {received.stamp_ns, cycle_})) {
+        ++counters_[senders_.size() - 1].stale;
+      }
       return;
     case kCycleOver:
       if (buses_[bus].ends_owed > 0) {
@@ -91,9 +87,10 @@ void CanRobot::take_reply(int index, const Received& received) {
   const Motor& motor = wiring_.motors[index];
   MotorState& state = motors_[index];
   const auto reply = decode_reply(received.frame, motor.dialect, motor.ranges);
-  const uint32_t mask = motor.dialect == Dialect::kDamiao ? 0xF : 0xFF;
-  if (!reply || reply->motor != (motor.id & mask)) {
-    ++counters_[index].stale;  // of another motor, or of a register request
+  const bool damiao = motor.dialect == Dialect::kDamiao;
+  const bool answer = damiao && is_register_answer(received.frame, motor.id);
+  if (!reply || answer || reply->motor != (motor.id & (damiao ? 0xF : 0xFF))) {
+    ++counters_[index].stale;
     return;
   }
   if (state.awaiting) {
@@ -104,30 +101,28 @@ void CanRobot::take_reply(int index, const Received& received) {
   } else {
     ++counters_[index].duplicate;
   }
-  const int64_t older = state.stamp_ns - received.stamp_ns;
-  if (older > 0 && older < kClockStep) {
-    ++counters_[index].stale;
-    return;
-  }
   state.position = motor.joint_position(reply->position);
   state.velocity = motor.joint_velocity(reply->velocity);
   state.torque = motor.joint_torque(reply->torque);
   state.error = reply->error;
-  state.stamp_ns = received.stamp_ns;
-  state.cycle = cycle_;
+  state.moment = {received.stamp_ns, cycle_};
   ++state.sequence;
   state.valid = true;
 }
 
-void CanRobot::take_sensor(SenderState* sender, int frame, double unit, const Received& received) {
-  double value[3];
-  sender->counter[frame] = decode_vector(received.frame, unit, value);
-  std::copy(value, value + 3, sender->value[frame].begin());
-  if (frame != 1 || sender->counter[0] != sender->counter[1]) return;
-  sender->valid = true;
-  ++sender->sequence;
-  sender->stamp_ns = received.stamp_ns;
-  sender->cycle = cycle_;
+void CanRobot::take_sensor(SensorSample* sample, int part, double unit, const Received& received,
+                           Counters* counters) {
+  switch (sample->take(part, received.frame, unit, {received.stamp_ns, cycle_})) {
+    case SensorSample::Taken::kMalformed:
+      ++counters->stale;
+      break;
+    case SensorSample::Taken::kRepeated:
+      ++counters->duplicate;
+      break;
+    case SensorSample::Taken::kPart:
+    case SensorSample::Taken::kSample:
+      break;
+  }
 }
 
 }  // namespace gaitd::can

@@ -9,6 +9,7 @@ namespace gaitd::can {
 namespace {
 
 constexpr uint8_t kRead = 0x33;
+constexpr uint8_t kWrite = 0x55;
 constexpr uint32_t kMiddle12 = 0x7FF;
 
 uint32_t symmetric_code(double value, double range, int bits) {
@@ -144,8 +145,9 @@ std::optional<Special> decode_special(const Frame& frame) {
 }
 
 std::optional<MotorReply> decode_reply(const Frame& frame, Dialect dialect, const Ranges& ranges) {
-  const int length = dialect == Dialect::kMiniCheetah ? 6 : 8;
-  if (frame.length < length) return std::nullopt;
+  // Some mini-cheetah drives add their temperature.
+  const int shortest = dialect == Dialect::kMiniCheetah ? 6 : 8;
+  if (frame.length < shortest || frame.length > 8) return std::nullopt;
   MotorReply reply;
   unpack_state(frame, 1, ranges, &reply);
   reply.motor = frame.data[0];
@@ -206,6 +208,12 @@ std::optional<RegisterValue> decode_register_answer(const Frame& frame) {
   value.address = static_cast<Register>(d[3]);
   value.raw = d[4] | d[5] << 8 | d[6] << 16 | static_cast<uint32_t>(d[7]) << 24;
   return value;
+}
+
+bool is_register_answer(const Frame& frame, uint32_t motor) {
+  const auto& d = frame.data;
+  return frame.length == 8 && (d[2] == kRead || d[2] == kWrite) &&
+         (d[0] | static_cast<uint32_t>(d[1]) << 8) == motor;
 }
 
 }  // namespace gaitd::can

@@ -12,7 +12,7 @@ namespace gaitd::can {
 // Payload of a frame; the drives use the standard 11 bit identifiers only.
 struct Frame {
   uint32_t id = 0;
-  uint8_t length = 8;
+  uint8_t length = 8;  // of one that came on CAN FD up to 64: the rest of its payload is left out
   std::array<uint8_t, 8> data{};
 };
 
@@ -77,7 +77,7 @@ enum class Special : uint8_t { kEnable = 0xFC, kDisable = 0xFD, kSetZero = 0xFE,
 Frame encode_special(uint32_t id, Special special);
 std::optional<Special> decode_special(const Frame& frame);
 
-// Nothing: too short for the dialect.
+// Nothing: of another length than the dialect has.
 std::optional<MotorReply> decode_reply(const Frame& frame, Dialect dialect, const Ranges& ranges);
 // `reply_id` is used by Damiao; the others answer with id 0 (mini-cheetah) or the id given.
 Frame encode_reply(uint32_t reply_id, const MotorReply& reply, Dialect dialect,
@@ -107,6 +107,9 @@ Frame encode_register_read(uint32_t motor, Register address);
 std::optional<RegisterValue> decode_register_read(const Frame& frame);  // a request
 Frame encode_register_answer(uint32_t reply_id, const RegisterValue& value);
 std::optional<RegisterValue> decode_register_answer(const Frame& frame);
+// The answer of `motor` to somebody who reads or writes its registers. A reply can read the same at
+// two codes of the position near the lower end of its range only.
+bool is_register_answer(const Frame& frame, uint32_t motor);
 uint32_t raw_of(float value);
 
 }  // namespace gaitd::can

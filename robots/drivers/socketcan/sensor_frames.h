@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "mit_codec.h"
 
@@ -34,8 +35,9 @@ inline Frame encode_vector(uint32_t id, const double (&value)[3], double unit, u
   return frame;
 }
 
-// The counter of the frame.
-inline uint16_t decode_vector(const Frame& frame, double unit, double (&value)[3]) {
+// The counter of the frame. Nothing: of another length.
+inline std::optional<uint16_t> decode_vector(const Frame& frame, double unit, double (&value)[3]) {
+  if (frame.length != 8) return std::nullopt;
   const auto get = [&frame](int at) {
     return static_cast<uint16_t>(frame.data[at] | frame.data[at + 1] << 8);
   };
@@ -54,15 +56,14 @@ inline Frame encode_end_of_cycle() {
 }
 
 // D0: 1 pressed, 0 released; D1 counts. Also the heartbeat of the e-stop.
+inline constexpr uint8_t kEstopLength = 2;
 inline Frame encode_estop(uint32_t id, bool pressed, uint8_t counter) {
   Frame frame;
   frame.id = id;
-  frame.length = 2;
+  frame.length = kEstopLength;
   frame.data[0] = pressed ? 1 : 0;
   frame.data[1] = counter;
   return frame;
 }
-// Anything but a clear "released" is pressed.
-inline bool decode_estop(const Frame& frame) { return frame.length < 1 || frame.data[0] != 0; }
 
 }  // namespace gaitd::can

@@ -37,7 +37,7 @@ void read_text(JsonReader* map, const char* key, std::string* value) {
   }
 }
 
-// A number, or a text such as 0x14.
+// A number, or a text such as 0x14. All mini-cheetah motors reply with 0, so nobody else has it.
 void read_id(JsonReader* map, const char* key, uint32_t last, uint32_t* id) {
   if (!map->has(key)) return;
   const json& value = map->at(key);
@@ -49,10 +49,10 @@ void read_id(JsonReader* map, const char* key, uint32_t last, uint32_t* id) {
     number = std::strtoll(text.c_str(), &end, 16);
     if (!text.starts_with("0x") || *end != '\0') number = -1;
   }
-  if (number >= 0 && number <= last) {
+  if (number >= 1 && number <= last) {
     *id = static_cast<uint32_t>(number);
   } else {
-    map->error(map->path(key), "an identifier 0.." + hex(last), value);
+    map->error(map->path(key), "an identifier 0x001.." + hex(last), value);
   }
 }
 
@@ -188,10 +188,12 @@ class WiringReader {
     }
     read_id(&map, "id", kLastId, &motor.id);
     read_id(&map, "reply_id", kLastId, &motor.reply_id);
-    if (motor.id == 0) map.error(map.path("id"), "an identifier from 1", 0);
     claim(motor.bus, motor.id, map.path("id"));
     if (motor.dialect != Dialect::kMiniCheetah) {
       claim(motor.bus, motor.reply_id, map.path("reply_id"));
+    } else if (motor.id > 0xFF) {
+      map.error(map.path("id"), "an identifier up to 0xFF, as a mini_cheetah reply has no more",
+                hex(motor.id));
     }
     map.number("sign", {-1, 1}, &motor.sign);
     if (std::abs(motor.sign) != 1) map.error(map.path("sign"), "1 or -1", motor.sign);
@@ -215,6 +217,9 @@ class WiringReader {
     const Range range{joint.position_min, joint.position_max};
     limits.number("position_min", range, &motor->position_min);
     limits.number("position_max", range, &motor->position_max);
+    if (!(motor->position_min < motor->position_max)) {
+      limits.error(limits.path("position_min"), "less than position_max", motor->position_min);
+    }
   }
 
   // A code that is clamped would be a wrong reading, and a wrong command.

@@ -63,7 +63,7 @@ struct Wiring {
   std::vector<Sender> imus;
   std::vector<Sender> feet;
   Sender estop;
-  double heartbeat = 0;        // s, longest silence of the e-stop; 0: not watched
+  double heartbeat = 0.1;      // s, in which the counter of the e-stop has to change
   double motor_timeout = 0.1;  // s, longest TIMEOUT of a motor that is accepted
 };
 

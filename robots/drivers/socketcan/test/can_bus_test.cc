@@ -4,8 +4,12 @@
 #include "can_bus.h"
 
 #include <gtest/gtest.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
 #include <poll.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "slcan.h"
@@ -42,9 +46,8 @@ Result receive_all(CanBus* bus, bool due = false) {
   Result result;
   pollfd descriptor{bus->descriptor(), POLLIN, 0};
   if (due) poll(&descriptor, 1, 5000);
-  std::array<Received, CanBus::kBatch> batch;
-  for (int count; (count = bus->receive(batch.data(), &result.events)) > 0;) {
-    result.frames.insert(result.frames.end(), batch.begin(), batch.begin() + count);
+  while (!bus->receive(&result.events,
+                       [&](const Received& received) { result.frames.push_back(received); })) {
   }
   return result;
 }
@@ -90,6 +93,45 @@ TEST(CanBus, CountsWhatTheReceiverDropped) {
   const size_t received = got.frames.size() + last.frames.size();
   EXPECT_LT(received, static_cast<size_t>(sent));
   EXPECT_EQ(static_cast<size_t>(sent), received + got.events.lost + last.events.lost);
+}
+
+TEST(CanBus, ReadsNoMoreAtOnceThanABusCanCarryAndTheRestTheNextTime) {
+  auto sender = open_bus("vcan1", false, {});
+  auto receiver = open_bus("vcan1", false, {0x32});
+  const int most = CanBus::kMostFrames;
+  const int room = 1 << 22;
+  ASSERT_EQ(0, setsockopt(receiver->descriptor(), SOL_SOCKET, SO_RCVBUFFORCE, &room, sizeof(room)));
+  for (int i = 0; i < 2 * most / CanBus::kBatch; ++i) {
+    send_all(sender.get(), std::vector<Frame>(CanBus::kBatch, make_frame(0x32, 0)));
+  }
+  BusEvents events;
+  int got = 0;
+  const auto count = [&](const Received&) { ++got; };
+  EXPECT_FALSE(receiver->receive(&events, count));
+  EXPECT_EQ(most, got);
+  receiver->receive(&events, count);
+  EXPECT_EQ(2 * most, got);
+}
+
+TEST(CanBus, ShowsTheLengthOfFramesThatAreTooLong) {
+  auto receiver = open_bus("vcan0", true, {0x33});
+  const int socket = ::socket(PF_CAN, SOCK_RAW, CAN_RAW);
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = static_cast<int>(if_nametoindex("vcan0"));
+  ASSERT_EQ(0, bind(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)));
+  const int on = 1;
+  ASSERT_EQ(0, setsockopt(socket, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof(on)));
+  canfd_frame frame{};
+  frame.can_id = 0x33;
+  frame.len = 64;
+  std::fill(std::begin(frame.data), std::end(frame.data), uint8_t{7});
+  ASSERT_EQ(ssize_t{sizeof(frame)}, ::write(socket, &frame, sizeof(frame)));
+  close(socket);
+  const Result got = receive_all(receiver.get(), true);
+  ASSERT_EQ(1u, got.frames.size());
+  EXPECT_EQ(64, got.frames[0].frame.length);
+  EXPECT_EQ(7, got.frames[0].frame.data[7]);
 }
 
 TEST(CanBus, SaysWhenTheInterfaceIsDownAndWorksAgainWhenItIsUp) {

@@ -1,80 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot of one mini-cheetah motor on slcan: what is on the wire, cycle by cycle.
-#include "can_robot.h"
-
+// A robot of one motor on slcan: what is on the wire, cycle by cycle.
 #include <chrono>
 #include <cmath>
-#include <thread>
 
-#include "sensor_frames.h"
-#include "slcan.h"
+#include "robot_bench.h"
 
 namespace gaitd::can {
 namespace {
-
-const Ranges kRanges{12.5, 30, 10, 500, 5};
-
-struct Bench {
-  Slcan wire;
-  GaitdModel model{};
-  std::unique_ptr<CanRobot> robot;
-  GaitdSensors sensors{};
-  double position = 0.3;  // rad, that the motor shows
-
-  explicit Bench(const RobotOptions& options = {}) {
-    model.joint_count = 1;
-    std::strcpy(model.joints[0].name, "knee");
-    Wiring wiring;
-    wiring.buses.push_back({"leg", wire.name(), {}});
-    Motor motor;
-    motor.id = 1;
-    motor.dialect = Dialect::kMiniCheetah;
-    motor.ranges = kRanges;
-    motor.sign = -1;
-    motor.gear = 2;
-    motor.torque_limit = 6;
-    motor.velocity_limit = 10;
-    motor.position_min = -1;
-    motor.position_max = 1;
-    wiring.motors.push_back(motor);
-    robot = std::make_unique<CanRobot>(wiring, model, options, [](int, const std::string&) {});
-    std::vector<std::string> errors;
-    std::thread starting([&] { EXPECT_TRUE(robot->start(&errors)); });
-    while (wire.take().empty()) {
-    }
-    answer();
-    starting.join();
-  }
-  void answer() {
-    MotorReply reply;
-    reply.motor = 1;
-    reply.position = position;
-    wire.send(encode_reply(0, reply, Dialect::kMiniCheetah, kRanges));
-  }
-  uint32_t read() {
-    robot->read(&sensors);
-    GaitdHealth health;
-    robot->health(&health);
-    return health.conditions;
-  }
-  void write(int mode, double torque) {
-    GaitdJointCommands commands{};
-    commands.joint_count = 1;
-    commands.joints[0].mode = mode;
-    commands.joints[0].torque = torque;
-    commands.joints[0].damping = 2;
-    robot->write(commands);
-  }
-  // The one frame of a cycle.
-  Frame cycle(int mode, double torque = 0) {
-    write(mode, torque);
-    const std::vector<Frame> frames = wire.take();
-    EXPECT_EQ(1u, frames.size());
-    answer();
-    EXPECT_EQ(0u, read());
-    return frames.empty() ? Frame{} : frames[0];
-  }
-};
 
 TEST(CanRobot, IsSwitchedOnByTorqueOnlyAndOffAtTheEnd) {
   Bench b;
@@ -103,31 +35,26 @@ TEST(CanRobot, IsSwitchedOnByTorqueOnlyAndOffAtTheEnd) {
 
 TEST(CanRobot, CountsRepliesThatAreMissingLateAndDuplicate) {
   Bench b;
-  const auto health = [&] {
-    GaitdHealth h;
-    b.robot->health(&h);
-    return h;
-  };
   b.cycle(GAITD_JOINT_MODE_OFF);
-  const GaitdHealth before = health();
+  const GaitdHealth before = b.health();
   b.write(GAITD_JOINT_MODE_OFF, 0);
   b.read();
-  EXPECT_EQ(before.missing + 1, health().missing);
+  EXPECT_EQ(before.missing + 1, b.health().missing);
   EXPECT_GT(b.sensors.joints[0].info.age, 0.01);
   b.answer();  // of the cycle before
   b.read();
-  EXPECT_EQ(before.late + 1, health().late);
+  EXPECT_EQ(before.late + 1, b.health().late);
   b.answer();
   b.read();
-  EXPECT_EQ(before.duplicate + 1, health().duplicate);
+  EXPECT_EQ(before.duplicate + 1, b.health().duplicate);
 }
 
 TEST(CanRobot, InLockstepTheEndOfAnEarlierCycleEndsNothing) {
   using Clock = std::chrono::steady_clock;
-  RobotOptions options;
-  options.lockstep = true;
-  options.lockstep_timeout = 0.2;
-  Bench b(options);
+  Kit kit;
+  kit.options.lockstep = true;
+  kit.options.lockstep_timeout = 0.2;
+  Bench b(kit);
   b.write(GAITD_JOINT_MODE_OFF, 0);
   b.wire.send(encode_end_of_cycle());  // of the cycle of the start, whose replies were enough
   const auto begin = Clock::now();
@@ -167,11 +94,7 @@ TEST(CanRobot, ErrorPassiveIsAWarningUntilTheBusIsActiveAgain) {
 
 TEST(CanRobot, ABusThatTakesNoCommandsForThreeCyclesIsAFaultAndNothingIsSentTwice) {
   Bench b;
-  const auto unsent = [&] {
-    GaitdHealth h;
-    b.robot->health(&h);
-    return h.unsent;
-  };
+  const auto unsent = [&] { return b.health().unsent; };
   b.cycle(GAITD_JOINT_MODE_TORQUE, 4);
   // Nobody reads the wire: first its buffer fills up, then the transmit queue.
   uint32_t cycles = 0;
@@ -185,6 +108,19 @@ TEST(CanRobot, ABusThatTakesNoCommandsForThreeCyclesIsAFaultAndNothingIsSentTwic
   b.write(GAITD_JOINT_MODE_DAMPING, 0);
   EXPECT_EQ(0u, b.read());
   EXPECT_EQ(1u, b.wire.take().size());
+}
+
+TEST(CanRobot, ABusThatFellAndCameBackBetweenTwoReadsIsToldAndItsMotorsStayOff) {
+  Bench b;
+  b.cycle(GAITD_JOINT_MODE_TORQUE, 4);
+  b.cycle(GAITD_JOINT_MODE_TORQUE, 4);
+  b.wire.set_up(false);
+  b.write(GAITD_JOINT_MODE_TORQUE, 4);  // hears of it
+  b.wire.set_up(true);
+  b.answer();
+  EXPECT_EQ(uint32_t{GAITD_HEALTH_BUS}, b.read());
+  // The daemon has latched its fault by now.
+  EXPECT_EQ(Special::kDisable, decode_special(b.cycle(GAITD_JOINT_MODE_DAMPING)));
 }
 
 }  // namespace

@@ -118,6 +118,9 @@ TEST(MitCodec, DamiaoReplyHasErrorAndTemperatures) {
   frame.length = 7;
   EXPECT_FALSE(decode_reply(frame, Dialect::kDamiao, kRanges));
   EXPECT_TRUE(decode_reply(frame, Dialect::kMiniCheetah, kRanges));
+  frame.length = 12;
+  EXPECT_FALSE(decode_reply(frame, Dialect::kDamiao, kRanges));
+  EXPECT_FALSE(decode_reply(frame, Dialect::kMiniCheetah, kRanges));
 }
 
 TEST(MitCodec, Registers) {
@@ -131,6 +134,15 @@ TEST(MitCodec, Registers) {
   ASSERT_TRUE(value);
   EXPECT_EQ(0x104u, value->motor);
   EXPECT_FLOAT_EQ(12.5f, value->real());
+  EXPECT_TRUE(is_register_answer(answer, 0x104));
+  EXPECT_FALSE(is_register_answer(answer, 0x004));
+  Frame written = answer;
+  written.data[2] = 0x55;
+  EXPECT_TRUE(is_register_answer(written, 0x104));
+  MotorReply reply;
+  reply.motor = 1;
+  reply.error = 1;
+  EXPECT_FALSE(is_register_answer(encode_reply(0x11, reply, Dialect::kDamiao, kRanges), 1));
 }
 
 TEST(SensorFrames, EveryCodeSurvives) {
@@ -148,16 +160,6 @@ TEST(SensorFrames, EveryCodeSurvives) {
   decode_vector(encode_vector(1, huge, kForceUnit, 0), kForceUnit, back);
   EXPECT_DOUBLE_EQ(32767 * kForceUnit, back[0]);
   EXPECT_DOUBLE_EQ(-32767 * kForceUnit, back[1]);
-}
-
-TEST(SensorFrames, OnlyAClearReleaseIsNotPressed) {
-  EXPECT_FALSE(decode_estop(encode_estop(1, false, 7)));
-  EXPECT_TRUE(decode_estop(encode_estop(1, true, 7)));
-  Frame garbage = encode_estop(1, false, 7);
-  garbage.data[0] = 2;
-  EXPECT_TRUE(decode_estop(garbage));
-  garbage.length = 0;
-  EXPECT_TRUE(decode_estop(garbage));
 }
 
 }  // namespace

@@ -148,5 +148,38 @@ TEST(Wiring, RefusesAJointThatItsMotorCannotShow) {
   EXPECT_NE(std::string::npos, errors_of(text, 1, 0.001).find("a motor for every joint"));
 }
 
+TEST(Wiring, RefusesLimitsThatLeaveNoRange) {
+  json text = make_wiring(1, 5e6);
+  text["joints"]["j0"]["limits"] = {{"position_min", 1.0}, {"position_max", -0.5}};
+  EXPECT_NE(std::string::npos,
+            errors_of(text, 1, 0.001)
+                .find("can.joints.j0.limits.position_min: expected less than position_max"));
+}
+
+TEST(Wiring, RefusesIdentifiersThatRepliesOfOthersHave) {
+  json text = make_wiring(1, 5e6);
+  text["joints"]["j0"]["reply_id"] = 0;  // of every mini-cheetah motor
+  text["feet"]["left"]["id"] = "0x0";
+  const std::string errors = errors_of(text, 1, 0.001);
+  EXPECT_NE(std::string::npos, errors.find("can.joints.j0.reply_id: expected an identifier 0x001"))
+      << errors;
+  EXPECT_NE(std::string::npos, errors.find("can.feet.left.id: expected an identifier 0x001"))
+      << errors;
+  text = make_wiring(1, 5e6);
+  text["joints"]["j0"]["dialect"] = "mini_cheetah";
+  text["joints"]["j0"]["id"] = "0x101";  // its reply would say 0x01
+  EXPECT_NE(std::string::npos, errors_of(text, 1, 0.001).find("an identifier up to 0xFF"));
+}
+
+TEST(Wiring, AnEstopIsAlwaysWatched) {
+  json text = make_wiring(1, 5e6);
+  text["estop"] = {{"bus", "one"}, {"id", "0x80"}};
+  Wiring wiring;
+  EXPECT_EQ("", errors_of(text, 1, 0.001, &wiring));
+  EXPECT_EQ(0.1, wiring.heartbeat);
+  text["estop"]["heartbeat"] = 0;
+  EXPECT_NE(std::string::npos, errors_of(text, 1, 0.001).find("can.estop.heartbeat"));
+}
+
 }  // namespace
 }  // namespace gaitd::can
