@@ -133,5 +133,29 @@ TEST_F(Stranger, IsOnlyBelievedWhereTheUserNamedHim) {
   EXPECT_TRUE(RpcClient::connect({{places[1]}, false, daemon::Role::kObserve}, &error)) << error;
 }
 
+TEST_F(Stranger, LooksNoFurtherThanWhereHeMayNotConnect) {
+  if (geteuid() != 0) return;  // root may connect everywhere, and nobody else can become another
+  chmod(workspace_.file("").c_str(), 0777);
+  std::string error;
+  auto closed = daemon::ListeningSocket::open(workspace_.file("closed"), &error);
+  auto open = daemon::ListeningSocket::open(workspace_.file("open"), &error);
+  ASSERT_TRUE(closed && open) << error;
+  chmod(workspace_.file("open").c_str(), 0666);
+  child_ = fork();
+  if (child_ == 0) {
+    if (setuid(65534) != 0) _exit(1);
+    const auto client = RpcClient::connect(
+        {{workspace_.file("closed"), workspace_.file("open")}, false, daemon::Role::kCommand},
+        &error);
+    const bool told = error.find("permission denied") != std::string::npos &&
+                      error.find("not looking further") != std::string::npos;
+    _exit(client == nullptr && told ? 0 : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(waitpid(child_, &status, 0), child_);
+  child_ = -1;
+  EXPECT_EQ(status, 0);
+}
+
 }  // namespace
 }  // namespace gaitd::cli
