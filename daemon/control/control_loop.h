@@ -50,6 +50,7 @@ class ControlLoop {
   Outcome tick();
   void take_commands();
   void take_swaps();
+  void tell_swaps();
   void execute(const Command& command, bool from_client);
   CommandReply simulate(const Command& command);
   CommandReply request_swap(const Command& command);
