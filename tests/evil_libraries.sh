@@ -73,7 +73,7 @@ expect 0 gaitctl plugin swap toe_off "$bad/evil.so"
 expect 0 gaitctl plugin rollback toe_off
 before=$(maps)
 for _ in {1..40}; do
-  gaitctl plugin swap toe_off "$GAITD_BUILD/daemon/conformance/test/zoo/crash_in_init.so" \
+  gaitctl plugin swap toe_off "$GAITD_BUILD/daemon/host/test/plugins/toe_off/crash_in_init.so" \
     >/dev/null 2>&1 && fail "a bad library was taken"
 done
 (($(maps) <= before + 20)) || fail "$((before)) maps became $(maps): what is refused stays in memory"

@@ -119,6 +119,10 @@ TEST_F(Swaps, TouchNothingBeforeTheyMayBegin) {
   EXPECT_HAS(error(swap(file)).message, "only swapped while standing");
   EXPECT_FALSE(library.touched());
   EXPECT_FALSE(folder.touched());
+  service_->port().publish(SwapRight::kAllowed);
+  swap(file);
+  delete next_order().candidate;
+  EXPECT_TRUE(library.touched());
 }
 
 TEST_F(Swaps, TouchNoFileOutsideOfTheFolders) {
