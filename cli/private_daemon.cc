@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "cli/child.h"
+#include "cli/private_directory.h"
 #include "cli/stop_signals.h"
 
 namespace gaitd::cli {
@@ -20,28 +21,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
-
-// A directory that goes away with its object.
-class PrivateDirectory {
- public:
-  PrivateDirectory() {
-    const char* runtime = std::getenv("XDG_RUNTIME_DIR");
-    for (const std::string parent : {runtime == nullptr ? "" : runtime, "/tmp"}) {
-      std::string name = parent + "/gaitd-run-XXXXXX";
-      if (parent.empty() || mkdtemp(name.data()) == nullptr) continue;
-      path_ = name;
-      return;
-    }
-  }
-  ~PrivateDirectory() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 // Waits for the end of the child; asked to stop, ends it politely, then by force.
 DaemonEnd wait_for(pid_t pid, const std::string& socket, const Watch& watch) {

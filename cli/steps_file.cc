@@ -2,7 +2,6 @@
 #include "cli/steps_file.h"
 
 #include <iostream>
-#include <iterator>
 
 #include "daemon/config/command_parse.h"
 #include "daemon/config/issues.h"
@@ -19,8 +18,7 @@ std::optional<nlohmann::json> read_steps(const std::string& file, bool replace,
   Issues issues;
   NodePtr root;
   if (file == "-") {
-    const std::string text(std::istreambuf_iterator<char>(std::cin), {});
-    root = daemon::parse_yaml(text, "standard input", &issues);
+    root = daemon::read_yaml(std::cin, "standard input", &issues);
   } else {
     root = daemon::load_yaml_file(file, &issues);
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <sstream>
@@ -43,7 +44,8 @@ nlohmann::json settings_json(const Settings& settings) {
 
 }  // namespace
 
-Application::Application(const Options& options) : options_(options), paths_(Paths::detect()) {}
+Application::Application(const Options& options)
+    : options_(options), paths_(Paths::detect()), directory_(paths_.plugin_folders()) {}
 Application::~Application() = default;
 
 void Application::report_issues(const Issues& issues) const {
@@ -114,9 +116,8 @@ Location Application::place_of(std::string_view key) const {
 
 // Everything about the plugins that can be said without loading them, and the parameters.
 Application::LayerRequests Application::choose_layers(Issues* all) {
-  const PluginDirectory directory(paths_.plugin_folders());
   Issues& issues = *all;
-  for (const PluginEntry& entry : directory.list()) {
+  for (const PluginEntry& entry : directory_.list()) {
     if (entry.layer < GAITD_LAYER_COUNT) {
       settings_.declare_variant(layer_name(entry.layer), entry.variant);
       known_variants_[entry.layer].push_back(entry.variant);
@@ -126,7 +127,7 @@ Application::LayerRequests Application::choose_layers(Issues* all) {
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     const std::string& variant = config_.variants[layer];
     std::string error;
-    const auto path = directory.find(layer, variant, &error);
+    const auto path = directory_.find(layer, variant, &error);
     Refusal refusal;
     const auto file = path ? read_plugin_file(*path, layer, &refusal) : std::nullopt;
     if (!file) {
@@ -158,7 +159,7 @@ Application::LayerRequests Application::choose_layers(Issues* all) {
   }
   std::string error;
   Refusal refusal;
-  const auto backend = directory.find(GAITD_LAYER_BACKEND, config_.backend, &error);
+  const auto backend = directory_.find(GAITD_LAYER_BACKEND, config_.backend, &error);
   if (!backend || !read_plugin_file(*backend, GAITD_LAYER_BACKEND, &refusal)) {
     issues.add_text(place_of("backend"), "backend", backend ? refusal.text() : error);
   }
@@ -220,9 +221,8 @@ nlohmann::json Application::backend_config() {
 }
 
 bool Application::load_backend() {
-  const PluginDirectory directory(paths_.plugin_folders());
   std::string error;
-  const auto path = directory.find(GAITD_LAYER_BACKEND, config_.backend, &error);
+  const auto path = directory_.find(GAITD_LAYER_BACKEND, config_.backend, &error);
   if (!path) {
     spdlog::error("{}", error);
     return false;
@@ -389,8 +389,16 @@ void Application::add_age(nlohmann::json* status) const {
 }
 
 void Application::prepare_swaps() {
+  std::vector<fs::path> folders = directory_.roots();
+  folders.insert(folders.end(), config_.plugin_folders.begin(), config_.plugin_folders.end());
+  // Who starts a simulation for himself may run there what he wants; a service loads what its
+  // administrator has allowed.
+  const bool any_file = truth_ && std::getenv("NOTIFY_SOCKET") == nullptr;
   SwapService::Parts parts{.model = &robot_->model,
-                           .plugin_folders = paths_.plugin_folders(),
+                           .directory = &directory_,
+                           .folders = LibraryFolders(folders),
+                           .any_file_for_clients = any_file,
+                           .any_file_for_scenarios = any_file,
                            .settings = &settings_,
                            .parameters = &parameters_,
                            .telemetry = telemetry_.get(),
@@ -436,7 +444,7 @@ bool Application::start_server() {
     for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
       active[std::string(layer_name(layer))] = swaps_->variant(layer);
     }
-    return plugin_list_json(PluginDirectory(paths_.plugin_folders()).list(), active);
+    return plugin_list_json(directory_.list(), active);
   });
   ServerOptions options;
   options.socket_path = config_.socket;

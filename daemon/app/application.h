@@ -79,6 +79,7 @@ class Application {
 
   const Options options_;
   Paths paths_;
+  const PluginDirectory directory_;
   Settings settings_;
   DaemonConfig config_;
   std::optional<Robot> robot_;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/config/daemon_config.h"
 
+#include <filesystem>
 #include <memory>
 #include <span>
+#include <system_error>
 
 #include "daemon/config/yaml_reader.h"
 
@@ -15,6 +17,7 @@ constexpr std::array<std::string_view, 3> kProfiles = {"simulation", "hardware",
 constexpr std::array<std::string_view, 3> kOverrunPolicies = {"skip", "catch_up", "stop"};
 constexpr std::array<std::string_view, 2> kCompressions = {"none", "zstd"};
 constexpr int kMaxProcessor = 1023;
+constexpr std::size_t kMaxPluginFolders = 100;
 
 // One key at a time out of the settings, with the checks of MapReader; what is not set or does not
 // fit leaves the default.
@@ -93,6 +96,21 @@ void read_log(SettingReader* reader, Issues* issues, LogConfig* log) {
   reader->integer("log.keep", 0, 100000, &log->keep);
 }
 
+void read_plugin_folders(SettingReader* reader, Settings* settings, Issues* issues,
+                         std::vector<std::string>* folders) {
+  constexpr const char* kKey = "plugins.folders";
+  settings->reserve(kKey);
+  for (const NodePtr& item : reader->list(kKey, kMaxPluginFolders)) {
+    std::error_code error;
+    if (item->text.starts_with('/') && std::filesystem::is_directory(item->text, error)) {
+      folders->push_back(item->text);
+    } else {
+      issues->add(item->where, kKey, "absolute paths of folders", describe(*item),
+                  "make the folder, or leave it out");
+    }
+  }
+}
+
 }  // namespace
 
 bool load_config_file(const std::string& file, Settings* settings, Issues* issues) {
@@ -130,6 +148,7 @@ DaemonConfig read_daemon_config(Settings* settings, Issues* issues) {
   read_realtime(&reader, issues, &config.realtime);
   read_log(&reader, issues, &config.log);
   reader.text("socket", true, &config.socket);
+  read_plugin_folders(&reader, settings, issues, &config.plugin_folders);
   return config;
 }
 

@@ -29,7 +29,7 @@ struct RealtimeConfig {
   int priority = 80;          // SCHED_FIFO, 1..99
   std::vector<int> affinity;  // processors; empty: any
   bool lock_memory = true;
-  bool require = false;                            // --require-rt: refuse to run degraded
+  bool require = false;  // --require-rt: refuse to run degraded
   OverrunPolicy overrun = OverrunPolicy::kSkip;
   double overrun_run = 0.01;  // s
 };
@@ -52,11 +52,13 @@ struct DaemonConfig {
   int clock = GAITD_CLOCK_REALTIME;
   double period = 0.001;  // s
   Profile profile = Profile::kSimulation;
-  std::array<std::string, GAITD_LAYER_COUNT> variants = {
-      "kinematic_inertial", "heel_to_toe", "icp_qp", "icp_criteria", "nullspace_qp"};
+  std::array<std::string, GAITD_LAYER_COUNT> variants = {"kinematic_inertial", "heel_to_toe",
+                                                         "icp_qp", "icp_criteria", "nullspace_qp"};
   RealtimeConfig realtime;
   LogConfig log;
   std::string socket;  // "": the default place for the user
+  // From where plugin.swap may load a file by its path, besides the installed plugin folders.
+  std::vector<std::string> plugin_folders;
 };
 
 // Puts a gaitd.yaml (schema gaitd.config/1) into the settings. False when it cannot be read.

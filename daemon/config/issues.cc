@@ -93,6 +93,8 @@ std::string closest_name(std::string_view name, const std::vector<std::string>& 
   std::string result;
   for (const std::string& candidate : candidates) {
     if (candidate.size() > kLongest) continue;
+    const std::size_t longer = std::max(candidate.size(), name.size());
+    if (longer - std::min(candidate.size(), name.size()) > allowed) continue;  // at least that far
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < best) {
       best = distance;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "gaitd/sdk/bounds.h"
+
 namespace gaitd::daemon {
 namespace {
 
@@ -29,7 +31,7 @@ std::string printable(std::string_view text) {
 NodePtr from_json_at(const nlohmann::json& json, const Location& where, int depth) {
   auto node = std::make_shared<Node>();
   node->where = where;
-  if (depth > kMaxNesting) return node;
+  if (depth > bounds::kYamlDepth) return node;
   switch (json.type()) {
     case nlohmann::json::value_t::object:
       node->kind = NodeKind::kMap;

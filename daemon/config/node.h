@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iosfwd>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -38,16 +39,13 @@ struct Node {
   const Entry* find(std::string_view key) const;
 };
 
-// Limits of what is read at all, against mistakes and malice.
-inline constexpr std::size_t kMaxFileSize = 4u << 20;  // bytes
-inline constexpr int kMaxNesting = 32;
-inline constexpr std::size_t kMaxNodes = 200000;  // with every alias expanded
-
 // Reads one YAML document. Reports to `issues` and returns null when the text is not YAML, is
-// larger or deeper than allowed, has several documents, or has aliases that expand beyond the
-// limit. Duplicate keys are reported and the first one kept. Never throws.
+// beyond one of the bounds of gaitd/sdk/bounds.h, or has several documents. Duplicate keys are
+// reported and the first one kept. Never throws.
 NodePtr parse_yaml(std::string_view text, const std::string& name, Issues* issues);
 NodePtr load_yaml_file(const std::string& file, Issues* issues);
+// From standard input; `name` is what the issues call it.
+NodePtr read_yaml(std::istream& in, const std::string& name, Issues* issues);
 
 // From a JSON value; `where` becomes the place of every node.
 NodePtr from_json(const nlohmann::json& json, const Location& where);

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "daemon/config/yaml_reader.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -89,6 +91,16 @@ void Settings::set_leaves(SettingSource source, const std::string& key, const No
     issues->add(value->where, key, "a value", "nothing", "write one or remove the key");
     return;
   }
+  const bool room = values_.size() < bounds::kSettings || values_.contains(key);
+  if (key.size() > bounds::kYamlKey || !room) {
+    // Once is enough.
+    if (std::exchange(full_, true)) return;
+    issues->add_text(value->where, key.substr(0, bounds::kYamlKey),
+                     "expected at most " + std::to_string(bounds::kSettings) +
+                         " settings with keys of at most " + std::to_string(bounds::kYamlKey) +
+                         " characters, got more; remove what is none");
+    return;
+  }
   set(source, key, value);
 }
 
@@ -151,6 +163,8 @@ NodePtr Settings::subtree(std::string_view scope) {
 
 void Settings::declare(std::string key) { known_.insert(std::move(key)); }
 
+void Settings::reserve(std::string key) { reserved_.insert(std::move(key)); }
+
 void Settings::declare_variant(std::string_view scope, std::string_view variant) {
   variants_.insert(std::string(scope) + "/" + std::string(variant));
 }
@@ -158,11 +172,24 @@ void Settings::declare_variant(std::string_view scope, std::string_view variant)
 void Settings::report_unknown(Issues* issues) const {
   const std::vector<std::string> known(known_.begin(), known_.end());
   const std::vector<std::string> variants(variants_.begin(), variants_.end());
+  constexpr int kMaxSuggestions = 20;  // they take time, and nobody reads thousands
+  int unknown = 0;
   for (const auto& [key, sources] : values_) {
+    for (const auto& [source, value] : sources) {
+      const bool own = source == SettingSource::kConfig || source == SettingSource::kCommandLine;
+      if (own || !reserved_.contains(key)) continue;
+      issues->add_text(value->where, key,
+                       "only gaitd.yaml and the command line may set this key; remove it here");
+    }
     if (known_.contains(key)) continue;
     const std::string variant = variant_of(key);
     // Of a variant that is there and not selected: it waits for being selected.
     if (variants_.contains(variant) && !selected_.contains(variant)) continue;
+    if (++unknown > kMaxSuggestions) {
+      for (const auto& [source, value] : sources)
+        issues->add_text(value->where, key, "unknown key");
+      continue;
+    }
     const bool strange = !variant.empty() && !variants_.contains(variant);
     const std::string advice = strange ? "no such variant; " + suggestion(variant, variants)
                                        : "unknown key; " + nearest_known(key, known);

@@ -51,11 +51,15 @@ class Settings {
 
   // Makes keys known that no table declares, for keys that are read elsewhere or later.
   void declare(std::string key);
+  // Says that only the configuration of gaitd and its command line may set this key, for what no
+  // robot.yaml and no scenario may decide. report_unknown reports the others.
+  void reserve(std::string key);
   // Says that there is such a variant: its "scope/variant.name" are then acceptable although it is
   // not selected. To be called for every variant that is installed.
   void declare_variant(std::string_view scope, std::string_view variant);
 
-  // Reports every key that is set and that nobody knows, with its place and the nearest known key.
+  // Reports every key that is set and that nobody knows, with its place and the nearest known key,
+  // and every reserved one that somebody else has set.
   void report_unknown(Issues* issues) const;
 
   // Every key that was found, resolved or declared.
@@ -75,8 +79,10 @@ class Settings {
 
   std::map<std::string, Sources, std::less<>> values_;
   std::set<std::string, std::less<>> known_;
+  std::set<std::string, std::less<>> reserved_;
   std::set<std::string, std::less<>> variants_;  // "scope/variant"
   std::set<std::string, std::less<>> selected_;  // those that were resolved
+  bool full_ = false;                            // that has been said
 };
 
 // Reads a value as its declaration wants it (booleans as 0 and 1). Returns "" and sets `result`, or

@@ -9,11 +9,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <istream>
 #include <map>
 #include <sstream>
+#include <unordered_map>
 
 #include "daemon/config/node.h"
 #include "daemon/config/utf8.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -72,6 +75,7 @@ class TreeBuilder : public YAML::EventHandler {
     bool drop_value = false;  // of a duplicate key
     std::string key;
     Location key_where;
+    std::unordered_map<std::string, int> lines;  // of the keys of a map
   };
   struct Anchored {
     NodePtr node;
@@ -92,8 +96,8 @@ class TreeBuilder : public YAML::EventHandler {
 
   void count(const YAML::Mark& mark, std::size_t nodes) {
     count_ += nodes;
-    if (count_ > kMaxNodes) {
-      give_up(mark, "expected at most " + std::to_string(kMaxNodes) +
+    if (count_ > bounds::kYamlValues) {
+      give_up(mark, "expected at most " + std::to_string(bounds::kYamlValues) +
                         " values with every alias expanded, got more; split or shorten the file");
     }
   }
@@ -114,8 +118,8 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void open(NodeKind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
-    if (static_cast<int>(stack_.size()) >= kMaxNesting) {
-      give_up(mark, "expected at most " + std::to_string(kMaxNesting) +
+    if (static_cast<int>(stack_.size()) >= bounds::kYamlDepth) {
+      give_up(mark, "expected at most " + std::to_string(bounds::kYamlDepth) +
                         " levels of nesting, got more; flatten the file");
     }
     if (!tag.empty() && tag != "?" && tag != "!") refuse_tag(mark, tag);
@@ -162,12 +166,19 @@ class TreeBuilder : public YAML::EventHandler {
       issues_->add(frame->key_where, "", "a key of one word", describe(node),
                    "write the key as plain text");
       frame->drop_value = true;
-    } else if (const Node::Entry* first = frame->node->find(frame->key)) {
-      issues_->add_text(frame->key_where, frame->key,
-                        "the key is there twice, first in line " +
-                            std::to_string(first->where.line) + "; remove one of the two");
-      frame->drop_value = true;
+      return;
     }
+    if (frame->key.size() > bounds::kYamlKey) {
+      give_up(mark, "expected a key of at most " + std::to_string(bounds::kYamlKey) +
+                        " characters, got " + std::to_string(frame->key.size()) +
+                        "; write a ': ' after the key");
+    }
+    const auto [first, is_new] = frame->lines.try_emplace(frame->key, frame->key_where.line);
+    if (is_new) return;
+    issues_->add_text(frame->key_where, frame->key,
+                      "the key is there twice, first in line " + std::to_string(first->second) +
+                          "; remove one of the two");
+    frame->drop_value = true;
   }
 
   std::string name_;
@@ -178,12 +189,16 @@ class TreeBuilder : public YAML::EventHandler {
   std::size_t count_ = 0;
 };
 
+void refuse_size(const std::string& name, std::uintmax_t size, Issues* issues) {
+  issues->add({name, 0}, "", "at most " + std::to_string(bounds::kYamlBytes) + " bytes",
+              std::to_string(size), "split the file");
+}
+
 }  // namespace
 
 NodePtr parse_yaml(std::string_view text, const std::string& name, Issues* issues) {
-  if (text.size() > kMaxFileSize) {
-    issues->add({name, 0}, "", "at most " + std::to_string(kMaxFileSize) + " bytes",
-                std::to_string(text.size()), "split the file");
+  if (text.size() > bounds::kYamlBytes) {
+    refuse_size(name, text.size(), issues);
     return nullptr;
   }
   // The parser would take some of it for the end of the file.
@@ -234,19 +249,27 @@ NodePtr load_yaml_file(const std::string& file, Issues* issues) {
     return nullptr;
   }
   const auto size = std::filesystem::file_size(file, error);
-  if (!error && size > kMaxFileSize) {
-    issues->add({file, 0}, "", "at most " + std::to_string(kMaxFileSize) + " bytes",
-                std::to_string(size), "split the file");
+  if (!error && size > bounds::kYamlBytes) {
+    refuse_size(file, size, issues);
     return nullptr;
   }
   std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
   if (!stream) {
     issues->add_text({file, 0}, "", "cannot be read; check its permissions");
     return nullptr;
   }
-  return parse_yaml(text.str(), file, issues);
+  return read_yaml(stream, file, issues);
+}
+
+NodePtr read_yaml(std::istream& in, const std::string& name, Issues* issues) {
+  std::string text(bounds::kYamlBytes + 1, '\0');  // one more tells that there is more
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (in.bad()) {
+    issues->add_text({name, 0}, "", "cannot be read to its end; try again");
+    return nullptr;
+  }
+  return parse_yaml(text, name, issues);
 }
 
 }  // namespace gaitd::daemon

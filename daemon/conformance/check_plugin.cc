@@ -171,7 +171,10 @@ PluginReport check_plugin(const std::filesystem::path& file, const GaitdModel& m
   const auto run = [&](const char* group) {
     const int before = report.count(Verdict::kFail);
     const std::string path = std::filesystem::absolute(file).string();
-    collect(run_child({options.executable, {kCheckArgument, group, path}, &model, options.timeout}),
+    collect(run_child({.executable = options.executable,
+                       .arguments = {kCheckArgument, group, path},
+                       .model = &model,
+                       .timeout = options.timeout}),
             report);
     return report.count(Verdict::kFail) == before;
   };

@@ -41,7 +41,9 @@ ControlLoop::ControlLoop(const LoopOptions& options, const GaitdModel& model, Pi
       swaps_(swaps),
       watch_(watch),
       estop_(estop),
-      command_(std::make_unique<Command>()) {}
+      command_(std::make_unique<Command>()) {
+  if (swaps_ != nullptr) swaps_->publish(pipeline_->swap_right());
+}
 
 LoopReport ControlLoop::run() {
   const FlushDenormals flush;
@@ -223,16 +225,23 @@ CommandReply ControlLoop::request_swap(const Command& command) {
 // simulated time stands still while a layer of the scenario is loaded, so that its tick is known.
 void ControlLoop::take_swaps() {
   if (swaps_ == nullptr) return;
+  swaps_->publish(pipeline_->swap_right());
+  tell_swaps();
   SwapOrder order;
   do {
     while (swaps_->next_order(order)) {
       if (order.from_scenario && swaps_awaited_ > 0) --swaps_awaited_;
       if (order.layer >= 0) pipeline_->begin_swap(order);
+      tell_swaps();  // after each: the journal of a layer holds what one makes
     }
     if (swaps_awaited_ == 0) break;
     const timespec pause{0, 200'000};
     nanosleep(&pause, nullptr);
   } while (!stop_.load(std::memory_order_relaxed));
+  tell_swaps();
+}
+
+void ControlLoop::tell_swaps() {
   SwapReport report;
   while (pipeline_->take_swap_report(&report)) {
     report.tick = tick_;

@@ -54,6 +54,7 @@ class ControlLoop {
   void take_estop();
   void take_commands();
   void take_swaps();
+  void tell_swaps();
   void execute(const Command& command, bool from_client);
   static CommandReply refuse_outdated(const Command& command);
   CommandReply simulate(const Command& command);

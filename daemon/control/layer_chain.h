@@ -58,6 +58,7 @@ class LayerChain {
   void take_too_long(int layer);  // replay, see LayerSlot
   bool take_report(SwapReport* report);
   SwapRules& rules() { return rules_; }
+  const SwapRules& rules() const { return rules_; }
 
  private:
   // Calls `function` with the slot of a layer.

@@ -122,15 +122,17 @@ CommandReply Pipeline::set_parameter(const Command& command) {
   return reply;
 }
 
-void Pipeline::begin_swap(const SwapOrder& order) {
+SwapRight Pipeline::swap_right() const {
   const SwapRules& rules = layers_.rules();
+  if (rules.simulation) return SwapRight::kAllowed;
+  if (!rules.on_hardware) return SwapRight::kNotOnHardware;
   const bool at_rest =
       !safety_.controlled() || (safety_.state() == SafetyState::kStanding && !gait_.walking());
-  if (!rules.simulation && !(rules.on_hardware && at_rest)) {
-    return layers_.refuse_swap(order, rules.on_hardware
-                                          ? "on hardware a layer is only swapped while standing"
-                                          : "swap.on_hardware is false");
-  }
+  return at_rest ? SwapRight::kAllowed : SwapRight::kNotAtRest;
+}
+
+void Pipeline::begin_swap(const SwapOrder& order) {
+  if (const char* why = swap_refusal(swap_right())) return layers_.refuse_swap(order, why);
   layers_.begin_swap(order, safety_.controlled());
 }
 

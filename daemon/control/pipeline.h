@@ -23,6 +23,7 @@ class Pipeline {
 
   // Between ticks.
   CommandReply execute(const Command& command);
+  SwapRight swap_right() const;
   // The order becomes the pipeline's; what comes of it is in the reports.
   void begin_swap(const SwapOrder& order);
   // What happened to swaps since the last tick, in order, each once.

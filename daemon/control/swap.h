@@ -53,6 +53,11 @@ struct SwapRules {
   bool wall_time_acts = false;  // the realtime clock
   double period = 0.001;        // s, a process() longer than this is too slow
 };
+// Whether a swap may begin.
+enum class SwapRight { kNotStarted, kAllowed, kNotOnHardware, kNotAtRest };
+// Why it may not; null if it may.
+const char* swap_refusal(SwapRight right);
+
 // A parameter of the scope swap.
 void set_swap_rule(int index, double value, SwapRules* rules);
 

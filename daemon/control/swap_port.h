@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
 
@@ -24,11 +25,15 @@ class SwapPort {
   bool request(const SwapRequest& request) { return requests_.push(request); }
   bool next_order(SwapOrder& order) { return orders_.pop(order); }
   bool report(const SwapReport& report) { return reports_.push(report); }
+  // What holds from now on.
+  void publish(SwapRight right) { right_.store(right, std::memory_order_relaxed); }
 
   // ---- The thread that loads.
   bool next_request(SwapRequest& request) { return requests_.pop(request); }
   bool order(const SwapOrder& order) { return orders_.push(order); }
   bool next_report(SwapReport& report) { return reports_.pop(report); }
+  // To be asked before anything of a library is touched. The control thread asks again.
+  SwapRight right() const { return right_.load(std::memory_order_relaxed); }
 
  private:
   template <class T>
@@ -36,6 +41,7 @@ class SwapPort {
   Ring<SwapRequest> requests_;
   Ring<SwapOrder> orders_;
   Ring<SwapReport> reports_;
+  std::atomic<SwapRight> right_ = SwapRight::kNotStarted;
 };
 
 }  // namespace gaitd::daemon

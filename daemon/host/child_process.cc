@@ -9,12 +9,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 
 #include "daemon/host/child_side.h"
+#include "gaitd/sdk/bounds.h"
 
 extern char** environ;
 
@@ -51,15 +53,17 @@ bool share_model(const GaitdModel& model, Fd* fd) {
          lseek(fd->get(), 0, SEEK_SET) == 0;
 }
 
-int spawn_child(const ChildRequest& request, int model_fd, int report_fd, pid_t* pid) {
+int spawn_child(const ChildRequest& request, int model_fd, int report_fd, int library_fd,
+                pid_t* pid) {
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
   posix_spawn_file_actions_init(&actions);
   posix_spawnattr_init(&attributes);
-  // dup2 to the same number would leave close-on-exec set; both sources lie above the targets,
-  // since the caller moved them there.
+  // dup2 to the same number would leave close-on-exec set; all sources lie above the targets, since
+  // the caller moved them there.
   posix_spawn_file_actions_adddup2(&actions, model_fd, kChildModelFd);
   posix_spawn_file_actions_adddup2(&actions, report_fd, kChildReportFd);
+  if (library_fd >= 0) posix_spawn_file_actions_adddup2(&actions, library_fd, kChildLibraryFd);
   sigset_t none;
   sigset_t all;
   sigemptyset(&none);
@@ -90,36 +94,48 @@ int spawn_child(const ChildRequest& request, int model_fd, int report_fd, pid_t*
   return error;
 }
 
-// Reads what the child reports until it closes its end. False if the time ran out.
-bool read_report(int fd, Clock::time_point deadline, std::string* report) {
-  constexpr std::size_t kMaximumReport = 64 * 1024;
-  for (;;) {
+// How long the child may run.
+struct Patience {
+  Clock::time_point deadline;
+  const std::atomic<bool>* cancel;
+
+  bool cancelled() const { return cancel != nullptr && *cancel; }
+  // ms until somebody has to look again; 0: no longer.
+  int left() const {
+    constexpr long kLook = 50;
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    if (left <= 0) return false;
+    return cancelled() ? 0 : static_cast<int>(std::clamp(static_cast<long>(left), 0L, kLook));
+  }
+};
+
+// Reads what the child reports until it closes its end or may run no longer.
+void read_report(int fd, const Patience& patience, std::string* report) {
+  while (const int left = patience.left()) {
     pollfd entry{fd, POLLIN, 0};
-    const int ready = poll(&entry, 1, static_cast<int>(left));
-    if (ready < 0 && errno == EINTR) continue;
-    if (ready <= 0) return false;
+    const int ready = poll(&entry, 1, left);
+    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
+    if (ready < 0) return;
     char buffer[4096];
     const ssize_t n = read(fd, buffer, sizeof(buffer));
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return true;
-    if (report->size() < kMaximumReport) report->append(buffer, static_cast<std::size_t>(n));
+    if (n <= 0) return;
+    if (report->size() < bounds::kChildReportBytes) {
+      report->append(buffer, static_cast<std::size_t>(n));
+    }
   }
 }
 
-// Waits for the end of the child, which has until the deadline before it is killed.
-int wait_for_end(pid_t pid, Clock::time_point deadline, bool* killed) {
-  int status = 0;
-  *killed = false;
-  for (;;) {
-    const pid_t ended = waitpid(pid, &status, *killed ? 0 : WNOHANG);
-    if (ended == pid) return status;
-    if (ended < 0 && errno != EINTR) return 0;
-    if (ended == 0 && Clock::now() >= deadline) {
+// Waits for the end of the child, which is killed when it may run no longer.
+void wait_for_end(pid_t pid, const Patience& patience, ChildEnd* end) {
+  for (bool killed = false;;) {
+    const pid_t ended = waitpid(pid, &end->status, killed ? 0 : WNOHANG);
+    if (ended == pid || (ended < 0 && errno != EINTR)) return;
+    if (ended == 0 && patience.left() == 0) {
+      end->cancelled = patience.cancelled();
+      end->killed = !end->cancelled;
       kill(-pid, SIGKILL);
-      *killed = true;
+      killed = true;
     } else if (ended == 0) {
       usleep(1000);
     }
@@ -148,8 +164,10 @@ std::string ChildEnd::last(const std::string& key) const {
 
 std::string ChildEnd::abnormal_end() const {
   if (killed) return "hung: not done after " + std::to_string(timeout.count()) + " ms";
+  if (cancelled) return "was ended, since gaitd stops";
   if (WIFSIGNALED(status)) return "crashed with " + signal_name(WTERMSIG(status));
-  if (report.ends_with("\ndone\n") || !last("error ").empty()) return "";
+  const bool done = report.ends_with("\ndone\n") && WEXITSTATUS(status) == 0;
+  if (done || !last("error ").empty()) return "";
   return "ended the process with exit code " + std::to_string(WEXITSTATUS(status));
 }
 
@@ -163,13 +181,19 @@ ChildEnd run_child(const ChildRequest& request) {
   if (pipe2(ends, O_CLOEXEC) != 0) return no_child("pipe", errno);
   Fd report_read(ends[0]);
   Fd report_write(ends[1]);
-  const Fd high_model(fcntl(model_fd.get(), F_DUPFD_CLOEXEC, kChildReportFd + 1));
-  Fd high_report(fcntl(report_write.get(), F_DUPFD_CLOEXEC, kChildReportFd + 1));
-  if (high_model.get() < 0 || high_report.get() < 0) return no_child("dup", errno);
+  const auto high = [](int fd) { return fcntl(fd, F_DUPFD_CLOEXEC, kChildLibraryFd + 1); };
+  const Fd high_model(high(model_fd.get()));
+  Fd high_report(high(report_write.get()));
+  const Fd high_library(request.library_fd < 0 ? -1 : high(request.library_fd));
+  if (high_model.get() < 0 || high_report.get() < 0 ||
+      (request.library_fd >= 0 && high_library.get() < 0)) {
+    return no_child("dup", errno);
+  }
 
   pid_t pid = -1;
-  const Clock::time_point deadline = Clock::now() + request.timeout;
-  const int error = spawn_child(request, high_model.get(), high_report.get(), &pid);
+  const Patience patience{Clock::now() + request.timeout, request.cancel};
+  const int error =
+      spawn_child(request, high_model.get(), high_report.get(), high_library.get(), &pid);
   if (error != 0) return no_child("start of " + request.executable.string(), error);
   report_write.reset();
   high_report.reset();
@@ -177,8 +201,8 @@ ChildEnd run_child(const ChildRequest& request) {
   ChildEnd end;
   end.timeout = request.timeout;
   end.report = "\n";
-  read_report(report_read.get(), deadline, &end.report);
-  end.status = wait_for_end(pid, deadline, &end.killed);
+  read_report(report_read.get(), patience, &end.report);
+  wait_for_end(pid, patience, &end);
   return end;
 }
 

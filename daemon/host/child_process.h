@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <string>
@@ -15,20 +16,24 @@ struct ChildRequest {
   /// A program that takes the role of the child by its arguments, before main().
   std::filesystem::path executable = "/proc/self/exe";
   std::vector<std::string> arguments;
-  const GaitdModel* model = nullptr;         ///< handed to the child
-  std::chrono::milliseconds timeout{10000};  ///< wall time until it is killed
+  const GaitdModel* model = nullptr;          ///< handed to the child
+  int library_fd = -1;                        ///< handed to the child, if not negative
+  std::chrono::milliseconds timeout{10000};   ///< wall time until it is killed
+  const std::atomic<bool>* cancel = nullptr;  ///< true ends the child within 50 ms
 };
 
 struct ChildEnd {
   std::string start_error;  ///< why there was no child; empty if there was one
   std::string report;       ///< lines that the child wrote, after an empty one
   bool killed = false;      ///< at the end of its time
+  bool cancelled = false;   ///< before that, by the request
   int status = 0;           ///< of waitpid
   std::chrono::milliseconds timeout{0};
 
   /// The last line of the report that begins with `key`, without it.
   std::string last(const std::string& key) const;
-  /// A crash, a hang or an exit that the child did not announce, in words; else empty.
+  /// A crash, a hang or an exit that the child did not announce, with whatever code, in words; else
+  /// empty.
   std::string abnormal_end() const;
 };
 

@@ -37,21 +37,12 @@ std::unique_ptr<PluginLibrary> PluginLibrary::load(PluginFile file, const GaitdM
                                                    const ProbeOptions* probe_options, PluginLog log,
                                                    Refusal* refusal) {
   refusal->file = file.path.string();
-  const std::optional<StagedCopy> copy = StagedCopy::create(file, refusal);
-  if (!copy) return nullptr;
-  if (probe_options != nullptr && !probe(copy->path(), model, refusal, *probe_options)) {
-    return nullptr;
-  }
-  std::string error;
-  void* handle = open_library(copy->path().c_str(), &error);
-  if (handle == nullptr) {
-    refusal->add("dlopen", error, "every symbol resolved",
-                 "link what is missing into the plugin (-Wl,--no-undefined finds it)");
-    return nullptr;
-  }
-  const void* in_memory = dlsym(handle, GAITD_PLUGIN_SYMBOL);
-  const std::size_t compared = sizeof(GaitdPluginDescriptor);
-  if (in_memory == nullptr || std::memcmp(in_memory, &file.descriptor, compared) != 0) {
+  auto image = LibraryImage::map(file, model, probe_options, refusal);
+  if (image == nullptr) return nullptr;
+  const void* in_memory = dlsym(image->handle(), GAITD_PLUGIN_SYMBOL);
+  if (in_memory == nullptr ||
+      std::memcmp(in_memory, &file.descriptor, sizeof(file.descriptor)) != 0) {
+    LibraryImage::release(std::move(image));
     refusal->add("descriptor", "other content in memory than in the file",
                  "constant data without pointers", "export the plugin with the macro of the SDK");
     return nullptr;
@@ -63,16 +54,29 @@ std::unique_ptr<PluginLibrary> PluginLibrary::load(PluginFile file, const GaitdM
   library->hash_ = file.hash();
   library->name_ = std::string(layer_name(file.descriptor.layer)) + "/" + file.descriptor.id;
   library->generation_ = ++generations;
-  library->handle_ = handle;
+  library->image_ = std::move(image);
   library->log_ = std::move(log);
   library->host_ = {sizeof(GaitdHost), GAITD_ABI_MAJOR, library.get(), &forward_log};
   return library;
 }
 
+PluginLibrary::~PluginLibrary() {
+  if (descriptor_.layer == GAITD_LAYER_BACKEND) {
+    LibraryImage::keep(std::move(image_));
+  } else {
+    LibraryImage::release(std::move(image_));
+  }
+}
+
 std::unique_ptr<LoadedLayer> LoadedLayer::load(const Request& request, Refusal* refusal) {
   std::optional<PluginFile> file = read_plugin_file(request.path, request.layer, refusal);
-  if (!file) return nullptr;
-  const GaitdPluginDescriptor& descriptor = file->descriptor;
+  return file ? load(std::move(*file), request, refusal) : nullptr;
+}
+
+std::unique_ptr<LoadedLayer> LoadedLayer::load(PluginFile file, const Request& request,
+                                               Refusal* refusal) {
+  refusal->file = file.path.string();
+  const GaitdPluginDescriptor& descriptor = file.descriptor;
   const std::vector<double> parameters =
       request.parameters.empty() ? default_parameters(descriptor) : request.parameters;
   if (parameters.size() != descriptor.parameter_count) {
@@ -91,7 +95,7 @@ std::unique_ptr<LoadedLayer> LoadedLayer::load(const Request& request, Refusal* 
   if (!refusal->empty()) return nullptr;
 
   std::unique_ptr<PluginLibrary> library =
-      PluginLibrary::load(std::move(*file), *request.model,
+      PluginLibrary::load(std::move(file), *request.model,
                           request.probe ? &request.probe_options : nullptr, request.log, refusal);
   if (!library) return nullptr;
   std::string error;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "daemon/host/instance.h"
+#include "daemon/host/library_image.h"
 #include "daemon/host/plugin_file.h"
 #include "daemon/host/probe.h"
 #include "daemon/host/refusal.h"
@@ -24,22 +25,24 @@ namespace gaitd::daemon {
 /// calls a plugin function tagged [main].
 using PluginLog = std::function<void(int level, std::string_view plugin, std::string_view message)>;
 
-/// The library behind an instance. Once loaded it is never unloaded (retired with its last user):
-/// code may still be referenced from where no one looks, and a process swaps only a few times.
+/// The library behind an instance. That of a layer is unloaded with it; that of a backend stays,
+/// since nothing is known of the threads that talk to hardware.
 class PluginLibrary {
  public:
-  /// Stages a copy, probes it in a child process unless `probe_options` is null, loads it with all
-  /// symbols bound and compares the descriptor in memory with that of the file.
+  /// Maps it (see LibraryImage) and compares the descriptor in memory with that of the file.
   static std::unique_ptr<PluginLibrary> load(PluginFile file, const GaitdModel& model,
                                              const ProbeOptions* probe_options, PluginLog log,
                                              Refusal* refusal);
+  ~PluginLibrary();
+  PluginLibrary(const PluginLibrary&) = delete;
+  PluginLibrary& operator=(const PluginLibrary&) = delete;
 
   const GaitdPluginDescriptor& descriptor() const { return descriptor_; }
   const std::filesystem::path& path() const { return path_; }  ///< as asked for, not the copy
   const std::string& hash() const { return hash_; }            ///< see PluginFile::hash
   int generation() const { return generation_; }               ///< counts loads of this process
   const GaitdHost* host() const { return &host_; }
-  void* handle() const { return handle_; }  ///< of dlopen
+  void* handle() const { return image_->handle(); }  ///< of dlopen
 
  private:
   PluginLibrary() = default;
@@ -50,7 +53,7 @@ class PluginLibrary {
   std::string hash_;
   std::string name_;  // layer/variant
   int generation_ = 0;
-  void* handle_ = nullptr;
+  std::unique_ptr<LibraryImage> image_;
   PluginLog log_;
   GaitdHost host_{};
 };
@@ -69,8 +72,11 @@ class LoadedLayer {
   };
 
   /// Checks, probes, loads, creates, initialises and activates. Not on the real-time thread. On
-  /// refusal returns null and `refusal` says all reasons.
+  /// refusal returns null and `refusal` says all reasons; nothing of it stays in memory.
   static std::unique_ptr<LoadedLayer> load(const Request& request, Refusal* refusal);
+  /// The same with a file that was read before; the path of the request is not looked at.
+  static std::unique_ptr<LoadedLayer> load(PluginFile file, const Request& request,
+                                           Refusal* refusal);
   ~LoadedLayer();
   LoadedLayer(const LoadedLayer&) = delete;
   LoadedLayer& operator=(const LoadedLayer&) = delete;

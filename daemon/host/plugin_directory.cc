@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/host/plugin_directory.h"
 
+#include <sys/stat.h>
+#include <time.h>
+
+#include <cstdlib>
 #include <set>
 #include <system_error>
 
@@ -14,10 +18,6 @@ constexpr int kAllLayers[] = {GAITD_LAYER_STATE_ESTIMATOR,       GAITD_LAYER_ICP
                               GAITD_LAYER_STEP_ADJUSTER,         GAITD_LAYER_TOE_OFF,
                               GAITD_LAYER_WHOLE_BODY_CONTROLLER, GAITD_LAYER_BACKEND};
 
-bool is_path(const std::string& variant) {
-  return variant.find('/') != std::string::npos || variant.ends_with(".so");
-}
-
 std::optional<std::filesystem::path> find_in(const std::vector<std::filesystem::path>& roots,
                                              int layer, const std::string& variant) {
   std::error_code ignored;
@@ -28,7 +28,46 @@ std::optional<std::filesystem::path> find_in(const std::vector<std::filesystem::
   return std::nullopt;
 }
 
+// What tells a file from itself after a change.
+struct Stamp {
+  dev_t device = 0;
+  ino_t inode = 0;
+  off_t size = 0;
+  std::int64_t modified = 0;  // ns
+  std::int64_t changed = 0;   // ns
+
+  bool operator==(const Stamp&) const = default;
+};
+
+std::int64_t nanoseconds(const timespec& time) {
+  return std::int64_t{1000000000} * time.tv_sec + time.tv_nsec;
+}
+
+std::optional<Stamp> stamp_of(const std::filesystem::path& path) {
+  struct stat info {};
+  if (stat(path.c_str(), &info) != 0) return std::nullopt;
+  return Stamp{info.st_dev, info.st_ino, info.st_size, nanoseconds(info.st_mtim),
+               nanoseconds(info.st_ctim)};
+}
+
+// A file that has just been changed may change again under the same stamp: file systems count in
+// steps of up to 2 s.
+bool is_settled(const Stamp& stamp) {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return std::abs(nanoseconds(now) - stamp.changed) > 2'000'000'000;
+}
+
 }  // namespace
+
+struct PluginDirectory::Known {
+  Stamp stamp;
+  PluginEntry entry;
+};
+
+bool PluginDirectory::is_path(const std::string& variant) {
+  return variant.find('/') != std::string::npos || variant.ends_with(".so");
+}
 
 std::optional<std::filesystem::path> PluginDirectory::find(int layer, const std::string& variant,
                                                            std::string* error) const {
@@ -61,27 +100,43 @@ std::vector<std::string> PluginDirectory::variants(int layer) const {
   return {names.begin(), names.end()};
 }
 
+PluginEntry PluginDirectory::describe(const std::filesystem::path& path, int layer,
+                                      const std::string& variant) const {
+  PluginEntry entry;
+  entry.path = path;
+  entry.layer = layer;
+  entry.variant = variant;
+  ++files_read_;
+  if (const auto file = read_plugin_file(path, layer, &entry.refusal)) {
+    entry.descriptor = file->descriptor;
+    if (variant != file->descriptor.id) {
+      entry.descriptor.reset();
+      entry.refusal.add("id", file->descriptor.id, variant + ", as the file is called",
+                        "rename the file or the variant");
+    }
+  }
+  return entry;
+}
+
 std::vector<PluginEntry> PluginDirectory::list() const {
+  const std::scoped_lock lock(mutex_);
   std::vector<PluginEntry> entries;
+  std::map<std::string, std::shared_ptr<const Known>> there;  // what is gone is forgotten
   for (const int layer : kAllLayers) {
     for (const std::string& variant : variants(layer)) {
       const auto path = find_in(roots_, layer, variant);
-      if (!path) continue;
-      PluginEntry entry;
-      entry.path = *path;
-      entry.layer = layer;
-      entry.variant = variant;
-      if (const auto file = read_plugin_file(*path, layer, &entry.refusal)) {
-        entry.descriptor = file->descriptor;
-        if (variant != file->descriptor.id) {
-          entry.descriptor.reset();
-          entry.refusal.add("id", file->descriptor.id, variant + ", as the file is called",
-                            "rename the file or the variant");
-        }
+      const auto stamp = path ? stamp_of(*path) : std::nullopt;
+      if (!stamp) continue;
+      const auto before = known_.find(path->string());
+      auto known = before == known_.end() ? nullptr : before->second;
+      if (known == nullptr || known->stamp != *stamp) {
+        known = std::make_shared<Known>(Known{*stamp, describe(*path, layer, variant)});
       }
-      entries.push_back(std::move(entry));
+      entries.push_back(known->entry);
+      if (is_settled(*stamp)) there[path->string()] = std::move(known);
     }
   }
+  known_ = std::move(there);
   return entries;
 }
 

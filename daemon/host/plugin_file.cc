@@ -2,59 +2,82 @@
 #include "daemon/host/plugin_file.h"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
-#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <system_error>
+#include <utility>
 
 #include "daemon/host/elf_descriptor.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::daemon {
 namespace {
 
-constexpr std::uintmax_t kMaximumFileSize = 512u << 20;
+class Fd {
+ public:
+  explicit Fd(int fd) : fd_(fd) {}
+  ~Fd() {
+    if (fd_ >= 0) close(fd_);
+  }
+  Fd(const Fd&) = delete;
+  Fd& operator=(const Fd&) = delete;
+  int get() const { return fd_; }
 
+ private:
+  int fd_;
+};
+
+// Up to bytes->size() bytes from the beginning; how many there were, negative on an error.
+ssize_t read_all(int fd, std::vector<std::byte>* bytes) {
+  std::size_t done = 0;
+  while (done < bytes->size()) {
+    const ssize_t n =
+        pread(fd, bytes->data() + done, bytes->size() - done, static_cast<off_t>(done));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return n;
+    if (n == 0) break;
+    done += static_cast<std::size_t>(n);
+  }
+  return static_cast<ssize_t>(done);
+}
+
+// Looks at what was opened and not at the path, which may name something else by then. A FIFO or a
+// device is not waited for.
 bool read_bytes(const std::filesystem::path& path, std::vector<std::byte>* bytes,
                 Refusal* refusal) {
-  std::error_code error;
-  const bool regular = std::filesystem::is_regular_file(path, error);
-  const std::uintmax_t size = regular ? std::filesystem::file_size(path, error) : 0;
-  if (!regular || error) {
-    refusal->add("file", error ? error.message() : "something that is no regular file",
-                 "a readable shared library", "check the path");
+  const auto refuse = [refusal](const std::string& has, const char* remedy) {
+    refusal->add("file", has, "a readable shared library", remedy);
+    return false;
+  };
+  const Fd file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  struct stat info {};
+  if (file.get() < 0 || fstat(file.get(), &info) != 0) {
+    return refuse(std::strerror(errno), "check the path and its permissions");
+  }
+  if (!S_ISREG(info.st_mode)) return refuse("something that is no regular file", "check the path");
+  if (static_cast<std::uint64_t>(info.st_size) > bounds::kLibraryBytes) {
+    refusal->add("file", std::to_string(info.st_size) + " bytes",
+                 "at most " + std::to_string(bounds::kLibraryBytes), "check the path, or strip it");
     return false;
   }
-  if (size > kMaximumFileSize) {
-    refusal->add("file", std::to_string(size) + " bytes",
-                 "at most " + std::to_string(kMaximumFileSize), "check the path, or strip it");
-    return false;
-  }
-  bytes->resize(size);
-  std::ifstream in(path, std::ios::binary);
-  in.read(reinterpret_cast<char*>(bytes->data()), static_cast<std::streamsize>(size));
-  if (!in || in.gcount() != static_cast<std::streamsize>(size)) {
-    refusal->add("file", std::string("a read error: ") + std::strerror(errno),
-                 "a readable shared library", "check its permissions");
-    return false;
-  }
+  bytes->resize(static_cast<std::size_t>(info.st_size));
+  const ssize_t n = read_all(file.get(), bytes);
+  if (n < 0) return refuse(std::string("a read error: ") + std::strerror(errno), "check the disk");
+  if (n != info.st_size) return refuse("fewer bytes than its size", "wait until it is written");
   return true;
 }
 
-bool allows_execution(const std::filesystem::path& directory) {
-  struct statvfs info {};
-  return statvfs(directory.c_str(), &info) == 0 && (info.f_flag & ST_NOEXEC) == 0 &&
-         access(directory.c_str(), W_OK | X_OK) == 0;
-}
-
-std::filesystem::path staging_parent() {
-  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
-  if (runtime != nullptr && runtime[0] == '/' && allows_execution(runtime)) return runtime;
-  return "/tmp";
+// A kernel may demand to be told that a file in memory is to be executed (since 6.3).
+int executable_memory_file(const std::string& name) {
+#ifndef MFD_EXEC
+  constexpr unsigned MFD_EXEC = 0x10;
+#endif
+  constexpr unsigned kFlags = MFD_CLOEXEC | MFD_ALLOW_SEALING;
+  const int fd = memfd_create(name.c_str(), kFlags | MFD_EXEC);
+  return fd < 0 && errno == EINVAL ? memfd_create(name.c_str(), kFlags) : fd;
 }
 
 bool write_all(int fd, const std::vector<std::byte>& bytes) {
@@ -99,36 +122,37 @@ std::optional<PluginFile> read_plugin_file(const std::filesystem::path& path,
 }
 
 std::optional<StagedCopy> StagedCopy::create(const PluginFile& file, Refusal* refusal) {
-  std::string directory = (staging_parent() / "gaitd-plugin-XXXXXX").string();
-  if (mkdtemp(directory.data()) == nullptr) {
-    refusal->add("staging",
-                 std::string("a failed mkdtemp ") + directory + ": " + std::strerror(errno),
-                 "a directory for a private copy", "make $XDG_RUNTIME_DIR or /tmp writable");
+  const auto refuse = [&](const char* what) {
+    refusal->add("staging", std::string("a failed ") + what + ": " + std::strerror(errno),
+                 std::to_string(file.bytes.size()) + " bytes of memory and a file descriptor",
+                 "free memory or raise the limits of gaitd");
     return std::nullopt;
-  }
-  StagedCopy copy(std::filesystem::path(directory) / file.path.filename());
-  const int fd = open(copy.path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0700);
-  const bool written = fd >= 0 && write_all(fd, file.bytes);
-  const int error = errno;
-  if (fd >= 0) close(fd);
-  if (!written) {
-    refusal->add("staging",
-                 "a failed write to " + copy.path_.string() + ": " + std::strerror(error),
-                 std::to_string(file.bytes.size()) + " bytes of room", "free some space there");
-    return std::nullopt;
+  };
+  const int fd = executable_memory_file(file.path.filename().string());
+  if (fd < 0) return refuse("memfd_create");
+  StagedCopy copy(fd);
+  if (!write_all(fd, file.bytes)) return refuse("write to memory");
+  if (fcntl(fd, F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_GROW | F_SEAL_SHRINK | F_SEAL_SEAL) != 0) {
+    return refuse("seal");
   }
   return copy;
 }
 
-StagedCopy::StagedCopy(StagedCopy&& other) noexcept : path_(std::move(other.path_)) {
-  other.path_.clear();
-}
+StagedCopy::StagedCopy(StagedCopy&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
 
 StagedCopy::~StagedCopy() {
-  if (path_.empty()) return;
-  std::error_code ignored;
-  std::filesystem::remove(path_, ignored);
-  std::filesystem::remove(path_.parent_path(), ignored);
+  if (fd_ >= 0) close(fd_);
+}
+
+std::string StagedCopy::path() const { return "/proc/self/fd/" + std::to_string(fd_); }
+
+bool StagedCopy::holds(const std::vector<std::byte>& bytes) const {
+  struct stat info {};
+  if (fstat(fd_, &info) != 0 || static_cast<std::size_t>(info.st_size) != bytes.size()) {
+    return false;
+  }
+  std::vector<std::byte> mine(bytes.size());
+  return read_all(fd_, &mine) == info.st_size && mine == bytes;
 }
 
 }  // namespace gaitd::daemon

@@ -31,22 +31,24 @@ struct PluginFile {
 std::optional<PluginFile> read_plugin_file(const std::filesystem::path& path,
                                            std::optional<int> layer, Refusal* refusal);
 
-/// A copy of a library under a path that no dlopen of this process has seen: dlopen of a known path
-/// returns the code loaded before, even after the file was replaced. Goes away with its object; a
-/// library loaded from it stays, since its pages stay mapped.
+/// A copy of a library in memory, sealed: what was probed is what is loaded, and nothing of it can
+/// be left in a file system. Its path is its own as long as the object lives, and none that a
+/// dlopen of this process knows: of a known path dlopen returns the code loaded before, even after
+/// the file was replaced.
 class StagedCopy {
  public:
-  /// In a fresh directory below $XDG_RUNTIME_DIR or /tmp, whichever first allows execution.
   static std::optional<StagedCopy> create(const PluginFile& file, Refusal* refusal);
   StagedCopy(StagedCopy&& other) noexcept;
   StagedCopy& operator=(StagedCopy&&) = delete;
   ~StagedCopy();
 
-  const std::filesystem::path& path() const { return path_; }
+  int fd() const { return fd_; }
+  std::string path() const;  ///< for dlopen in this process
+  bool holds(const std::vector<std::byte>& bytes) const;
 
  private:
-  explicit StagedCopy(std::filesystem::path path) : path_(std::move(path)) {}
-  std::filesystem::path path_;
+  explicit StagedCopy(int fd) : fd_(fd) {}
+  int fd_;
 };
 
 }  // namespace gaitd::daemon

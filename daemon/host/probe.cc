@@ -5,8 +5,10 @@
 
 #include <cstring>
 #include <string>
+#include <string_view>
 
 #include "daemon/host/child_process.h"
+#include "daemon/host/child_side.h"
 #include "daemon/host/probe_child.h"
 
 namespace gaitd::daemon {
@@ -20,7 +22,9 @@ __attribute__((constructor)) void become_probe_child(int argc, char** argv, char
 void judge(const ChildEnd& end, Refusal* refusal) {
   const std::string step = end.last("step ");
   const std::string where = "probe in a child process, " + (step.empty() ? "start" : step);
-  const std::string error = end.last("error ");
+  std::string error = end.last("error ");
+  const std::string_view copy = kChildLibraryPath;
+  if (error.starts_with(copy)) error.replace(0, copy.size(), refusal->file);
   const std::string abnormal = end.abnormal_end();
   if (!abnormal.empty()) {
     refusal->add(where, abnormal, "an orderly end",
@@ -32,11 +36,14 @@ void judge(const ChildEnd& end, Refusal* refusal) {
 
 }  // namespace
 
-bool probe(const std::filesystem::path& library, const GaitdModel& model, Refusal* refusal,
-           const ProbeOptions& options) {
+bool probe(int library_fd, const GaitdModel& model, Refusal* refusal, const ProbeOptions& options) {
   const std::size_t before = refusal->reasons.size();
-  const ChildEnd end =
-      run_child({options.executable, {kProbeArgument, library.string()}, &model, options.timeout});
+  const ChildEnd end = run_child({.executable = options.executable,
+                                  .arguments = {kProbeArgument, kChildLibraryPath},
+                                  .model = &model,
+                                  .library_fd = library_fd,
+                                  .timeout = options.timeout,
+                                  .cancel = options.cancel});
   if (!end.start_error.empty()) {
     refusal->add("probe", end.start_error, "a child process",
                  "free file descriptors, memory or processes of this machine");

@@ -40,6 +40,8 @@ bool try_layer(void* library, const GaitdHost& host, const GaitdPluginDescriptor
   if (!deactivate_layer(instance, error)) return false;
   report_line("step destroy");
   instance.vtable->destroy(instance.self);
+  report_line("step unload");
+  dlclose(library);
   return true;
 }
 

@@ -100,6 +100,11 @@ bool Player::execute(const Event& event, std::string* error) {
 }
 
 bool Player::begin_tick(std::int64_t tick, std::string* error) {
+  const auto drop_reports = [this] {
+    SwapReport report;
+    while (robot_.pipeline().take_swap_report(&report)) delete report.retired;
+  };
+  drop_reports();
   const auto found = inputs_.find(tick);
   if (found != inputs_.end()) {
     const Inputs& inputs = found->second;
@@ -111,11 +116,10 @@ bool Player::begin_tick(std::int64_t tick, std::string* error) {
       SwapOrder order;
       if (!robot_.load_swap(swap, &order, error)) return false;
       if (order.layer >= 0) robot_.pipeline().begin_swap(order);
+      drop_reports();  // after each: the journal of a layer holds what one makes
     }
     for (const int layer : inputs.too_long) robot_.pipeline().layers().take_too_long(layer);
   }
-  SwapReport report;
-  while (robot_.pipeline().take_swap_report(&report)) delete report.retired;
   return true;
 }
 

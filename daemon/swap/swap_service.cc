@@ -8,6 +8,7 @@
 
 #include "daemon/host/layers.h"
 #include "daemon/host/plugin_file.h"
+#include "gaitd/sdk/bounds.h"
 #include "gaitd/sdk/layer_names.h"
 
 namespace gaitd::daemon {
@@ -28,8 +29,7 @@ RpcError invalid(const std::string& method, const std::string& what) {
 
 }  // namespace
 
-SwapService::SwapService(Parts parts)
-    : parts_(std::move(parts)), directory_(parts_.plugin_folders) {
+SwapService::SwapService(Parts parts) : parts_(std::move(parts)) {
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     names_[layer].in_use = parts_.in_use[layer];
   }
@@ -50,6 +50,8 @@ void SwapService::stop() {
   }
   wake_.notify_all();
   thread_.join();
+  SwapOrder order;
+  while (port_.next_order(order)) delete order.candidate;
 }
 
 std::string SwapService::variant(int layer) const {
@@ -78,10 +80,11 @@ void SwapService::add_methods(Methods* methods) {
                           (rollback ? "}" : ", \"to\": a variant or the path of a library}")));
           }
           Wanted wanted;
-          wanted.request = parts_.bridge->open(std::move(respond));
           wanted.layer = *layer;
           wanted.to = to;
           wanted.tick = parts_.telemetry->newest_tick();
+          if (auto error = admit(name, wanted)) return respond(std::move(*error));
+          wanted.request = parts_.bridge->open(std::move(respond));
           {
             const std::scoped_lock lock(mutex_);
             wanted_.push_back(std::move(wanted));
@@ -93,17 +96,53 @@ void SwapService::add_methods(Methods* methods) {
   add("plugin.rollback", true);
 }
 
+// Counts the request of a client until it is answered, or says why there is no room for it.
+std::optional<RpcError> SwapService::admit(const std::string& method, const Wanted& wanted) {
+  const std::scoped_lock lock(mutex_);
+  if (stopping_) return RpcError{rpc_code::kStopping, method + ": gaitd is stopping"};
+  int& of_layer = open_swaps_[wanted.layer];
+  if (!wanted.to.empty() && of_layer > 0) {
+    return RpcError{rpc_code::kBusy, method + ": busy: a swap of " +
+                                         std::string(layer_name(wanted.layer)) +
+                                         " is under way; wait until it is done"};
+  }
+  if (open_ >= bounds::kOpenSwaps) {
+    return RpcError{rpc_code::kBusy, method + ": busy: " + std::to_string(open_) +
+                                         " swaps are under way; wait until they are done"};
+  }
+  ++open_;
+  if (!wanted.to.empty()) ++of_layer;
+  return std::nullopt;
+}
+
+void SwapService::answer(const Wanted& wanted, RpcResult result) {
+  if (parts_.bridge == nullptr || wanted.from_scenario) return;
+  {
+    const std::scoped_lock lock(mutex_);
+    --open_;
+    if (!wanted.to.empty()) --open_swaps_[wanted.layer];
+  }
+  parts_.bridge->answer(wanted.request, std::move(result));
+}
+
 void SwapService::run() {
-  for (bool last = false;;) {
+  while (!stopping_) {
     Wanted wanted;
-    while (take_wanted(&wanted)) carry_out(wanted);
+    while (!stopping_ && take_wanted(&wanted)) carry_out(wanted);
     SwapReport report;
     while (port_.next_report(report)) follow(report);
     std::unique_lock lock(mutex_);
-    if (last) return;
-    last = stopping_;  // once more, for what came since
-    if (!last && wanted_.empty()) wake_.wait_for(lock, kPoll);
+    if (!stopping_ && wanted_.empty()) wake_.wait_for(lock, kPoll);
   }
+  drop_the_rest();
+}
+
+void SwapService::drop_the_rest() {
+  SwapReport report;
+  while (port_.next_report(report)) follow(report);
+  Wanted wanted;
+  const RpcError why{rpc_code::kStopping, "gaitd is stopping; the layer was not exchanged"};
+  while (take_wanted(&wanted)) answer(wanted, why);
 }
 
 bool SwapService::take_wanted(Wanted* wanted) {
@@ -125,11 +164,11 @@ void SwapService::carry_out(const Wanted& wanted) {
       .request = wanted.request, .layer = wanted.layer, .from_scenario = wanted.from_scenario};
   json what = {{"layer", layer_name(wanted.layer)}};
   std::string error;
-  if (!wanted.to.empty() && !load(wanted, &order, &what, &error)) {
-    order = {.layer = -1, .from_scenario = wanted.from_scenario};
-  }
-  if (error.empty()) under_way_[wanted.request] = {wanted, std::move(what)};
-  if (!port_.order(order)) {
+  const bool good = may_swap(&error) && (wanted.to.empty() || load(wanted, &order, &what, &error));
+  if (good) under_way_[wanted.request] = {wanted, std::move(what)};
+  // A scenario waits for what became of it.
+  if (!good) order = {.layer = -1, .from_scenario = wanted.from_scenario};
+  if ((good || wanted.from_scenario) && !port_.order(order)) {
     delete order.candidate;
     under_way_.erase(wanted.request);
     error = "too many swaps at once; try again later";
@@ -137,43 +176,66 @@ void SwapService::carry_out(const Wanted& wanted) {
   if (!error.empty()) refuse(wanted, error);
 }
 
+bool SwapService::may_swap(std::string* error) const {
+  const char* why = swap_refusal(port_.right());
+  if (why != nullptr) *error = why;
+  return why == nullptr;
+}
+
 // The values that the configuration gives it; for a variant that was in use before, those it had.
-std::vector<double> SwapService::values_for(int layer, const GaitdPluginDescriptor& d, int* table,
+std::vector<double> SwapService::values_for(int layer, const GaitdPluginDescriptor& d, int table,
                                             std::string* error) {
-  const std::span<const GaitdParameter> declared{d.parameters, d.parameter_count};
-  *table = parts_.parameters->find_table(layer, d.id, declared);
-  if (*table >= 0) return parts_.parameters->values(*table);
+  if (table >= 0) return parts_.parameters->values(table);
   Issues issues;
-  const auto values = parts_.settings->resolve(layer_name(layer), declared, &issues, d.id);
+  const auto values =
+      parts_.settings->resolve(layer_name(layer), {d.parameters, d.parameter_count}, &issues, d.id);
   if (!issues.ok()) *error = one_line(issues.error_text());
-  if (!error->empty() || declared.empty()) return values;
-  *table = parts_.parameters->add(layer, layer_name(layer), d.id, declared, values);
-  if (*table < 0) *error = "too many different tables of parameters; start gaitd again";
   return values;
+}
+
+// The library that is wanted, if it may be loaded.
+std::optional<std::filesystem::path> SwapService::find(const Wanted& wanted,
+                                                       std::string* error) const {
+  const bool any_file =
+      wanted.from_scenario ? parts_.any_file_for_scenarios : parts_.any_file_for_clients;
+  return PluginDirectory::is_path(wanted.to) && !any_file
+             ? parts_.folders.admit(wanted.to, error)
+             : parts_.directory->find(wanted.layer, wanted.to, error);
 }
 
 bool SwapService::load(const Wanted& wanted, SwapOrder* order, json* what, std::string* error) {
   const auto began = std::chrono::steady_clock::now();
-  const auto path = directory_.find(wanted.layer, wanted.to, error);
+  const auto path = find(wanted, error);
   if (!path) return false;
   Refusal refusal;
-  const auto file = read_plugin_file(*path, wanted.layer, &refusal);
+  auto file = read_plugin_file(*path, wanted.layer, &refusal);
   if (!file) {
     *error = one_line(refusal.text());
     return false;
   }
-  const GaitdPluginDescriptor& d = file->descriptor;
+  const GaitdPluginDescriptor d = file->descriptor;
+  const std::span<const GaitdParameter> declared{d.parameters, d.parameter_count};
   LoadedLayer::Request request;
-  request.path = *path;
   request.layer = wanted.layer;
   request.model = parts_.model;
-  request.parameters = values_for(wanted.layer, d, &order->table, error);
+  order->table = parts_.parameters->find_table(wanted.layer, d.id, declared);
+  request.parameters = values_for(wanted.layer, d, order->table, error);
+  request.probe_options.cancel = &stopping_;
   request.log = parts_.log;
   if (!error->empty()) return false;
-  auto layer = LoadedLayer::load(request, &refusal);
+  auto layer = LoadedLayer::load(std::move(*file), request, &refusal);
   if (layer == nullptr) {
     *error = one_line(refusal.text());
     return false;
+  }
+  // Only now, since there is room for so many and none is ever given back.
+  if (order->table < 0 && !declared.empty()) {
+    order->table = parts_.parameters->add(wanted.layer, layer_name(wanted.layer), d.id, declared,
+                                          request.parameters);
+    if (order->table < 0) {
+      *error = "too many different tables of parameters; start gaitd again";
+      return false;
+    }
   }
   const auto& words = parts_.words[wanted.layer];
   const auto word = std::find(words.begin(), words.end() - 1, d.id);
@@ -198,8 +260,7 @@ void SwapService::refuse(const Wanted& wanted, const std::string& why) {
                       {"accepted", false},
                       {"reason", why}};
   parts_.telemetry->record_event(EventKind::kCommand, wanted.tick, wanted.time, event.dump());
-  if (parts_.bridge == nullptr || wanted.from_scenario) return;
-  parts_.bridge->answer(wanted.request, RpcError{rpc_code::kRefused, why, {{"tick", wanted.tick}}});
+  answer(wanted, RpcError{rpc_code::kRefused, why, {{"tick", wanted.tick}}});
 }
 
 void SwapService::follow(const SwapReport& report) {
@@ -233,8 +294,9 @@ void SwapService::follow(const SwapReport& report) {
     }
   }
   if (report.step == SwapStep::kShadow || report.step == SwapStep::kSwitched) return;
-  finish(swap, report);
+  UnderWay over = std::move(swap);
   under_way_.erase(entry);
+  finish(over, report);
 }
 
 void SwapService::finish(UnderWay& swap, const SwapReport& report) {
@@ -258,7 +320,7 @@ void SwapService::finish(UnderWay& swap, const SwapReport& report) {
   result["note"] = std::string(layer_name(report.layer)) + " is " + variant(report.layer) +
                    (report.rollback ? " again" : " now");
   result["steps"] = swap.steps;
-  parts_.bridge->answer(swap.wanted.request, std::move(result));
+  answer(swap.wanted, std::move(result));
 }
 
 }  // namespace gaitd::daemon

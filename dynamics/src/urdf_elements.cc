@@ -24,9 +24,8 @@ class ElementReader {
   explicit ElementReader(XmlReader* xml) : xml_(*xml) {}
 
   UrdfElements read(const std::string& text) {
-    if (const int line = line_nested_too_deep(text); line > 0) {
-      xml_.add_error(line, "elements nested more than " + std::to_string(kMaxXmlNesting) +
-                               " deep; is this a URDF file?");
+    if (const auto excess = find_excess(text)) {
+      xml_.add_error(excess->line, excess->what + "; is this a URDF file?");
       return {};
     }
     TiXmlDocument document;

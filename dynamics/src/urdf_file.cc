@@ -4,16 +4,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "gaitd/dynamics/urdf.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::dynamics {
-namespace {
-
-constexpr std::uintmax_t kMaxFileSize = 16u << 20;  // bytes; robots with all their visuals have 1
-
-}  // namespace
 
 UrdfResult load_urdf(const std::string& path, const UrdfOptions& options) {
   UrdfResult result;
@@ -26,15 +21,18 @@ UrdfResult load_urdf(const std::string& path, const UrdfOptions& options) {
   if (!std::filesystem::exists(status)) return refuse("cannot be read (" + error.message() + ")");
   if (!std::filesystem::is_regular_file(status)) return refuse("cannot be read (not a file)");
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > kMaxFileSize) {
-    return refuse("has " + std::to_string(size) + " bytes, " + std::to_string(kMaxFileSize) +
+  const auto refuse_size = [&refuse](const std::string& has) {
+    return refuse("has " + has + " bytes, " + std::to_string(bounds::kUrdfBytes) +
                   " at most are read");
-  }
+  };
+  if (!error && size > bounds::kUrdfBytes) return refuse_size(std::to_string(size));
   std::ifstream file(path, std::ios::binary);
   if (!file) return refuse(std::string("cannot be read (") + std::strerror(errno) + ")");
-  std::stringstream text;
-  text << file.rdbuf();
-  return load_urdf_text(text.str(), path, options);
+  std::string text(bounds::kUrdfBytes + 1, '\0');  // one more tells that there is more
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > bounds::kUrdfBytes) return refuse_size("more");
+  return load_urdf_text(text, path, options);
 }
 
 }  // namespace gaitd::dynamics

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "gaitd/sdk/bounds.h"
+
 namespace gaitd::dynamics {
 
 std::string in_quotes(const std::string& name) {
@@ -23,8 +25,9 @@ std::string to_text(double value) {
 
 namespace {
 
-// The end of a tag that begins at `at`, which is a '>' outside of quotes, or of the text.
-std::size_t end_of_tag(std::string_view text, std::size_t at) {
+// The end of a tag that begins at `at`, which is a '>' outside of quotes, or of the text. Counts
+// its attributes.
+std::size_t end_of_tag(std::string_view text, std::size_t at, int* attributes) {
   char quote = 0;
   for (; at < text.size(); ++at) {
     const char c = text[at];
@@ -32,6 +35,8 @@ std::size_t end_of_tag(std::string_view text, std::size_t at) {
       if (c == quote) quote = 0;
     } else if (c == '"' || c == '\'') {
       quote = c;
+    } else if (c == '=') {
+      ++*attributes;
     } else if (c == '>') {
       break;
     }
@@ -46,8 +51,11 @@ bool is_name_start(char c) {
 
 }  // namespace
 
-int line_nested_too_deep(const std::string& text) {
+std::optional<XmlExcess> find_excess(const std::string& text) {
   const std::string_view all(text.c_str());  // TinyXML ends at a zero byte
+  const auto too_many = [&all](std::size_t at, const std::string& what) {
+    return XmlExcess{1 + static_cast<int>(std::count(all.begin(), all.begin() + at, '\n')), what};
+  };
   int depth = 0;
   std::size_t at = all.find('<');
   while (at != std::string_view::npos) {
@@ -58,10 +66,16 @@ int line_nested_too_deep(const std::string& text) {
     } else if (rest.starts_with("<![CDATA[")) {
       end = all.find("]]>", at);
     } else if (rest.size() > 1 && is_name_start(rest[1])) {
-      end = end_of_tag(all, at);
+      int attributes = 0;
+      end = end_of_tag(all, at, &attributes);
+      if (attributes > bounds::kUrdfAttributes) {
+        return too_many(at, "an element with more than " + std::to_string(bounds::kUrdfAttributes) +
+                                " attributes");
+      }
       const bool empty = end < all.size() && all[end - 1] == '/';
-      if (!empty && ++depth > kMaxXmlNesting) {
-        return 1 + static_cast<int>(std::count(all.begin(), all.begin() + at, '\n'));
+      if (!empty && ++depth > bounds::kUrdfDepth) {
+        return too_many(
+            at, "elements nested more than " + std::to_string(bounds::kUrdfDepth) + " deep");
       }
     } else {
       if (rest.starts_with("</")) --depth;
@@ -70,7 +84,7 @@ int line_nested_too_deep(const std::string& text) {
     if (end == std::string_view::npos) break;
     at = all.find('<', end);
   }
-  return 0;
+  return std::nullopt;
 }
 
 void XmlReader::add_error(int line, const std::string& what) {

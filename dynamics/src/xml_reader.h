@@ -5,20 +5,24 @@
 
 #include <tinyxml.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace gaitd::dynamics {
 
 std::string in_quotes(const std::string& name);  // 'name'
-std::string to_text(double value);            // short
+std::string to_text(double value);               // short
 
-// TinyXML calls itself for each level, so that a deep file would end the process.
-inline constexpr int kMaxXmlNesting = 100;
-
-// The line where elements are nested deeper than that, 0 if they nowhere are. To be asked before
-// TinyXML parses the text; where it reads on, it takes the text apart in the same way.
-int line_nested_too_deep(const std::string& text);
+// Where a text is beyond what TinyXML can bear: it calls itself for each level, so that a deep file
+// would end the process, and compares the attributes of an element pairwise.
+struct XmlExcess {
+  int line = 0;
+  std::string what;
+};
+// Nothing if it nowhere is. To be asked before TinyXML parses the text; where it reads on, it takes
+// the text apart in the same way.
+std::optional<XmlExcess> find_excess(const std::string& text);
 
 // Collects errors.
 class XmlReader {

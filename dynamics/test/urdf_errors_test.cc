@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gaitd/dynamics/urdf.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::dynamics {
 namespace {
@@ -61,8 +62,8 @@ TEST(UrdfErrors, NoFile) {
 TEST(UrdfErrors, FileTooLarge) {
   const std::string file = testing::TempDir() + "gaitd_large.urdf";
   std::ofstream(file) << "<robot name='r'>";
-  std::filesystem::resize_file(file, (16u << 20) + 1);  // a hole: nothing is written
-  expect_one(load_urdf(file).errors, file + ": ", {"has 16777217 bytes, 16777216 at most"});
+  std::filesystem::resize_file(file, bounds::kUrdfBytes + 1);  // a hole: nothing is written
+  expect_one(load_urdf(file).errors, file + ": ", {"has 4194305 bytes, 4194304 at most"});
   std::filesystem::remove(file);
 }
 
@@ -82,6 +83,17 @@ TEST(UrdfErrors, NestedTooDeep) {
   expect_one(errors_of(nested(1000, "<x y='/>'>\n", "")), "bad.urdf:102: ", {"more than 100 deep"});
   expect_one(errors_of(nested(1000, "<x y=\"</x>\">", "")), "bad.urdf:3: ", {"100 deep"});
   expect_one(errors_of(nested(1000, "<!x><x>", "")), "bad.urdf:3: ", {"100 deep"});
+}
+
+// TinyXML compares the attributes of an element pairwise: 400,000 of them took hours.
+TEST(UrdfErrors, TooManyAttributes) {
+  const auto with = [](int count) {
+    std::string attributes;
+    for (int i = 0; i < count; ++i) attributes += " a" + std::to_string(i) + "='='";
+    return link("a") + "<x" + attributes + "/>";
+  };
+  EXPECT_TRUE(errors_of(with(100)).empty());
+  expect_one(errors_of(with(400000)), "bad.urdf:3: ", {"more than 100 attributes"});
 }
 
 TEST(UrdfErrors, EntitiesAreNotExpanded) {

@@ -115,6 +115,13 @@ wait_for '(($(restarts) >= 1))' 300
 wait_state disarmed 300
 say "crash: restarted into disarmed"
 
+# An end that looks like a good one, as a library that calls exit() makes it.
+before=$(restarts)
+kill -TERM "$(show MainPID)"
+wait_for '(($(restarts) > before))' 300
+wait_state disarmed 300
+say "end with exit code 0: restarted into disarmed"
+
 # The control thread hangs with torque on the motors, the others go on: the watchdog.
 arm
 before=$(restarts)

@@ -96,6 +96,27 @@ TEST(DaemonConfig, ReportsEveryErrorWithItsLine) {
   }
 }
 
+TEST(DaemonConfig, TakesFoldersOfPluginsByTheirAbsolutePath) {
+  const TemporaryFolder folder;
+  const std::string there = folder.path().string();
+  const auto read = [](const std::string& value, Issues* issues) {
+    Settings settings;
+    settings.set_assignment("plugins.folders=" + value, issues);
+    const DaemonConfig config = read_daemon_config(&settings, issues);
+    settings.report_unknown(issues);
+    return config.plugin_folders;
+  };
+  Issues good;
+  EXPECT_EQ(read("[" + there + "]", &good), std::vector<std::string>{there});
+  EXPECT_TRUE(good.ok()) << good.error_text();
+  for (const char* bad :
+       {"[relative]", "[/nowhere/at/all]", "[1]", "[[/tmp]]", "/tmp", "[{a: b}]"}) {
+    Issues issues;
+    EXPECT_TRUE(read(bad, &issues).empty()) << bad;
+    EXPECT_FALSE(issues.ok()) << bad;
+  }
+}
+
 TEST(DaemonConfig, RefusesAFileOfAnotherSchema) {
   TemporaryFolder folder;
   for (const char* text : {"backend: simbody\n", "schema: gaitd.robot/1\n", "[1, 2]\n", ""}) {

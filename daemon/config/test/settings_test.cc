@@ -32,6 +32,25 @@ void set(Settings* settings, SettingSource source, const std::string& key, const
   settings->set(source, key, make_scalar(value, {"file.yaml", line}));
 }
 
+TEST(Settings, AReservedKeyIsForTheConfigurationAndTheCommandLine) {
+  Settings settings;
+  settings.reserve("plugins.folders");
+  settings.declare("plugins.folders");
+  set(&settings, SettingSource::kConfig, "plugins.folders", "x");
+  set(&settings, SettingSource::kCommandLine, "plugins.folders", "x");
+  Issues own;
+  settings.report_unknown(&own);
+  EXPECT_TRUE(own.ok()) << own.error_text();
+  set(&settings, SettingSource::kScenario, "plugins.folders", "x", 7);
+  set(&settings, SettingSource::kRobot, "plugins.folders", "x", 8);
+  Issues others;
+  settings.report_unknown(&others);
+  EXPECT_EQ(others.error_count(), 2u);
+  EXPECT_NE(others.error_text().find("file.yaml:7: plugins.folders: only gaitd.yaml and"),
+            std::string::npos)
+      << others.error_text();
+}
+
 TEST(Settings, LaterSourcesWinWhateverTheOrderOfSetting) {
   Settings settings;
   set(&settings, SettingSource::kCommandLine, "gait.swing_duration", "5");

@@ -3,10 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <time.h>
+
 #include <array>
 #include <cmath>
+#include <fstream>
 
+#include "daemon/config/daemon_config.h"
+#include "daemon/config/settings.h"
 #include "daemon/config/test/temporary_folder.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -170,8 +176,8 @@ TEST(YamlReader, AcceptsAnAliasOfALinesWorth) {
 
 TEST(YamlReader, RefusesLargeTextsSeveralDocumentsTagsAndOddKeys) {
   Issues large;
-  EXPECT_EQ(parse_yaml(std::string(kMaxFileSize + 1, ' '), "x.yaml", &large), nullptr);
-  EXPECT_TRUE(contains(large.error_text(), "4194304 bytes"));
+  EXPECT_EQ(parse_yaml(std::string(bounds::kYamlBytes + 1, ' '), "x.yaml", &large), nullptr);
+  EXPECT_TRUE(contains(large.error_text(), "1048576 bytes"));
 
   Issues several;
   EXPECT_EQ(parse_yaml("a: 1\n---\nb: 2\n", "x.yaml", &several), nullptr);
@@ -208,6 +214,111 @@ TEST(YamlReader, RefusesWhatIsNoText) {
   EXPECT_TRUE(issues.ok()) << issues.error_text();
 }
 
+std::string repeated(const std::string& unit, std::size_t bytes) {
+  std::string text;
+  while (text.size() + unit.size() <= bytes) text += unit;
+  return text;
+}
+
+// s of this thread's processor.
+double processor_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+// Whatever is in a file of the largest size. 4 MB of keys took 41 s while each was compared with
+// all others.
+TEST(YamlReader, ReadsOrRefusesAnythingSoon) {
+  const std::size_t bytes = bounds::kYamlBytes;
+  std::string keys;
+  for (int i = 0; keys.size() + 16 < bytes; ++i) keys += "k" + std::to_string(i) + ": 1\n";
+  std::string anchors;
+  for (int i = 0; anchors.size() + 20 < bytes; ++i) anchors += "- &a" + std::to_string(i) + " 1\n";
+  std::string deep;
+  for (int i = 0; deep.size() + 40 < bytes; ++i) deep += std::string(i % 30, ' ') + "a:\n";
+  const std::vector<std::string> texts = {
+      keys,
+      anchors,
+      deep,
+      repeated("a: 1\n", bytes),
+      repeated("- 1\n", bytes),
+      repeated("- - - -\n", bytes),
+      "[" + repeated("a,", bytes - 1),
+      "{" + repeated("a: b,", bytes - 1),
+      "{" + repeated("a,", bytes - 1),
+      repeated("[", bytes),
+      repeated("{a: ", bytes),
+      repeated("? ", bytes),
+      repeated("? a\n", bytes),
+      repeated("- ? a\n", bytes),
+      repeated("a", bytes),
+      repeated("a b\n", bytes),
+      repeated("a:a:", bytes),
+      repeated(": ", bytes),
+      repeated("\n", bytes),
+      repeated("# x\n", bytes),
+      repeated("&a ", bytes),
+      repeated("!t ", bytes),
+      repeated("*a ", bytes),
+      repeated("--- ", bytes),
+      repeated("%a\n", bytes),
+      repeated("a: |\n b\n", bytes),
+      "a: |\n" + repeated(" b\n", bytes - 10),
+      "a: >\n" + repeated(" b\n\n", bytes - 10),
+      "\"" + repeated("\\x41", bytes - 1),
+      "\"" + repeated("\n", bytes - 1),
+      "'" + repeated("''", bytes - 1),
+      "a: &a [x]\nb: [" + repeated("*a,", bytes - 20) + "]\n",
+  };
+  for (const std::string& text : texts) {
+    ASSERT_LE(text.size(), bytes);
+    const double began = processor_time();
+    Issues issues;
+    const NodePtr root = parse_yaml(text, "x.yaml", &issues);
+    EXPECT_TRUE(root || !issues.ok()) << text.substr(0, 20);
+    if (root && root->kind == NodeKind::kMap) {
+      Settings settings;
+      settings.set_tree(SettingSource::kConfig, *root, &issues);
+      read_daemon_config(&settings, &issues);
+      settings.report_unknown(&issues);
+      MapReader(root, "", &issues).finish();
+    }
+    issues.error_text();
+    EXPECT_LT(processor_time() - began, 3.0) << text.substr(0, 20);
+  }
+}
+
+TEST(YamlReader, RefusesLongKeysAndManySettings) {
+  Issues longer;
+  EXPECT_EQ(parse_yaml(std::string(bounds::kYamlKey + 1, 'k') + ": 1\n", "x.yaml", &longer),
+            nullptr);
+  EXPECT_TRUE(contains(longer.error_text(), "x.yaml:1: expected a key of at most 256 characters"))
+      << longer.error_text();
+  EXPECT_NE(parse_yaml(std::string(bounds::kYamlKey, 'k') + ": 1\n", "x.yaml", &longer), nullptr);
+
+  std::string many;
+  for (std::size_t i = 0; i <= bounds::kSettings; ++i) many += "k" + std::to_string(i) + ": 1\n";
+  Issues issues;
+  Settings settings;
+  settings.set_tree(SettingSource::kConfig, *parse_yaml(many, "x.yaml", &issues), &issues);
+  EXPECT_EQ(issues.error_count(), 1u);
+  EXPECT_TRUE(contains(issues.error_text(), "at most 2000 settings")) << issues.error_text();
+
+  std::string dots = "k";
+  while (dots.size() <= bounds::kYamlKey) dots += ".k";
+  Issues dotted;
+  Settings().set_assignment(dots + "=1", &dotted);
+  EXPECT_TRUE(contains(dotted.error_text(), "keys of at most 256 characters"));
+}
+
+TEST(YamlReader, RefusesAnEndlessStream) {
+  Issues issues;
+  std::ifstream zeros("/dev/zero");
+  EXPECT_EQ(read_yaml(zeros, "standard input", &issues), nullptr);
+  EXPECT_TRUE(contains(issues.error_text(), "standard input: expected at most 1048576 bytes"));
+}
+
 TEST(YamlReader, RefusesTabsAsIndentation) {
   Issues issues;
   EXPECT_EQ(parse_yaml("a:\n\tb: 1\n", "x.yaml", &issues), nullptr);
@@ -223,10 +334,10 @@ TEST(YamlReader, RefusesWhatIsNoFile) {
   EXPECT_EQ(load_yaml_file("/dev/zero", &device), nullptr);
   EXPECT_TRUE(contains(device.error_text(), "expected a file, got something else"));
   const std::string large = folder.write("large.yaml", "a: 1\n");
-  std::filesystem::resize_file(large, kMaxFileSize + 1);
+  std::filesystem::resize_file(large, bounds::kYamlBytes + 1);
   Issues size;
   EXPECT_EQ(load_yaml_file(large, &size), nullptr);
-  EXPECT_TRUE(contains(size.error_text(), "expected at most 4194304 bytes, got 4194305"));
+  EXPECT_TRUE(contains(size.error_text(), "expected at most 1048576 bytes, got 1048577"));
 }
 
 TEST(YamlReader, SaysThatAFileIsNotThere) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <random>
@@ -102,6 +103,12 @@ TEST(Descriptor, FilesThatAreNoLibraryAreRefused) {
   Refusal folder;
   EXPECT_FALSE(read_plugin_file(directory.path(), std::nullopt, &folder));
   EXPECT_NE(folder.text().find("no regular file"), std::string::npos) << folder.text();
+  // Nobody waits for a writer.
+  const auto fifo_path = directory.path() / "fifo.so";
+  ASSERT_EQ(mkfifo(fifo_path.c_str(), 0600), 0);
+  Refusal fifo;
+  EXPECT_FALSE(read_plugin_file(fifo_path, std::nullopt, &fifo));
+  EXPECT_NE(fifo.text().find("no regular file"), std::string::npos) << fifo.text();
 }
 
 TEST(Descriptor, AFileForAnotherMachineIsRefused) {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "daemon/host/layers.h"
 #include "daemon/host/plugin_directory.h"
@@ -54,6 +58,66 @@ TEST(Directory, ListsEveryLibraryWithoutLoadingIt) {
   EXPECT_NE(entry("wrong_major").refusal.text().find("abi"), std::string::npos);
   // Its descriptor says "good": a variant is found by the name of its file.
   EXPECT_FALSE(entry("crash_at_load").descriptor);
+}
+
+// Long enough after the last change of a file that it counts as settled.
+void wait_until_settled(const std::filesystem::path& file) {
+  struct stat info {};
+  ASSERT_EQ(stat(file.c_str(), &info), 0);
+  while (time(nullptr) < info.st_ctim.tv_sec + 4) usleep(100'000);
+}
+
+TEST(Directory, ReadsAFileAgainOnlyAfterItHasChanged) {
+  const TemporaryDirectory folder;
+  std::filesystem::create_directory(folder.path() / "toe_off");
+  const auto path = folder.path() / "toe_off" / "good.so";
+  std::filesystem::copy_file(plugin_path("good"), path);
+  wait_until_settled(path);
+  const PluginDirectory plugins({folder.path()});
+  for (int i = 0; i < 5; ++i) {
+    const auto entries = plugins.list();
+    ASSERT_EQ(entries.size(), 1u);
+    EXPECT_TRUE(entries[0].descriptor);
+  }
+  EXPECT_EQ(plugins.files_read(), 1u);
+
+  // Replaced by another one of the same size and time of modification.
+  const auto modified = std::filesystem::last_write_time(path);
+  std::vector<char> bytes = contents(path);
+  const std::string version = "1.2.3";
+  const auto at = std::search(bytes.begin(), bytes.end(), version.begin(), version.end());
+  ASSERT_NE(at, bytes.end());
+  *at = '7';
+  write_file(path, bytes);
+  std::filesystem::last_write_time(path, modified);
+  EXPECT_STREQ(plugins.list()[0].descriptor->version, "7.2.3");
+  EXPECT_EQ(plugins.files_read(), 2u);
+
+  std::filesystem::remove(path);
+  EXPECT_TRUE(plugins.list().empty());
+}
+
+// Two changes within the same step of the file system's clock have the same stamp.
+TEST(Directory, ReadsAFileThatHasJustChangedEachTime) {
+  const TemporaryDirectory folder;
+  std::filesystem::create_directory(folder.path() / "toe_off");
+  std::filesystem::copy_file(plugin_path("good"), folder.path() / "toe_off" / "good.so");
+  const PluginDirectory plugins({folder.path()});
+  plugins.list();
+  plugins.list();
+  EXPECT_GE(plugins.files_read(), 1u);
+  write_file(folder.path() / "toe_off" / "good.so", {'n', 'o'});
+  EXPECT_FALSE(plugins.list()[0].descriptor);
+}
+
+TEST(Directory, IsListedByTwoThreads) {
+  const PluginDirectory plugins({GAITD_TEST_PLUGINS});
+  const std::size_t count = plugins.list().size();
+  std::thread other([&] {
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(plugins.list().size(), count);
+  });
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(plugins.list().size(), count);
+  other.join();
 }
 
 TEST(Directory, IsShownAsJson) {

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
 
 #include "daemon/host/loaded_plugin.h"
 #include "daemon/host/test/test_files.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -17,11 +21,21 @@ class Loading : public ::testing::Test {
     request.model = model_.get();
     request.parameters = std::move(parameters);
     request.probe_options.timeout = std::chrono::milliseconds(timeout_ms_);
+    request.probe_options.cancel = &cancel_;
     request.log = [this](int level, std::string_view plugin, std::string_view message) {
       log_ += std::to_string(level) + " " + std::string(plugin) + ": " + std::string(message);
     };
     refusal_ = {};
     return LoadedLayer::load(request, &refusal_);
+  }
+  // Lines in the memory map of this process that name a library.
+  static int maps_of(const std::string& file) {
+    std::ifstream maps("/proc/self/maps");
+    int count = 0;
+    for (std::string line; std::getline(maps, line);) {
+      count += line.find(":" + file + " ") != std::string::npos ? 1 : 0;
+    }
+    return count;
   }
   // The reason why a test plugin was refused, "" if it was not.
   std::string reason(const std::string& name) {
@@ -36,6 +50,7 @@ class Loading : public ::testing::Test {
 
   std::unique_ptr<GaitdModel> model_ = some_model();
   int timeout_ms_ = 20000;
+  std::atomic<bool> cancel_ = false;
   std::string log_;
   Refusal refusal_;
 };
@@ -88,13 +103,96 @@ TEST_F(Loading, GivesEachInstanceOfTheSameFileItsOwnVariables) {
   EXPECT_EQ(run(second.get()).side, 1);
 }
 
-TEST_F(Loading, LeavesNoStagedCopyBehind) {
+TEST_F(Loading, WritesNothingIntoAFileSystem) {
   const TemporaryDirectory directory;
   setenv("XDG_RUNTIME_DIR", directory.path().c_str(), 1);
-  EXPECT_TRUE(load(plugin_path("good")));
+  std::filesystem::permissions(directory.path(), std::filesystem::perms::none);
+  EXPECT_TRUE(load(plugin_path("good"))) << refusal_.text();
+  std::filesystem::permissions(directory.path(), std::filesystem::perms::owner_all);
   EXPECT_FALSE(load(plugin_path("crash_at_load")));
   EXPECT_TRUE(std::filesystem::is_empty(directory.path()));
   unsetenv("XDG_RUNTIME_DIR");
+  for (const auto& entry : std::filesystem::directory_iterator("/tmp")) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with("gaitd-plugin-")) << entry;
+  }
+}
+
+TEST_F(Loading, ACopyCannotBeChangedAfterItWasChecked) {
+  const auto file = read_plugin_file(plugin_path("good"), GAITD_LAYER_TOE_OFF, &refusal_);
+  ASSERT_TRUE(file);
+  const auto copy = StagedCopy::create(*file, &refusal_);
+  ASSERT_TRUE(copy) << refusal_.text();
+  EXPECT_TRUE(copy->holds(file->bytes));
+  EXPECT_LT(pwrite(copy->fd(), "x", 1, 0), 0);
+  EXPECT_NE(ftruncate(copy->fd(), 1), 0);
+  std::vector<std::byte> other = file->bytes;
+  other.back() ^= std::byte{1};
+  EXPECT_FALSE(copy->holds(other));
+}
+
+TEST_F(Loading, ALayerIsUnmappedWithItsLastUser) {
+  const int before = maps_of("good.so");
+  {
+    const auto layer = load(plugin_path("good"));
+    ASSERT_TRUE(layer) << refusal_.text();
+    EXPECT_GT(maps_of("good.so"), before);
+  }
+  EXPECT_EQ(maps_of("good.so"), before);
+}
+
+TEST_F(Loading, WhatIsRefusedIsUnmapped) {
+  for (const char* name : {"error_in_init", "throw_in_create", "no_destroy", "unresolved"}) {
+    for (int i = 0; i < 20; ++i) {
+      LoadedLayer::Request request;
+      request.path = plugin_path(name);
+      request.layer = GAITD_LAYER_TOE_OFF;
+      request.model = model_.get();
+      request.probe = false;  // so that it comes into this process
+      Refusal refusal;
+      EXPECT_FALSE(LoadedLayer::load(request, &refusal)) << name;
+    }
+    EXPECT_EQ(maps_of(std::string(name) + ".so"), 0) << name;
+  }
+}
+
+TEST_F(Loading, ALibraryThatStaysInMemoryIsUsedAgain) {
+  int mapped = 0;
+  for (int i = 0; i < 3; ++i) {
+    const auto layer = load(plugin_path("stays"));
+    ASSERT_TRUE(layer) << refusal_.text();
+    EXPECT_EQ(run(layer.get()).side, i + 1);  // the variables of the same mapping
+    if (i == 0) mapped = maps_of("stays.so");
+    EXPECT_EQ(maps_of("stays.so"), mapped);
+  }
+  // While somebody uses it, the next one gets a mapping of its own.
+  const auto first = load(plugin_path("stays"));
+  const auto second = load(plugin_path("stays"));
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(run(second.get()).side, 1);
+}
+
+TEST_F(Loading, ThereIsRoomForSoManyThatStayInMemory) {
+  const auto fill = [this] {
+    const TemporaryDirectory directory;
+    std::vector<char> bytes = contents(plugin_path("stays"));
+    std::size_t taken = 0;
+    for (;; ++taken) {
+      bytes.push_back('x');  // another file, the same code
+      write_file(directory.path() / "stays.so", bytes);
+      if (load(directory.path() / "stays.so") == nullptr) break;
+    }
+    const bool said = refusal_.text().find("cannot be unloaded") != std::string::npos;
+    bytes.pop_back();  // one that is there
+    write_file(directory.path() / "stays.so", bytes);
+    const bool again = load(directory.path() / "stays.so") != nullptr;
+    _exit(said && again && taken > 0 && taken <= bounds::kIdleLibraries ? 0 : 1);
+  };
+  EXPECT_EXIT(fill(), ::testing::ExitedWithCode(0), "");
+}
+
+TEST_F(Loading, ATryIsEndedAtOnceWhenItIsCancelled) {
+  cancel_ = true;
+  EXPECT_HAS(reason("hang_at_load"), "was ended, since gaitd stops");
 }
 
 TEST_F(Loading, ACrashIsCaughtInTheChildAndNamed) {
@@ -109,7 +207,8 @@ TEST_F(Loading, AHangIsEndedAfterTheTimeout) {
 }
 
 TEST_F(Loading, ALibraryThatEndsTheProcessIsRefused) {
-  EXPECT_HAS(reason("exit_at_load"), "ended the process with exit code 0");
+  EXPECT_HAS(reason("exit_at_load"), "load: has ended the process with exit code 0");
+  EXPECT_HAS(reason("exit_at_unload"), "unload: has ended the process with exit code 0");
 }
 
 TEST_F(Loading, AnUnresolvedSymbolIsNamed) {

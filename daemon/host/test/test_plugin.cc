@@ -172,6 +172,9 @@ struct AtLoad {
     _exit(0);
 #endif
   }
+#ifdef TEST_EXIT_AT_UNLOAD
+  ~AtLoad() { _exit(0); }
+#endif
 } at_load;
 
 }  // namespace
