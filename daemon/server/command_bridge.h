@@ -17,6 +17,7 @@
 #include "daemon/command/command.h"
 #include "daemon/server/fair_queue.h"
 #include "daemon/server/rpc.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::daemon {
 
@@ -27,9 +28,9 @@ class CommandBridge {
  public:
   static constexpr std::size_t kCapacity = 64;
   /// Commands of one client that wait.
-  static constexpr std::size_t kShare = 64;
+  static constexpr std::size_t kShare = bounds::kCommandsWaiting;
   /// What the control thread finds in its ring at most: so many commands cost a tick little.
-  static constexpr std::size_t kPerTick = 16;
+  static constexpr std::size_t kPerTick = bounds::kCommandsPerTick;
   using Clock = std::chrono::steady_clock;
   static constexpr Clock::duration kShowTime = std::chrono::milliseconds(200);
 

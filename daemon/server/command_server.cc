@@ -289,7 +289,7 @@ void CommandServer::Impl::turn_away(Door& door) {
         error_line({rpc_code::kBusy,
                     "busy: gaitd has no file descriptor left; end other clients, or raise its "
                     "limit (ulimit -n, LimitNOFILE=)"});
-    char request[kMaxEstopLine];
+    char request[bounds::kEstopBytes];
     const ssize_t size = recv(fd, request, sizeof(request), MSG_DONTWAIT);
     const std::string_view read(request, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
     if (const auto estop = estop_request(read.substr(0, read.find('\n')))) {
@@ -306,7 +306,7 @@ void CommandServer::Impl::turn_away(Door& door) {
 }
 
 bool CommandServer::Impl::handle(const std::shared_ptr<Session>& session, std::string_view line) {
-  if (line.size() <= kMaxEstopLine && handle_estop(session, line)) return true;
+  if (line.size() <= bounds::kEstopBytes && handle_estop(session, line)) return true;
   // The last holder of the session may be an answer: it comes back to this thread to end.
   const std::shared_ptr<void> end(nullptr, [this, session](void*) mutable {
     asio::post(io_, [session = std::move(session)] {});

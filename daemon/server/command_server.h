@@ -9,16 +9,18 @@
 #include "daemon/command/estop_flag.h"
 #include "daemon/server/command_bridge.h"
 #include "daemon/server/rpc.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::daemon {
 
 struct ServerOptions {
-  std::string socket_path;                         ///< of commands; empty: see listen_path
-  std::size_t max_request = 256 << 10;             ///< bytes of one line
-  std::size_t max_unread_output = 1 << 20;         ///< bytes; a client that reads slower is dropped
+  std::string socket_path;                          ///< of commands; empty: see listen_path
+  std::size_t max_request = bounds::kRequestBytes;  ///< bytes of one line
+  std::size_t max_unread_output =
+      bounds::kUnreadBytes;                        ///< bytes; a client that reads slower is dropped
   std::chrono::milliseconds max_line_time{30000};  ///< first byte of a line to its newline
-  int max_clients = 64;                            ///< of each socket, that stay connected
-  int max_guests = 128;                            ///< beyond them, for one request each
+  int max_clients = bounds::kClients;              ///< of each socket, that stay connected
+  int max_guests = bounds::kGuests;                ///< beyond them, for one request each
   std::chrono::milliseconds guest_time{500};       ///< for the request of a guest to come
   std::chrono::milliseconds guest_least{20};       ///< of it, before a newer guest takes the place
   RpcLimits limits;
@@ -30,9 +32,6 @@ struct ServerOptions {
 /// block all signals. Whatever a client does, it ends at worst with that client disconnected.
 class CommandServer {
  public:
-  /// A line of at most so many bytes that is an e-stop is acted on before everything else.
-  static constexpr std::size_t kMaxEstopLine = 4096;
-
   /// Listens and starts the threads. Returns null with the reason in `error`: another daemon has
   /// the socket, no permission, ... A socket that nobody listens on is replaced. `bridge` (may be
   /// null) is polled every millisecond while commands wait; it and `estop` outlive the server.

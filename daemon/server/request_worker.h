@@ -17,6 +17,7 @@
 #include "daemon/server/estop_answers.h"
 #include "daemon/server/fair_queue.h"
 #include "daemon/server/rpc.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::daemon {
 
@@ -25,7 +26,7 @@ namespace gaitd::daemon {
 class RequestWorker {
  public:
   /// Lines of one client that wait; its socket is not read while they are as many.
-  static constexpr std::size_t kShare = 16;
+  static constexpr std::size_t kShare = bounds::kLinesWaiting;
 
   /// `room` is called on the worker's thread with a client that may send again after push() had no
   /// room. `bridge` (may be null) is polled every millisecond while commands wait; it and `flag`

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "daemon/server/rights.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::daemon {
 
@@ -71,8 +72,8 @@ class Methods {
 };
 
 struct RpcLimits {
-  int max_depth = 32;   // of nested arrays and objects
-  int max_batch = 256;  // requests in one line
+  int max_depth = bounds::kRequestDepth;  // of nested arrays and objects
+  int max_batch = bounds::kRequestBatch;  // requests in one line
 };
 
 /// The requests of one line and their answers.

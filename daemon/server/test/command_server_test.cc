@@ -313,9 +313,8 @@ TEST_F(Server, AnEstopIsNeverRefusedForItsForm) {
   }
   // Within a batch, and in a line too long for the lane of its own.
   EXPECT_EQ(client.ask("[" + std::string(kEstop) + "]")[0]["result"]["accepted"], true);
-  EXPECT_EQ(
-      client.ask(kEstop + std::string(2 * CommandServer::kMaxEstopLine, ' '))["result"]["accepted"],
-      true);
+  EXPECT_EQ(client.ask(kEstop + std::string(2 * bounds::kEstopBytes, ' '))["result"]["accepted"],
+            true);
 }
 
 TEST_F(Server, AnEstopThatNobodyActsOnSaysSo) {

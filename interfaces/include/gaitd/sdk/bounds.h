@@ -29,11 +29,20 @@ inline constexpr int kUrdfAttributes = 100;  ///< of one element, which TinyXML 
 
 // ---- The socket of commands.
 
-inline constexpr std::size_t kRequestBytes = 1u << 20;  ///< one line: 1000 footsteps have 0.3 MB
-inline constexpr int kRequestDepth = 32;                ///< of nested arrays and objects
-inline constexpr int kRequestBatch = 256;               ///< requests in one line
+/// Of one line, of which every client may make gaitd hold two; 64 footsteps with all they can have,
+/// the most in one command, have 0.1 MB.
+inline constexpr std::size_t kRequestBytes = 256u << 10;
+/// An e-stop in a line of at most so many bytes is acted on before everything else.
+inline constexpr std::size_t kEstopBytes = 4096;
+inline constexpr std::size_t kLinesWaiting = 16;     ///< of one client, then it is not read
+inline constexpr std::size_t kCommandsWaiting = 64;  ///< of one client for the control thread
+inline constexpr std::size_t kCommandsPerTick = 16;  ///< of all clients
+inline constexpr int kClients = 64;                  ///< of each socket, that stay connected
+inline constexpr int kGuests = 128;                  ///< beyond them, for one request each
+inline constexpr int kRequestDepth = 32;             ///< of nested arrays and objects
+inline constexpr int kRequestBatch = 256;            ///< requests in one line
 /// Bytes of answers that a client has not read; the longest answer, plugin.list, has 0.2 MB.
-inline constexpr std::size_t kUnreadBytes = 4u << 20;
+inline constexpr std::size_t kUnreadBytes = 1u << 20;
 
 // ---- Plugins.
 
