@@ -1,3 +1,13 @@
+# step_clock MICROSECONDS...: sets the wall clock forward and back, one step after the other.
+step_clock() {
+  local step us
+  for step in "$@"; do
+    us=$((${EPOCHREALTIME/./} + step))
+    date -s "@$((us / 1000000)).$(printf %06d $((us % 1000000)))" >/dev/null
+    pause 0.5
+  done
+}
+
 # walk BUSES MTU ARGUMENTS...: stands and walks six steps over real CAN sockets.
 walk() {
   local buses=$1 mtu=$2 start=$SECONDS
@@ -17,6 +27,7 @@ walk() {
   gaitctl mode walk-straight >/dev/null
   gaitctl walk --steps 6 --length 0.25 --swing 0.6 --transfer 0.25 >/dev/null
   wait_state walking 600
+  step_clock 3600000000 -3600000000 500000 -500000 # nobody may notice
   wait_state standing 1200
   [[ $status == *'"faults":[]'* ]] || fail "faults: $status"
   [[ $status =~ \"health\":[^}]*\} ]] && echo "${BASH_REMATCH[0]}"
