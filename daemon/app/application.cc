@@ -411,6 +411,7 @@ void Application::prepare_swaps() {
   SwapRules& rules = pipeline_->layers().rules();
   rules.simulation = truth_;
   rules.wall_time_acts = config_.clock == GAITD_CLOCK_REALTIME;
+  swaps_->port().publish(pipeline_->swap_right());  // until the control thread does
   swaps_->start();
 }
 
