@@ -48,7 +48,10 @@ std::string faults(const json& status) {
   for (const json& fault : list.is_array() ? list : json::array()) {
     names += (names.empty() ? "" : ", ") + text(fault);
   }
-  return names.empty() ? "none" : names;
+  if (names.empty()) names = "none";
+  const json dropped = at(status, "joints_dropped");
+  if (!dropped.is_number() || dropped == 0) return names;
+  return names + "; walks on without " + text(dropped) + (dropped == 1 ? " joint" : " joints");
 }
 
 std::string steps(const json& status) {

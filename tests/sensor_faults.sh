@@ -1,5 +1,6 @@
 # One sensor after the other fails while the robot walks: the fault that docs/balance.md names is
-# raised in time, or the robot walks on when the fault is over in time.
+# raised in time, or the robot walks on when the fault is over in time or in a joint that it can do
+# without.
 source "$(dirname "$0")/common.sh"
 
 # walk SENSOR KIND FROM DURATION: plays a walk with that fault; its events go to $scratch/events.
@@ -37,6 +38,14 @@ passes() {
   printf '%-12s %-8s for %s s: it walks on\n' "$1" "$2" "$4"
 }
 
+# dropped JOINT KIND WHAT: the robot walks on with the drive of that joint damped, and says so.
+dropped() {
+  passes "$1" "$2" 4.3 10
+  gaitctl log info "$scratch/walk.mcap" >"$scratch/info"
+  grep -q "\"dropped\":\"$1\",\"what\":\"$3" "$scratch/info" ||
+    fail "$1 $2: nothing in the log: $(cat "$scratch/info")"
+}
+
 faults 25 frozen imu freeze 4.3
 faults 25 'not credible' imu nan 4.3
 faults 25 silent imu silent 4.3
@@ -52,6 +61,11 @@ passes imu spike 4.3 0.003
 passes imu nan 4.3 0.01
 passes l_leg_kny nan 4.3 0.005
 passes right_foot spike 4.3 0.004
+# Balance needs neither head nor arms.
+dropped neck_ay nan 'not credible'
+dropped neck_ay spike 'not credible'
+dropped l_arm_elx silent silent
+dropped r_arm_shx nan 'not credible'
 
 # A sensor that the robot does not have is named before anything moves.
 sed 's/sensor: right_foot/sensor: l_leg_knee/' "$scratch/walk.yaml" >"$scratch/wrong.yaml"

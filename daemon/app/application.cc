@@ -566,18 +566,18 @@ int Application::run() {
   server_.reset();
   const double simulated = static_cast<double>(report.ticks) * config_.period;
   const double factor = report.wall_seconds > 0.0 ? simulated / report.wall_seconds : 0.0;
-  constexpr const char* kEnds[] = {"stopped", "settled", "duration", "fault"};
+  const char* const end = kRunEndNames[static_cast<std::size_t>(report.end)];
   std::string error;
   const bool logged = telemetry_->close({{"realtime_factor", std::to_string(factor)},
                                          {"wall_seconds", std::to_string(report.wall_seconds)},
-                                         {"end", kEnds[static_cast<int>(report.end)]}},
+                                         {"end", end}},
                                         &error);
   const bool log_lost = !logged && config_.log.enabled;
   if (log_lost) spdlog::error("the log is not complete: {}", error);
   spdlog::info("{:.3f} s in {} ticks, {:.2f} times real time; overruns {}, late sensors {}; {}",
-               simulated, report.ticks, factor, report.overruns, report.late_backend,
-               kEnds[static_cast<int>(report.end)]);
-  return log_lost || !allowed ? 1 : 0;
+               simulated, report.ticks, factor, report.overruns, report.late_backend, end);
+  if (!report.problem.empty()) spdlog::error("the run failed: {}", report.problem);
+  return log_lost || !allowed || !report.problem.empty() ? 1 : 0;
 }
 
 void Application::request_stop() {

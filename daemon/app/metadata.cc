@@ -114,6 +114,7 @@ json status_of(const Telemetry& telemetry) {
   for (std::size_t i = 0; bits.is_number() && i < kFaultNames.size(); ++i) {
     if ((bits.get<std::int64_t>() >> i & 1) != 0) status["faults"].push_back(kFaultNames[i]);
   }
+  status["joints_dropped"] = get("safety/joints_dropped");
   const json state = status["state"];
   const bool controlled = state == "standing" || state == "walking" || state == "stopping";
   const json icp[] = {get("icp/x"), get("icp/y"), get("icp/desired/x"), get("icp/desired/y")};

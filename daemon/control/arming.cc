@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of Safety that decides whether a robot may be switched on, and the test of one joint.
+// The part of Safety that switches a robot on and off, and the test of one joint.
 #include <cmath>
 
 #include "daemon/control/safety.h"
@@ -8,56 +8,45 @@ namespace gaitd::daemon {
 
 using P = SafetyParameter;
 
-bool Safety::sensors_fresh(const TickData& d) const {
-  for (int i = 0; i < d.sensors.joint_count; ++i) {
-    if (stale(d.sensors.joints[i].info)) return false;
-  }
-  for (int i = 0; i < d.sensors.foot_count; ++i) {
-    if (stale(d.sensors.feet[i].info)) return false;
-  }
-  for (int i = 0; i < d.sensors.imu_count; ++i) {
-    if (!stale(d.sensors.imus[i].info)) return true;
-  }
-  return false;  // no IMU
+Circumstances Safety::circumstances(const TickData& d, bool estimated) const {
+  return {model_, p_, balance_, d, state_, estimated};
 }
 
-// Null, or why nothing may be switched on.
-const char* Safety::unfit(const TickData& d) const {
-  if ((d.health & GAITD_HEALTH_ESTOP) != 0) {
-    return "not armed: the e-stop is pressed; release it";
-  }
-  if ((d.health & GAITD_HEALTH_HEARTBEAT) != 0) {
-    return "not armed: the e-stop is silent; check that it is on and connected";
-  }
-  if (d.health != 0) {
-    return "not armed: a motor or a bus is not healthy; `gaitctl status` says which";
-  }
-  if (!sensors_fresh(d)) {
-    return "not armed: a joint, every IMU or a foot sensor is silent; check power and wiring";
-  }
-  constexpr double kBeyond = 0.05;  // rad that a stop may give way
-  for (int i = 0; i < model_.joint_count; ++i) {
-    const GaitdJoint& joint = model_.joints[i];
-    const double position = d.sensors.joints[i].position;
-    if (position < joint.position_min - kBeyond || position > joint.position_max + kBeyond) {
-      return "not armed: a joint is outside the limits of the model; check sign and offset with "
-             "`gaitctl joint list`";
-    }
-  }
+const char* Safety::refusal(Request request, const TickData& d) const {
+  return refusal_of(request, circumstances(d, d.robot.valid != 0));
+}
+
+// Of a request that the state alone decides about.
+const char* Safety::refusal(Request request) const {
+  static const TickData kNoReadings{};
+  return refusal_of(request, circumstances(kNoReadings, false));
+}
+
+const char* Safety::arm() {
+  if (const char* why = refusal(kRequestStart)) return why;
+  if (state_ != SafetyState::kDisarmed) return nullptr;
+  state_ = SafetyState::kReadying;
+  time_in_state_ = 0.0;
+  time_settled_ = 0.0;
+  time_unsolved_ = 0.0;
+  start_taken_ = false;
   return nullptr;
 }
 
 const char* Safety::arm(const TickData& d) {
-  if (state_ == SafetyState::kTesting) return "a joint test is running; wait until it is over";
-  const char* why = state_ == SafetyState::kDisarmed ? unfit(d) : nullptr;
+  if (controlled() || state_ == SafetyState::kReadying) return nullptr;
+  const char* why = refusal(kRequestArm, d);
   return why != nullptr ? why : arm();
 }
 
+const char* Safety::disarm() {
+  if (const char* why = refusal(kRequestDisarm)) return why;
+  state_ = SafetyState::kDisarmed;
+  return nullptr;
+}
+
 const char* Safety::test_joint(const TickData& d, const JointTest& test) {
-  if (state_ != SafetyState::kDisarmed) {
-    return "joint test: expected a disarmed robot on its hoist; `gaitctl disarm` first";
-  }
-  if (const char* why = unfit(d)) return why;
+  if (const char* why = refusal(kRequestJointTest, d)) return why;
   state_ = SafetyState::kTesting;
   time_in_state_ = 0.0;
   test_ = test;

@@ -3,26 +3,40 @@
 
 #include <time.h>
 
-#include <cmath>
 #include <cstdio>
 #include <utility>
 
 #include "daemon/control/command_text.h"
 #include "daemon/control/denormals.h"
 #include "daemon/control/signals.h"
+#include "daemon/control/sim_push.h"
+#include "daemon/control/state_text.h"
 #include "daemon/control/stopwatch.h"
 #include "daemon/control/tick_guard.h"
-#include "gaitd/sdk/layer_names.h"
 
 namespace gaitd::daemon {
 namespace {
 
 constexpr double kTellOverruns = 1.0;  // s between two events about overruns
+constexpr double kUnreadTime = 1.0;    // s without a backend after which a scenario is over
 
 std::int64_t now_ns() {
   timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return std::int64_t{1000000000} * t.tv_sec + t.tv_nsec;
+}
+
+RunEnd end_of(ScenarioPlayer::End end) {
+  switch (end) {
+    case ScenarioPlayer::End::kSettled:
+      return RunEnd::kSettled;
+    case ScenarioPlayer::End::kDuration:
+      return RunEnd::kDuration;
+    case ScenarioPlayer::End::kFault:
+      return RunEnd::kFault;
+    default:
+      return RunEnd::kStopped;
+  }
 }
 
 }  // namespace
@@ -41,44 +55,67 @@ ControlLoop::ControlLoop(const LoopOptions& options, const GaitdModel& model, Pi
       swaps_(swaps),
       watch_(watch),
       estop_(estop),
-      command_(std::make_unique<Command>()) {
+      command_(std::make_unique<Command>()),
+      pace_(options.period, options.overrun, options.overrun_run) {
   if (swaps_ != nullptr) swaps_->publish(pipeline_->swap_right());
 }
 
 LoopReport ControlLoop::run() {
   const FlushDenormals flush;
   const Stopwatch watch;
-  next_wake_ns_ = now_ns();
+  pace_.start(now_ns());
   if (options_.arm) pipeline_->safety().arm();
   const bool lockstep = options_.clock == GAITD_CLOCK_LOCKSTEP;
-  while (!stop_.load(std::memory_order_relaxed)) {
+  if (scenario_ != nullptr && scenario_->pushes() && backend_.vtable->disturb == nullptr) {
+    end(RunEnd::kPush,
+        "the scenario pushes the robot, which this backend cannot do; run it on a "
+        "simulation: --backend simbody");
+  }
+  while (!ended_ && !stop_.load(std::memory_order_relaxed)) {
     if (lockstep) telemetry_->wait_for_space(64, &stop_);
     pulse_.beat();
     take_estop();
     take_commands();
     take_swaps();
+    if (ended_) break;
     const Outcome outcome = tick();
     if (outcome == Outcome::kTicked) {
       ++tick_;
       ++report_.ticks;
+      time_unread_ = 0.0;
       if (std::exchange(write_failed_, false)) raise(kFaultBackend, "backend");
       if (scenario_ != nullptr) {
-        report_.end = scenario_->update(options_.period, pipeline_->data());
-        if (report_.end != ScenarioPlayer::End::kRunning) break;
+        const auto played = scenario_->update(options_.period, pipeline_->data());
+        if (played != ScenarioPlayer::End::kRunning) {
+          end(end_of(played));
+          break;
+        }
       }
       if (lockstep && backend_.vtable->advance(backend_.self) != GAITD_OK) {
-        pipeline_->safety().raise(kFaultBackend);
-        break;
+        backend_failed("advance failed");
+        end(RunEnd::kBackend, "the backend failed to advance the simulation");
       }
     } else if (outcome == Outcome::kNotReady) {
       ++report_.late_backend;
-    } else if (lockstep) {
-      break;  // a simulation that cannot be read will not mend
+    } else {
+      if (time_unread_ == 0.0) backend_failed("read failed");
+      time_unread_ += options_.period;
+      // A simulation that cannot be read will not mend; a robot may.
+      if (lockstep || (scenario_ != nullptr && time_unread_ > kUnreadTime)) {
+        end(RunEnd::kBackend, "the backend failed to read the sensors");
+      }
     }
-    if (!lockstep) wait_for_next_period();
+    if (!lockstep && !ended_) wait_for_next_period();
   }
   report_.wall_seconds = 1e-6 * watch.microseconds();
   return report_;
+}
+
+void ControlLoop::end(RunEnd how, const std::string& problem) {
+  ended_ = true;
+  report_.end = how;
+  if (problem.empty()) return;
+  report_.problem = problem + " (tick " + std::to_string(tick_) + ")";
 }
 
 ControlLoop::Outcome ControlLoop::tick() {
@@ -87,18 +124,8 @@ ControlLoop::Outcome ControlLoop::tick() {
   TickData& data = pipeline_->data();
   const GaitdStatus read = backend_.vtable->read(backend_.self, &data.readings);
   if (read == GAITD_NOT_READY) return Outcome::kNotReady;
-  if (read != GAITD_OK) {
-    if ((pipeline_->safety().faults() & kFaultBackend) == 0) {
-      raise(kFaultBackend, "backend");
-      telemetry_->push_event(EventKind::kFault, tick_, tick_ * options_.period,
-                             R"({"fault":"backend","what":"read failed"})");
-    }
-    return Outcome::kBackendFailed;
-  }
-  GaitdHealth health{};
-  const auto get_health = backend_.vtable->health;
-  const bool known = get_health != nullptr && get_health(backend_.self, &health) == GAITD_OK;
-  data.health = known ? health.conditions : 0;
+  if (read != GAITD_OK) return Outcome::kBackendFailed;
+  data.health = health();
   pipeline_->run(tick_);
   const bool written = backend_.vtable->write(backend_.self, &data.commands) == GAITD_OK;
   data.times.total_us = watch.microseconds();
@@ -119,13 +146,21 @@ void ControlLoop::take_estop() {
   execute(*command_, false);
 }
 
+std::uint32_t ControlLoop::health() const {
+  if (backend_.vtable->health == nullptr) return 0;
+  GaitdHealth health{};
+  const bool known = backend_.vtable->health(backend_.self, &health) == GAITD_OK;
+  // A robot that cannot say how it is counts as one that cannot be reached.
+  return known ? health.conditions : std::uint32_t{GAITD_HEALTH_BUS};
+}
+
 void ControlLoop::take_commands() {
   // Commands of a scenario wait until the robot stands.
   if (scenario_ != nullptr && pipeline_->safety().state() != SafetyState::kReadying) {
     const double time = static_cast<double>(tick_) * options_.period;
     while (const Command* command = scenario_->next_command(time)) execute(*command, false);
     while (const GaitdDisturbance* push = scenario_->next_disturbance(pipeline_->data())) {
-      backend_.vtable->disturb(backend_.self, push);
+      push_robot(*push);
     }
   }
   if (bridge_ == nullptr) return;
@@ -172,6 +207,22 @@ CommandReply ControlLoop::refuse_outdated(const Command& command) {
   return reply;
 }
 
+// Of the scenario: one that is not made would pass for one that was withstood.
+void ControlLoop::push_robot(const GaitdDisturbance& push) {
+  const char* why = sim_push(backend_, push);
+  if (why == nullptr) return;
+  end(RunEnd::kPush,
+      std::string("the push on ") + model_.bodies[push.body].name + " was not made: " + why);
+}
+
+void ControlLoop::backend_failed(const char* what) {
+  raise(kFaultBackend, "backend");
+  char text[96];
+  const int length = std::snprintf(text, sizeof(text), R"({"fault":"backend","what":"%s"})", what);
+  telemetry_->push_event(EventKind::kFault, tick_, static_cast<double>(tick_) * options_.period,
+                         std::string_view(text, length));
+}
+
 // A fault that does not come from the data of a tick: an input of the next one.
 void ControlLoop::raise(Fault fault, const char* name) {
   pipeline_->safety().raise(fault);
@@ -185,21 +236,17 @@ CommandReply ControlLoop::simulate(const Command& command) {
   CommandReply reply;
   reply.request = command.request;
   reply.tick = tick_;
-  auto refuse = [&reply](const char* why) {
-    std::snprintf(reply.message.data(), reply.message.size(), "%s", why);
-  };
   if (command.type == CommandType::kPush) {
-    const auto disturb = backend_.vtable->disturb;
-    if (disturb == nullptr) {
-      refuse("sim push: this backend is no simulation; start gaitd with --backend simbody");
-    } else if (disturb(backend_.self, &command.push) != GAITD_OK) {
-      refuse("sim push: the simulation refused the force; look at link, figures and duration");
+    const char* why = sim_push(backend_, command.push);
+    if (why != nullptr) {
+      std::snprintf(reply.message.data(), reply.message.size(), "sim push: %s", why);
     } else {
       reply.accepted = true;
     }
   } else if (backend_.vtable->reset == nullptr ||
              backend_.vtable->reset(backend_.self) != GAITD_OK) {
-    refuse("sim reset: this backend is no simulation; start gaitd with --backend simbody");
+    std::snprintf(reply.message.data(), reply.message.size(), "%s",
+                  "sim reset: this backend is no simulation; start gaitd with --backend simbody");
   } else {
     pipeline_->reset();
     reply.accepted = true;
@@ -261,40 +308,18 @@ void ControlLoop::record() {
 
 void ControlLoop::report_changes() {
   const TickData& d = pipeline_->data();
+  char text[kMaxEventText];
+  const JointMask dropped = d.dropped & ~std::exchange(last_dropped_, d.dropped);
+  for (int i = 0; dropped >> i != 0 && i < model_.joint_count; ++i) {
+    if ((dropped >> i & 1u) == 0) continue;
+    telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
+                           dropped_text(pipeline_->monitor(), i, text, sizeof(text)));
+  }
   if (d.safety == last_state_ && d.faults == last_faults_) return;
   last_state_ = d.safety;
   last_faults_ = d.faults;
-  char text[kMaxEventText];
-  int length = std::snprintf(text, sizeof(text), R"({"state":"%s","faults":[)",
-                             kSafetyStateNames[static_cast<int>(d.safety)]);
-  const char* comma = "";
-  for (std::size_t i = 0; i < kFaultNames.size(); ++i) {
-    if ((d.faults >> i & 1u) == 0) continue;
-    length +=
-        std::snprintf(text + length, sizeof(text) - length, "%s\"%s\"", comma, kFaultNames[i]);
-    comma = ",";
-  }
-  length += std::snprintf(text + length, sizeof(text) - length, "]");
-  const LayerChain::Failure& failure = pipeline_->layers().failure();
-  if ((d.faults & (kFaultEstimator | kFaultLayer | kFaultSolver)) != 0 && failure.layer >= 0) {
-    length += std::snprintf(text + length, sizeof(text) - length, R"(,"layer":"%s","what":"%s")",
-                            sdk::kLayerNames[failure.layer].data(), failure.what);
-  }
-  if ((d.faults & kFaultCapture) != 0) {
-    const CaptureCheck& capture = pipeline_->safety().capture();
-    length += std::snprintf(text + length, sizeof(text) - length,
-                            R"(,"what":"ICP %.2f m off the feet, beyond %.2f m")",
-                            capture.distance(), capture.limit());
-  }
-  if ((d.faults & kFaultSensors) != 0) {
-    const SensorMonitor::Suspect& suspect = pipeline_->monitor().suspect();
-    length += std::snprintf(text + length, sizeof(text) - length,
-                            R"(,"sensor":"%s","what":"%s for %.0f ms")", suspect.sensor,
-                            name_of(suspect.suspicion), 1e3 * suspect.age);
-  }
-  length += std::snprintf(text + length, sizeof(text) - length, "}");
   telemetry_->push_event(d.safety == SafetyState::kFault ? EventKind::kFault : EventKind::kState,
-                         d.time.tick, d.time.time, std::string_view(text, length));
+                         d.time.tick, d.time.time, state_text(*pipeline_, text, sizeof(text)));
 }
 
 void ControlLoop::tell_overrun() {
@@ -309,27 +334,22 @@ void ControlLoop::tell_overrun() {
 }
 
 void ControlLoop::wait_for_next_period() {
-  const std::int64_t period = std::llround(1e9 * options_.period);
-  const std::int64_t before = now_ns();
-  next_wake_ns_ += period;
-  const bool overrun = before > next_wake_ns_;
-  if (overrun) {
+  const Pace::Next next = pace_.after_tick(now_ns());
+  if (next.overrun) {
     ++report_.overruns;
     tell_overrun();
-    const bool catch_up = options_.overrun == OverrunPolicy::kCatchUp &&
-                          1e-9 * static_cast<double>(before - next_wake_ns_) < options_.overrun_run;
-    if (!catch_up) next_wake_ns_ += (before - next_wake_ns_) / period * period + period;
   }
-  time_overrun_ = overrun ? time_overrun_ + options_.period : 0.0;
-  if (options_.overrun == OverrunPolicy::kStop && time_overrun_ > options_.overrun_run) {
+  const Safety& safety = pipeline_->safety();
+  if (next.fault && safety.state() != SafetyState::kDisarmed &&
+      (safety.faults() & kFaultOverrun) == 0) {
     raise(kFaultOverrun, "overrun");
   }
-  const timespec wake{static_cast<time_t>(next_wake_ns_ / 1000000000),
-                      static_cast<long>(next_wake_ns_ % 1000000000)};
+  const timespec wake{static_cast<time_t>(next.due / 1000000000),
+                      static_cast<long>(next.due % 1000000000)};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr) != 0) {
     if (stop_.load(std::memory_order_relaxed)) return;
   }
-  pipeline_->data().times.jitter_us = 1e-3 * static_cast<double>(now_ns() - next_wake_ns_);
+  pipeline_->data().times.jitter_us = 1e-3 * static_cast<double>(now_ns() - next.due);
 }
 
 }  // namespace gaitd::daemon

@@ -4,11 +4,14 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "daemon/command/estop_flag.h"
 #include "daemon/config/daemon_config.h"
 #include "daemon/control/loop_pulse.h"
+#include "daemon/control/pace.h"
 #include "daemon/control/pipeline.h"
+#include "daemon/control/run_end.h"
 #include "daemon/control/scenario_player.h"
 #include "daemon/control/swap_port.h"
 #include "daemon/control/tick_watch.h"
@@ -25,13 +28,14 @@ struct LoopOptions {
   double overrun_run = 0.01;  // s, see OverrunPolicy
 };
 
-// What the loop found about time, for reports.
+// What became of a run.
 struct LoopReport {
   std::int64_t ticks = 0;
   std::int64_t overruns = 0;
   std::int64_t late_backend = 0;  // wake-ups without new sensors
   double wall_seconds = 0.0;
-  ScenarioPlayer::End end = ScenarioPlayer::End::kRunning;
+  RunEnd end = RunEnd::kStopped;
+  std::string problem;  // what failed, in words; empty: nothing did
 };
 
 // The one control thread: read -> pipeline -> write, once per period, with commands taken at tick
@@ -43,7 +47,8 @@ class ControlLoop {
               const GaitdBackendInstance& backend, Telemetry* telemetry, CommandBridge* bridge,
               ScenarioPlayer* scenario, SwapPort* swaps, TickWatch* watch, EstopFlag* estop);
 
-  // Runs until stop() or the end of the scenario. Call on a thread of its own.
+  // Runs until stop(), the end of the scenario, or a failure that no later tick could mend. Call on
+  // a thread of its own.
   LoopReport run();
   void stop() { stop_.store(true, std::memory_order_relaxed); }
   const LoopPulse& pulse() const { return pulse_; }
@@ -52,6 +57,7 @@ class ControlLoop {
   enum class Outcome { kTicked, kNotReady, kBackendFailed };
   Outcome tick();
   void take_estop();
+  std::uint32_t health() const;
   void take_commands();
   void take_swaps();
   void tell_swaps();
@@ -59,7 +65,10 @@ class ControlLoop {
   static CommandReply refuse_outdated(const Command& command);
   CommandReply simulate(const Command& command);
   CommandReply request_swap(const Command& command);
+  void push_robot(const GaitdDisturbance& push);
   void raise(Fault fault, const char* name);
+  void backend_failed(const char* what);
+  void end(RunEnd how, const std::string& problem = "");
   void record();
   void report_changes();
   void wait_for_next_period();
@@ -82,12 +91,14 @@ class ControlLoop {
   LoopReport report_;
   std::int64_t tick_ = 0;
   int swaps_awaited_ = 0;  // lockstep: of the scenario, that are being loaded
-  std::int64_t next_wake_ns_ = 0;
-  double time_overrun_ = 0.0;
+  bool ended_ = false;     // report_ says how
+  Pace pace_;
   double next_told_ = 0.0;  // s, when an overrun is told again
   bool write_failed_ = false;
+  double time_unread_ = 0.0;  // s, for which the backend could not be read
   SafetyState last_state_ = SafetyState::kDisarmed;
   std::uint32_t last_faults_ = 0;
+  JointMask last_dropped_ = 0;
 };
 
 }  // namespace gaitd::daemon

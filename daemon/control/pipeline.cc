@@ -202,22 +202,12 @@ CommandReply Pipeline::execute(const Command& command) {
   const bool needs_control =
       command.type == CommandType::kWalk || command.type == CommandType::kFootsteps ||
       command.type == CommandType::kPause || command.type == CommandType::kResume;
-  if (needs_control && !safety_.controlled()) {
-    return refused(command, data_.time.tick,
-                   safety_.state() == SafetyState::kFault
-                       ? "a fault is latched; see `gaitctl status`, then `gaitctl reset` "
-                         "and `gaitctl arm`"
-                       : "the robot is not standing yet; arm it (`gaitctl arm`) and wait "
-                         "until `gaitctl status` says standing");
-  }
+  const char* why = needs_control ? safety_.refusal(kRequestWalk, data_) : nullptr;
+  if (why != nullptr) return refused(command, data_.time.tick, why);
   const char* note = command_note(command, safety_.state(), gait_.state());
-  const char* why = nullptr;
   switch (command.type) {
     case CommandType::kArm:
-      why = data_.robot.valid != 0 && !safety_.upright(data_.robot)
-                ? "arm: the robot is not upright; set it on its feet (simulation: `gaitctl sim "
-                  "reset`), then arm"
-                : safety_.arm(data_);
+      why = safety_.arm(data_);
       break;
     case CommandType::kDisarm:
       why = safety_.disarm();

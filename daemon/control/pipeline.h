@@ -37,10 +37,12 @@ class Pipeline {
   TickData& data() { return data_; }
   const TickData& data() const { return data_; }
   Safety& safety() { return safety_; }
+  const Safety& safety() const { return safety_; }
   const SensorMonitor& monitor() const { return monitor_; }
   walking::GaitMachine& gait() { return gait_; }
   walking::ObjectiveBuilder& objectives() { return objectives_; }
   LayerChain& layers() { return layers_; }
+  const LayerChain& layers() const { return layers_; }
   const LiveParameters& parameters() const { return *parameters_; }
 
  private:

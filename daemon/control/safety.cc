@@ -4,37 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gaitd/sdk/views.h"
-
 namespace gaitd::daemon {
 
 using P = SafetyParameter;
-
-const char* Safety::arm() {
-  if (state_ == SafetyState::kFault) {
-    return "arm: a fault is latched; look at `gaitctl status`, mend it, then `gaitctl reset`";
-  }
-  if (state_ != SafetyState::kDisarmed) return nullptr;
-  state_ = SafetyState::kReadying;
-  time_in_state_ = 0.0;
-  time_settled_ = 0.0;
-  time_unsolved_ = 0.0;
-  start_taken_ = false;
-  return nullptr;
-}
-
-const char* Safety::disarm() {
-  if (state_ == SafetyState::kWalking || state_ == SafetyState::kStopping) {
-    return "disarm: the robot is walking; stop it first: `gaitctl stop`, or `gaitctl estop`";
-  }
-  if (state_ == SafetyState::kFault) {
-    return "disarm: a fault is latched and the joints are damped already; `gaitctl reset` clears "
-           "it "
-           "and leaves the robot disarmed";
-  }
-  state_ = SafetyState::kDisarmed;
-  return nullptr;
-}
 
 const char* Safety::clear() {
   if (state_ == SafetyState::kFault) {
@@ -64,38 +36,17 @@ void Safety::going_on() {
   if (state_ == SafetyState::kStopping) state_ = SafetyState::kWalking;
 }
 
-bool Safety::stale(const GaitdSignalInfo& info) const {
-  return info.valid == 0 || info.age > p_[P::kSensorTimeout];
-}
-
-bool Safety::tilted(const GaitdRobotState& robot) const {
-  const Eigen::Vector3d up = sdk::quaternion(robot.pelvis_orientation) * Eigen::Vector3d::UnitZ();
-  return up.z() < std::cos(p_[P::kTiltLimit]);
-}
-
-bool Safety::low(const GaitdRobotState& robot) const {
-  const double lower = std::min(robot.feet[0].position[2], robot.feet[1].position[2]);
-  return robot.pelvis_position[2] - lower < p_[P::kFallHeight] * model_.nominal_pelvis_height;
-}
-
-bool Safety::upright(const GaitdRobotState& robot) const { return !tilted(robot) && !low(robot); }
-
 void Safety::check(const TickData& d, bool estimate_ok) {
+  if (!controlled() || !estimate_ok) capture_.reset();
   if (state_ == SafetyState::kDisarmed || state_ == SafetyState::kFault) return;
-  if ((d.health & GAITD_HEALTH_ESTOP) != 0) raise(kFaultEstop);
-  if ((d.health & GAITD_HEALTH_HEARTBEAT) != 0) raise(kFaultHeartbeat);
-  if ((d.health & GAITD_HEALTH_MOTOR) != 0) raise(kFaultMotor);
-  if ((d.health & GAITD_HEALTH_BUS) != 0) raise(kFaultBus);
-  if (!sensors_fresh(d)) raise(kFaultSensors);
-  if (state_ == SafetyState::kTesting) return;  // it hangs: the estimate means nothing
-  if (!estimate_ok) {
-    raise(kFaultEstimator);
-    return;
+  Circumstances now = circumstances(d, estimate_ok);
+  now.out_of_reach =
+      controlled() && estimate_ok && capture_.lost(d.time.period, d.robot, d.gait, p_);
+  for (const Condition& condition : conditions()) {
+    if ((condition.ticks & state_bit(now.state)) != 0 && condition.holds(now)) {
+      raise(condition.faults);
+    }
   }
-  if (tilted(d.robot)) raise(kFaultTilt | kFaultFall);
-  if (low(d.robot)) raise(kFaultFall);
-  if (!controlled()) return capture_.reset();
-  if (capture_.lost(d.time.period, d.robot, d.gait, p_)) raise(kFaultCapture | kFaultFall);
 }
 
 bool Safety::update(double dt, const TickData& d, bool walking) {
@@ -147,13 +98,15 @@ void Safety::hold(const TickData& d, GaitdJointCommands& commands) const {
   }
 }
 
+void Safety::damp(int joint, GaitdJointCommands& commands) const {
+  GaitdJointCommand& c = commands.joints[joint];
+  c = {};
+  c.mode = GAITD_JOINT_MODE_DAMPING;
+  c.damping = p_[P::kFaultDamping] * model_.joints[joint].effort_limit;
+}
+
 void Safety::damp(GaitdJointCommands& commands) const {
-  for (int i = 0; i < model_.joint_count; ++i) {
-    GaitdJointCommand& c = commands.joints[i];
-    c = {};
-    c.mode = GAITD_JOINT_MODE_DAMPING;
-    c.damping = p_[P::kFaultDamping] * model_.joints[i].effort_limit;
-  }
+  for (int i = 0; i < model_.joint_count; ++i) damp(i, commands);
 }
 
 void Safety::fall_back(double dt, TickData& d) {
@@ -201,6 +154,9 @@ void Safety::write(double dt, bool control_ok, TickData& d) {
         fall_back(dt, d);
       }
       break;
+  }
+  for (int i = 0; i < model_.joint_count; ++i) {
+    if ((d.dropped >> i & 1u) != 0) damp(i, d.commands);
   }
   clamp(dt, d, d.commands);
   d.safety = state_;

@@ -3,16 +3,19 @@
 
 #include "daemon/command/command.h"
 #include "daemon/control/capture_check.h"
+#include "daemon/control/conditions.h"
 #include "daemon/control/tick_data.h"
 #include "daemon/parameters/safety_parameters.h"
 
 namespace gaitd::daemon {
 
-// Stands between the layers and the backend: the arming states, the faults that it recognises, what
-// the joints do in each state, and the clamps on everything that is sent.
+// Stands between the layers and the backend: the arming states, what the joints do in each of them,
+// and the clamps on everything that is sent. What is refused and what is a fault is said by the
+// table of conditions.h.
 class Safety {
  public:
-  explicit Safety(const GaitdModel& model) : model_(model), capture_(model_) {}
+  explicit Safety(const GaitdModel& model)
+      : model_(model), balance_(balance_joints(model_)), capture_(model_) {}
   void set_parameter(int index, double value) { p_.set(index, value); }
   void set_limit(int index, double value) { limits_.set(index, value); }
 
@@ -26,7 +29,8 @@ class Safety {
   }
 
   // Requests; each returns null or why not.
-  const char* arm();                      // a simulated robot, that is healthy
+  const char* refusal(Request request, const TickData& data) const;
+  const char* arm();                      // a simulated robot at its start, without readings yet
   const char* arm(const TickData& data);  // only a healthy robot in a plausible posture
   // Moves one joint a little and back, the others off; disarmed before and afterwards.
   const char* test_joint(const TickData& data, const JointTest& test);
@@ -38,9 +42,7 @@ class Safety {
   void going_on();  // new footsteps while stopping: it walks again
 
   const CaptureCheck& capture() const { return capture_; }
-  // Whether the pelvis is up and level enough not to count as fallen.
-  bool upright(const GaitdRobotState& robot) const;
-  // Looks at sensors and estimate; raises what it finds. `estimate_ok` as the layer said.
+  // Looks at health, sensors and estimate; raises what it finds. `estimate_ok` as the layer said.
   void check(const TickData& data, bool estimate_ok);
   // Follows the gait once the controller has the joints. True in the tick it is handed over.
   bool update(double dt, const TickData& data, bool walking);
@@ -50,16 +52,15 @@ class Safety {
  private:
   void fall_back(double dt, TickData& data);
   void hold(const TickData& data, GaitdJointCommands& commands) const;
+  void damp(int joint, GaitdJointCommands& commands) const;
   void damp(GaitdJointCommands& commands) const;
   void clamp(double dt, const TickData& data, GaitdJointCommands& commands);
-  bool tilted(const GaitdRobotState& robot) const;
-  bool low(const GaitdRobotState& robot) const;
-  bool stale(const GaitdSignalInfo& info) const;
-  bool sensors_fresh(const TickData& data) const;
-  const char* unfit(const TickData& data) const;
+  const char* refusal(Request request) const;
+  Circumstances circumstances(const TickData& data, bool estimated) const;
   void swing_joint(GaitdJointCommands& commands) const;
 
   const GaitdModel model_;
+  const JointMask balance_;
   CaptureCheck capture_;
   sdk::Parameters<SafetyParameter> p_{kSafetyParameters};
   sdk::Parameters<Limit> limits_{kLimitParameters};

@@ -31,6 +31,7 @@ class ScenarioPlayer {
   End update(double dt, const TickData& data);
 
   double duration() const { return duration_; }
+  bool pushes() const { return !disturbances_.empty(); }
 
  private:
   struct TimedCommand {

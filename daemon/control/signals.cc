@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/control/signals.h"
 
+#include <bit>
 #include <cmath>
 #include <initializer_list>
 #include <string>
@@ -100,6 +101,7 @@ void visit_gait(V& v, const TickData& d) {
          "safety/state");
   v.integer(d.faults, "safety/faults");
   v.integer(d.health, "safety/health");
+  v.integer(std::popcount(d.dropped), "safety/joints_dropped");
   v.word(d.gait.mode, {"stand", "walk-straight", "walk-bent"}, "gait/mode");
   v.word(d.gait.phase, {"stand", "transfer", "swing"}, "gait/phase");
   v.word(d.gait.support, {"left", "right", "both"}, "gait/support");

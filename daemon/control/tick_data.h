@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "daemon/control/balance_joints.h"
 #include "gaitd/abi/plugin.h"
 #include "gaitd/walking/leg_configuration.h"
 
@@ -54,6 +55,7 @@ struct TickData {
   GaitdLayerTime time{};
   GaitdSensors readings{};   // as the backend gave them
   GaitdSensors sensors{};    // without those that cannot be true: what the layers get
+  JointMask dropped = 0;     // joints that the robot goes on without: SensorMonitor
   std::uint32_t health = 0;  // GAITD_HEALTH_* that the backend reports
   GaitdRobotState robot{};
   GaitdGaitState gait{};

@@ -202,6 +202,19 @@ std::vector<std::string> read_refusals(const LogReader& log) {
   return refusals;
 }
 
+// Whether the run of a scenario was broken off: by a fault, a signal or a backend that failed.
+std::optional<Judgement> judge_end(const LogReader& log) {
+  const std::string end = log.metadata_value("end").value_or("");
+  const bool whole = end.empty() || end == "settled" || end == "duration";
+  if (whole || !log.metadata_value("scenario")) return std::nullopt;
+  return Judgement{.name = "played_to_the_end",
+                   .figure = end,
+                   .value = 0.0,
+                   .bound = "settled or duration",
+                   .pass = false,
+                   .note = "the run ended before its scenario was over"};
+}
+
 }  // namespace
 
 double Verdict::figure(const std::string& name) const {
@@ -227,6 +240,7 @@ Verdict compute_verdict(const LogReader& log, const Expectations& expectations) 
                                   .pass = refused == expectations.refused_commands,
                                   .note = ""});
   }
+  if (const auto broken_off = judge_end(log)) verdict.judgements.push_back(*broken_off);
   verdict.figures = summarise(log, run, figures);
   verdict.pass = std::all_of(verdict.judgements.begin(), verdict.judgements.end(),
                              [](const Judgement& judgement) { return judgement.pass; });

@@ -14,7 +14,9 @@ namespace gaitd::daemon {
 //   legs        JSON {"left": {"knee": "l_leg_kny", "knee_bend_sign": 1, "joints": [names]},
 //                     "right": {...}}; "knee" null or absent if the leg has none
 //   fault_bits  JSON {"fall": 3, ...}: bit numbers of the signal safety/faults
-//   realtime_factor, wall_seconds   numbers as text, optional, at the end of the file
+//   scenario    its name; a run of one passes only if it was not broken off
+//   end         how the run ended, optional, at the end of the file: whole are "settled",
+//   "duration" realtime_factor, wall_seconds   numbers as text, optional, at the end of the file
 // and, where the run has closing steps, the boolean signal gait/closing: true during their swing.
 
 // One expectation, judged.

@@ -152,7 +152,7 @@ std::vector<FaultRow> fault_table() {
   return {
       {"e-stop", kFaultEstop, [](Bench& b) { b.safety.raise(kFaultEstop); }},
       {"joint not valid", kFaultSensors,
-       [](Bench& b) { b.data->sensors.joints[5].info.valid = 0; }},
+       [](Bench& b) { b.data->sensors.joints[20].info.valid = 0; }},
       {"joint stale", kFaultSensors,
        [=](Bench& b) { b.data->sensors.joints[29].info.age = stale; }},
       {"no IMU", kFaultSensors, [](Bench& b) { b.data->sensors.imu_count = 0; }},

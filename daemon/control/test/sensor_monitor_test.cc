@@ -29,6 +29,7 @@ class Bench {
     s.foot_count = GAITD_MAX_FEET;
     for (auto& foothold : data->gait.footholds) foothold.contact = GAITD_CONTACT_FULL;
     data->gait.phase = GAITD_PHASE_SWING;
+    data->safety = SafetyState::kWalking;
     next();
   }
   // New readings of everything, not looked at yet.
@@ -52,6 +53,26 @@ class Bench {
       foot.info.valid = 1;
       foot.info.sequence = static_cast<std::uint32_t>(count_);
       foot.force[2] = 800.0 + wobble;
+    }
+  }
+  int joint(const std::string& name) const {
+    for (int i = 0; i < atlas().joint_count; ++i) {
+      if (name == atlas().joints[i].name) return i;
+    }
+    ADD_FAILURE() << name;
+    return 0;
+  }
+  const GaitdJointSensor& passed(int joint) const { return data->sensors.joints[joint]; }
+  bool dropped(int joint) const { return (data->dropped >> joint & 1u) != 0; }
+  // Ticks in which every reading of a foot is zero while the other one carries `other` of the
+  // weight.
+  void lift(int side, double other, int ticks) {
+    const double weight = atlas().total_mass * atlas().gravity;
+    for (int i = 0; i < ticks; ++i) {
+      next();
+      for (double& force : data->readings.feet[side].force) force = 0.0;
+      data->readings.feet[1 - side].force[2] = other * weight + 0.1 * (i % 3);
+      check();
     }
   }
   void check() { monitor.check(kPeriod, parameters, *data); }
@@ -103,14 +124,15 @@ TEST(SensorMonitor, HoldsTheLastReadingThroughASpike) {
 
 TEST(SensorMonitor, ALastingFaultGrowsOldUnderItsName) {
   Bench b;
+  const int knee = b.joint("l_leg_kny");
   b.run(20);
   for (int i = 0; i < 30; ++i) {
     b.next();
-    b.data->readings.joints[4].velocity = kNan;
+    b.data->readings.joints[knee].velocity = kNan;
     b.check();
   }
-  EXPECT_NEAR(b.data->sensors.joints[4].info.age, 0.03, 1e-9);
-  EXPECT_EQ(std::string(b.monitor.suspect().sensor), atlas().joints[4].name);
+  EXPECT_NEAR(b.passed(knee).info.age, 0.03, 1e-9);
+  EXPECT_STREQ(b.monitor.suspect().sensor, "l_leg_kny");
 }
 
 TEST(SensorMonitor, BelievesAJumpThatStays) {
@@ -204,16 +226,141 @@ TEST(SensorMonitor, AFootThatComesDownLateAndSoftlyHasADeadSensorOnlyIfItStaysTh
 TEST(SensorMonitor, AJointThatIsToldToMoveAndDoesNotIsStuck) {
   for (const bool commanded : {false, true}) {
     Bench b;
+    const int knee = b.joint("l_leg_kny");
     b.run(20);
-    const double position = b.data->readings.joints[5].position;
-    b.data->commands.joints[5].velocity = commanded ? 1.0 : 0.0;
+    const double position = b.data->readings.joints[knee].position;
+    b.data->commands.joints[knee].velocity = commanded ? 1.0 : 0.0;
     for (int i = 0; i < 80; ++i) {
       b.next();
-      b.data->readings.joints[5].position = position;
+      b.data->readings.joints[knee].position = position;
       b.check();
     }
-    EXPECT_EQ(b.data->sensors.joints[5].info.age > 0.05, commanded);
+    EXPECT_EQ(b.data->sensors.joints[knee].info.age > 0.05, commanded);
     EXPECT_EQ(b.monitor.suspect().suspicion, commanded ? Suspicion::kStuck : Suspicion::kNone);
+  }
+}
+
+// The gait of a robot that tips over one foot still believes in the other one.
+TEST(SensorMonitor, AFootInTheAirIsNotFrozenWhateverTheGaitBelieves) {
+  Bench b;
+  b.run(20);
+  b.lift(GAITD_RIGHT, 0.9, 1000);
+  EXPECT_EQ(b.data->sensors.feet[GAITD_RIGHT].info.age, 0.0);
+  EXPECT_EQ(b.monitor.suspect().suspicion, Suspicion::kNone);
+}
+
+TEST(SensorMonitor, AFootThatHasToCarryAndShowsNothingIsFrozen) {
+  Bench b;
+  b.run(20);
+  b.lift(GAITD_RIGHT, 0.0, 160);
+  EXPECT_GT(b.data->sensors.feet[GAITD_RIGHT].info.age, 0.02);
+  EXPECT_EQ(b.monitor.suspect().suspicion, Suspicion::kFrozen);
+  EXPECT_STREQ(b.monitor.suspect().sensor, "right foot force");
+}
+
+TEST(SensorMonitor, ARobotThatHangsOrLiesHasNoFrozenFeet) {
+  for (const SafetyState state : {SafetyState::kDisarmed, SafetyState::kReadying,
+                                  SafetyState::kTesting, SafetyState::kFault}) {
+    Bench b;
+    b.data->safety = state;
+    b.run(20);
+    b.lift(GAITD_RIGHT, 0.0, 1000);
+    EXPECT_EQ(b.data->sensors.feet[GAITD_RIGHT].info.age, 0.0) << static_cast<int>(state);
+  }
+}
+
+// In a simulation without noise nothing changes any more once it lies still.
+TEST(SensorMonitor, ARobotAtPerfectRestHasNoFrozenSensors) {
+  for (const bool controlled : {false, true}) {
+    Bench b;
+    b.data->safety = controlled ? SafetyState::kStanding : SafetyState::kDisarmed;
+    b.run(20);
+    const GaitdSensors rest = b.data->readings;
+    for (int i = 0; i < 100; ++i) {
+      b.next();
+      const std::uint32_t sequence = b.data->readings.imus[0].info.sequence;
+      b.data->readings = rest;
+      b.data->readings.imus[0].info.sequence = sequence;
+      for (auto& foot : b.data->readings.feet) foot.info.sequence = sequence;
+      b.check();
+    }
+    // Nobody who balances is at rest: then it is the sensors.
+    EXPECT_EQ(b.data->sensors.imus[0].info.age > 0.02, controlled);
+    EXPECT_EQ(b.data->sensors.feet[0].info.age > 0.02, controlled);
+  }
+}
+
+TEST(SensorMonitor, ALightSlowJointMayBeFlung) {
+  Bench b;
+  const int neck = b.joint("neck_ay");
+  ASSERT_LT(3.0 * atlas().joints[neck].velocity_limit, 28.0);
+  b.run(20);
+  for (int i = 0; i < 50; ++i) {
+    b.next();
+    b.data->readings.joints[neck].velocity = 28.0 + 1e-3 * i;
+    b.check();
+  }
+  EXPECT_EQ(b.passed(neck).velocity, b.data->readings.joints[neck].velocity);
+  EXPECT_FALSE(b.dropped(neck));
+}
+
+TEST(SensorMonitor, AJointThatBalanceDoesNotNeedIsDroppedAndStopsNobody) {
+  for (const Suspicion how : {Suspicion::kUntrue, Suspicion::kSilent, Suspicion::kStuck}) {
+    Bench b;
+    const int neck = b.joint("neck_ay");
+    b.run(20);
+    const double last = b.passed(neck).position;
+    b.data->commands.joints[neck].velocity = how == Suspicion::kStuck ? 10.0 : 0.0;
+    const auto fail = [&](int ticks) {
+      for (int i = 0; i < ticks; ++i) {
+        b.next();
+        GaitdJointSensor& joint = b.data->readings.joints[neck];
+        if (how == Suspicion::kUntrue) joint.velocity = kNan;
+        if (how == Suspicion::kSilent) joint.info = {0, 1e-3 * i, 0, i < 18 ? 1u : 0u};
+        if (how == Suspicion::kStuck) joint.position = last;
+        b.check();
+        EXPECT_EQ(b.monitor.suspect().suspicion, Suspicion::kNone);
+      }
+    };
+    fail(18);
+    EXPECT_FALSE(b.dropped(neck));
+    fail(30);
+    EXPECT_TRUE(b.dropped(neck));
+    EXPECT_EQ(b.monitor.dropped(neck).suspicion, how);
+    EXPECT_STREQ(b.monitor.dropped(neck).sensor, "neck_ay");
+    EXPECT_EQ(b.passed(neck).velocity, 0.0);
+    EXPECT_EQ(b.passed(neck).info.valid, 1u);
+    EXPECT_NEAR(b.passed(neck).position, last, 1e-3);
+    b.data->commands.joints[neck].velocity = 0.0;
+    b.run(100);  // it reads well again, but its drive may be anywhere
+    EXPECT_TRUE(b.dropped(neck));
+    EXPECT_EQ(b.passed(neck).position, b.data->readings.joints[neck].position);
+    b.data->safety = SafetyState::kReadying;  // armed again
+    b.run(1);
+    EXPECT_FALSE(b.dropped(neck));
+  }
+}
+
+TEST(SensorMonitor, WhoComesUpNeedsEveryJoint) {
+  Bench b;
+  b.data->safety = SafetyState::kReadying;
+  const int neck = b.joint("neck_ay");
+  b.run(20);
+  for (int i = 0; i < 30; ++i) {
+    b.next();
+    b.data->readings.joints[neck].velocity = kNan;
+    b.check();
+  }
+  EXPECT_FALSE(b.dropped(neck));
+  EXPECT_STREQ(b.monitor.suspect().sensor, "neck_ay");
+}
+
+TEST(BalanceJoints, AreTheLegsAndTheSpine) {
+  const JointMask balance = balance_joints(atlas());
+  for (int i = 0; i < atlas().joint_count; ++i) {
+    const std::string name = atlas().joints[i].name;
+    const bool needed = name.find("_leg_") != std::string::npos || name.starts_with("back_");
+    EXPECT_EQ((balance >> i & 1u) != 0, needed) << name;
   }
 }
 

@@ -65,6 +65,8 @@ class SyntheticRun {
                    "right": {"knee": "r_knee", "knee_bend_sign": -1, "joints": ["r_knee"]}})"},
       {"fault_bits", R"({"fall": 3})"}};
 
+  LogMetadata end = {{"realtime_factor", "4.5"}};  // metadata of the end
+
   int ticks() const { return 500 + 300 * steps_ + 100 + 500; }
   int transfer_start(int step) const { return 500 + 300 * (step - 1); }  // of step k, from 1
   int swing_start(int step) const { return transfer_start(step) + 100; }
@@ -92,7 +94,7 @@ class SyntheticRun {
         writer.write_tick(tick, 0.001 * tick, values_, nullptr);
       }
       for (const Event& event : events) writer.write_event(event);
-      EXPECT_TRUE(writer.close({{"realtime_factor", "4.5"}}));
+      EXPECT_TRUE(writer.close(end));
     }
     const auto log = LogReader::open(path, &error);
     EXPECT_NE(log, nullptr) << error;

@@ -57,6 +57,22 @@ TEST(Verdict, ARefusedCommandFailsUnlessItIsExpected) {
   EXPECT_FALSE(run.judge(expected).pass) << "a refusal that is expected has to come";
 }
 
+TEST(Verdict, ARunThatEndedBeforeItsScenarioWasOverFails) {
+  Expectations expected;
+  expected.no_fall = true;
+  for (const std::string end : {"settled", "duration", "stopped", "fault", "backend", "push"}) {
+    SyntheticRun run(2);
+    run.end["end"] = end;
+    EXPECT_TRUE(run.judge(expected).pass) << end << ": nobody knows how long it should have been";
+    run.metadata["scenario"] = "flat";
+    const Verdict verdict = run.judge(expected);
+    EXPECT_EQ(verdict.pass, end == "settled" || end == "duration") << verdict_text(verdict);
+    if (verdict.pass) continue;
+    EXPECT_EQ(verdict.judgements.back().name, "played_to_the_end");
+    EXPECT_EQ(verdict.judgements.back().figure, end);
+  }
+}
+
 TEST(Verdict, APerfectRunPasses) {
   SyntheticRun run(6);
   const Verdict verdict = run.judge(all_of_it());

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/state_text.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+
+#include "gaitd/sdk/layer_names.h"
+
+namespace gaitd::daemon {
+namespace {
+
+// Appends to a text of fixed size; what does not fit is left out.
+class Text {
+ public:
+  Text(char* text, std::size_t size) : text_(text), size_(size) {}
+  [[gnu::format(printf, 2, 3)]] void add(const char* format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = std::vsnprintf(text_ + used_, size_ - used_, format, arguments);
+    va_end(arguments);
+    if (length > 0) used_ = std::min(used_ + static_cast<std::size_t>(length), size_ - 1);
+  }
+  std::string_view view() const { return {text_, used_}; }
+
+ private:
+  char* const text_;
+  const std::size_t size_;
+  std::size_t used_ = 0;
+};
+
+}  // namespace
+
+std::string_view state_text(const Pipeline& pipeline, char* buffer, std::size_t size) {
+  const TickData& d = pipeline.data();
+  Text text(buffer, size);
+  text.add(R"({"state":"%s","faults":[)", kSafetyStateNames[static_cast<int>(d.safety)]);
+  const char* comma = "";
+  for (std::size_t i = 0; i < kFaultNames.size(); ++i) {
+    if ((d.faults >> i & 1u) == 0) continue;
+    text.add("%s\"%s\"", comma, kFaultNames[i]);
+    comma = ",";
+  }
+  text.add("]");
+  const LayerChain::Failure& failure = pipeline.layers().failure();
+  if ((d.faults & (kFaultEstimator | kFaultLayer | kFaultSolver)) != 0 && failure.layer >= 0) {
+    text.add(R"(,"layer":"%s","what":"%s")", sdk::kLayerNames[failure.layer].data(), failure.what);
+  }
+  if ((d.faults & kFaultCapture) != 0) {
+    const CaptureCheck& capture = pipeline.safety().capture();
+    text.add(R"(,"what":"ICP %.2f m off the feet, beyond %.2f m")", capture.distance(),
+             capture.limit());
+  }
+  if ((d.faults & kFaultSensors) != 0) {
+    const SensorMonitor::Suspect& suspect = pipeline.monitor().suspect();
+    text.add(R"(,"sensor":"%s","what":"%s for %.0f ms")", suspect.sensor,
+             name_of(suspect.suspicion), 1e3 * suspect.age);
+  }
+  text.add("}");
+  return text.view();
+}
+
+std::string_view dropped_text(const SensorMonitor& monitor, int index, char* buffer,
+                              std::size_t size) {
+  const SensorMonitor::Suspect& joint = monitor.dropped(index);
+  Text text(buffer, size);
+  text.add(R"({"dropped":"%s","what":"%s for %.0f ms: damped until the robot is armed again"})",
+           joint.sensor, name_of(joint.suspicion), 1e3 * joint.age);
+  return text.view();
+}
+
+}  // namespace gaitd::daemon

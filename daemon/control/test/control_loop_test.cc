@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// The control loop in lockstep with a backend that fails as a test wants it to.
+#include "daemon/control/control_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/control/signals.h"
+#include "daemon/control/test/pipeline_bench.h"
+#include "daemon/log/log_reader.h"
+
+namespace gaitd::daemon {
+namespace {
+
+constexpr int kNever = 1 << 30;
+constexpr int kStanding = 4500;  // ticks after which the robot stands
+
+class FailingBackend {
+ public:
+  FailingBackend() {
+    vtable.size = sizeof(vtable);
+    vtable.read = [](void* self, GaitdSensors* sensors) { return of(self).read(*sensors); };
+    vtable.write = [](void*, const GaitdJointCommands*) { return GaitdStatus{GAITD_OK}; };
+    vtable.advance = [](void* self) {
+      return GaitdStatus{of(self).tick > of(self).advance_fails ? GAITD_ERROR : GAITD_OK};
+    };
+    vtable.disturb = [](void* self, const GaitdDisturbance*) { return of(self).disturbed; };
+  }
+  GaitdBackendInstance instance() { return {this, &vtable}; }
+
+  PipelineBench bench;
+  GaitdBackendVtable vtable{};
+  int tick = 0;
+  int read_fails = kNever;
+  int advance_fails = kNever;
+  int neck_fails = kNever;
+  GaitdStatus disturbed = GAITD_OK;
+
+ private:
+  static FailingBackend& of(void* self) { return *static_cast<FailingBackend*>(self); }
+  GaitdStatus read(GaitdSensors& sensors) {
+    if (tick >= read_fails) return GAITD_ERROR;
+    bench.read(tick, sensors);
+    for (int i = 0; i < atlas().joint_count && tick >= neck_fails; ++i) {
+      if (std::string_view(atlas().joints[i].name) == "neck_ay") sensors.joints[i].position = NAN;
+    }
+    ++tick;
+    return GAITD_OK;
+  }
+};
+
+class ControlLoopTest : public ::testing::Test {
+ protected:
+  // Plays the scenario on the backend; its events are in `events` afterwards.
+  LoopReport run(const Scenario& scenario) {
+    const std::string path = ::testing::TempDir() + "gaitd_loop_" +
+                             ::testing::UnitTest::GetInstance()->current_test_info()->name() +
+                             ".mcap";
+    Pipeline& pipeline = *backend.bench.pipeline;
+    LayerVariants variants;
+    std::fill(std::begin(variants), std::end(variants), std::vector<std::string>{"shipped"});
+    Telemetry telemetry(make_signal_table(atlas(), variants, false), {});
+    std::string error;
+    EXPECT_TRUE(telemetry.open_log(path, {}, {}, &error)) << error;
+    telemetry.start();
+    Issues issues;
+    ScenarioPlayer player(scenario, atlas(), backend.bench.parameters, &issues);
+    EXPECT_TRUE(issues.ok()) << issues.error_text();
+    TickWatch watch(kPipelinePeriod);
+    ControlLoop loop({}, atlas(), &pipeline, backend.instance(), &telemetry, nullptr, &player,
+                     nullptr, &watch);
+    const LoopReport report = loop.run();
+    EXPECT_TRUE(telemetry.close({}, &error)) << error;
+    const auto log = LogReader::open(path, &error);
+    EXPECT_NE(log, nullptr) << error;
+    if (log != nullptr) events = log->events();
+    return report;
+  }
+  static Scenario standing(double duration) {
+    Scenario scenario;
+    scenario.duration = duration;
+    return scenario;
+  }
+  static Scenario pushed() {
+    Scenario scenario = standing(6.0);
+    ScenarioDisturbance push;
+    push.link = "pelvis";
+    push.force = {100.0, 0.0, 0.0};
+    push.duration = 0.1;
+    push.time = 5.0;
+    scenario.disturbances.push_back(push);
+    return scenario;
+  }
+  bool told(EventKind kind, const std::string& text) const {
+    return std::any_of(events.begin(), events.end(), [&](const Event& event) {
+      return event.kind == event_kind_name(kind) && event.text.find(text) != std::string::npos;
+    });
+  }
+
+  FailingBackend backend;
+  std::vector<Event> events;
+};
+
+TEST_F(ControlLoopTest, ARunWithoutFailureSaysSo) {
+  const LoopReport report = run(standing(0.5));
+  EXPECT_EQ(report.end, RunEnd::kDuration);
+  EXPECT_EQ(report.problem, "");
+  EXPECT_EQ(report.ticks, 500);
+}
+
+TEST_F(ControlLoopTest, ABackendThatDoesNotAdvanceIsAFaultAndTheRunFails) {
+  backend.advance_fails = 30;
+  const LoopReport report = run(standing(0.5));
+  EXPECT_EQ(report.end, RunEnd::kBackend);
+  EXPECT_EQ(report.ticks, 31);
+  EXPECT_NE(report.problem.find("advance"), std::string::npos);
+  EXPECT_EQ(backend.bench.pipeline->safety().faults(), kFaultBackend);
+  EXPECT_TRUE(told(EventKind::kFault, R"({"fault":"backend","what":"advance failed"})"));
+}
+
+TEST_F(ControlLoopTest, ABackendThatCannotBeReadIsAFaultAndTheRunFails) {
+  backend.read_fails = 30;
+  const LoopReport report = run(standing(0.5));
+  EXPECT_EQ(report.end, RunEnd::kBackend);
+  EXPECT_EQ(report.ticks, 30);
+  EXPECT_NE(report.problem.find("read"), std::string::npos);
+  EXPECT_EQ(backend.bench.pipeline->safety().faults(), kFaultBackend);
+  EXPECT_TRUE(told(EventKind::kFault, R"({"fault":"backend","what":"read failed"})"));
+}
+
+TEST_F(ControlLoopTest, ARobotThatCannotSayHowItIsCountsAsUnhealthy) {
+  backend.vtable.health = [](void*, GaitdHealth*) { return GaitdStatus{GAITD_ERROR}; };
+  run(standing(0.1));
+  EXPECT_EQ(backend.bench.pipeline->safety().faults(), kFaultBus);
+}
+
+TEST_F(ControlLoopTest, ABackendWithoutPushesIsNotRunOnAScenarioThatHasThem) {
+  backend.vtable.disturb = nullptr;
+  const LoopReport report = run(pushed());
+  EXPECT_EQ(report.end, RunEnd::kPush);
+  EXPECT_EQ(report.ticks, 0);
+  EXPECT_NE(report.problem.find("pushes"), std::string::npos);
+}
+
+TEST_F(ControlLoopTest, APushThatTheBackendRefusesEndsTheRunAsAFailure) {
+  backend.disturbed = GAITD_ERROR;
+  const LoopReport report = run(pushed());
+  EXPECT_EQ(report.end, RunEnd::kPush);
+  EXPECT_EQ(report.ticks, 5001);
+  EXPECT_NE(report.problem.find("pelvis"), std::string::npos);
+}
+
+TEST_F(ControlLoopTest, APushThatIsMadeIsNoFailure) {
+  const LoopReport report = run(pushed());
+  EXPECT_EQ(report.end, RunEnd::kDuration);
+  EXPECT_EQ(report.problem, "");
+}
+
+TEST_F(ControlLoopTest, AHeadThatFailsIsToldAndTheRobotGoesOn) {
+  backend.neck_fails = kStanding;
+  const LoopReport report = run(standing(5.0));
+  EXPECT_EQ(report.end, RunEnd::kDuration);
+  EXPECT_EQ(backend.bench.pipeline->safety().state(), SafetyState::kStanding);
+  EXPECT_TRUE(told(EventKind::kNote, R"({"dropped":"neck_ay","what":"not credible for )"));
+}
+
+}  // namespace
+}  // namespace gaitd::daemon
