@@ -27,7 +27,8 @@ int main(int argc, char** argv) {
   std::string error;
   const auto log = daemon::LogReader::open(argv[1], &error);
   std::vector<benchmarks::RecordedTick> ticks;
-  daemon::ReplayOptions options{daemon::Paths::detect().plugin_folders(), {}, {}, {}};
+  daemon::ReplayOptions options;
+  options.plugin_folders = daemon::Paths::detect().plugin_folders();
   options.after_tick = [&](const daemon::TickData& d) {
     for (const auto& [from, to] : windows) {
       if (d.time.tick < from || d.time.tick >= to) continue;

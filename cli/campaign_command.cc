@@ -23,6 +23,7 @@
 #include "cli/campaign_summary.h"
 #include "cli/failure.h"
 #include "cli/print.h"
+#include "daemon/config/library_paths.h"
 
 namespace gaitd::cli {
 namespace {
@@ -37,6 +38,7 @@ struct Arguments {
   std::string folder;
   std::vector<std::string> settings;
   int jobs = 0;
+  bool trust = false;
 };
 
 std::string duration_text(double seconds) {
@@ -115,6 +117,22 @@ int take_folder(const fs::path& folder, const std::string& text, std::string* er
   return lock;
 }
 
+// The first library that the campaign names by its path, as KEY=PATH; empty if there is none. Its
+// settings reach gaitd as --set, where nobody could tell whose word they are.
+std::string library_of(const Campaign& campaign) {
+  for (const CampaignSetting& setting : campaign.settings) {
+    for (const std::string& value : setting.values) {
+      daemon::Settings settings;
+      daemon::Issues unreadable;  // gaitd will say so
+      settings.set_assignment(setting.key + "=" + value, &unreadable);
+      for (const daemon::Settings::Entry& entry : daemon::library_paths(settings)) {
+        return entry.key + "=" + entry.value->text;
+      }
+    }
+  }
+  return "";
+}
+
 void write_plots(const Campaign& campaign, const std::vector<SearchResult>& found,
                  const fs::path& folder) {
   for (const std::string& scenario : campaign.scenarios) {
@@ -127,6 +145,15 @@ int run(const Context& context, const Arguments& arguments) {
   daemon::Issues issues;
   const std::optional<Campaign> campaign = load_campaign(arguments.file, &issues);
   if (!campaign) return fail(context, kFailed, "campaign", issues.error_text());
+  if (!arguments.trust) {
+    const std::string path = library_of(*campaign);
+    if (!path.empty()) {
+      return fail(context, kFailed, "campaign",
+                  arguments.file + ": " + path +
+                      ": a file may not name code to run; name an installed variant, give the "
+                      "path with --set, or say --trust if you know the library");
+    }
+  }
   const fs::path folder =
       fs::absolute(arguments.folder.empty() ? fs::path(arguments.file).stem().string() + "-results"
                                             : arguments.folder);
@@ -147,6 +174,7 @@ int run(const Context& context, const Arguments& arguments) {
   options.gaitctl = fs::read_symlink("/proc/self/exe", ignored);
   options.folder = folder;
   options.settings = arguments.settings;
+  options.trust = arguments.trust;
   options.jobs = arguments.jobs > 0
                      ? arguments.jobs
                      : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -170,6 +198,13 @@ int run(const Context& context, const Arguments& arguments) {
     std::cerr << "interrupted; the same command goes on\n";
     return kInterrupted;
   }
+  int damaged = 0;
+  for (const auto& [number, result] : results.results()) damaged += result.damaged ? 1 : 0;
+  if (damaged > 0) {
+    std::cerr << "gaitctl: campaign: the logs of " << damaged
+              << " runs are damaged; the same command plays them again\n";
+    return kDamaged;
+  }
   return summary["pass"].get<bool>() ? kDone : kFailed;
 }
 
@@ -180,7 +215,7 @@ void add_campaign_command(CLI::App* app, Context* context) {
       "campaign", "Play scenarios with many settings and seeds on all processors");
   command->footer(
       "Started again after an end of any kind it goes on where it was. Exit code 0 only if every "
-      "combination succeeds as often as the file asks for.");
+      "combination succeeds as often as the file asks for; 4 if the log of a run is damaged.");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("FILE", arguments->file, "A campaign (schema gaitd.campaign/1)")
       ->required()
@@ -196,6 +231,8 @@ void add_campaign_command(CLI::App* app, Context* context) {
       ->type_name("KEY=VALUE")
       ->take_all()
       ->expected(1);
+  command->add_flag("--trust", arguments->trust,
+                    "Load libraries that the campaign or its scenarios name by path");
   command
       ->add_option("--jobs", arguments->jobs,
                    "Runs at once; by default as many as there are processors")

@@ -90,6 +90,7 @@ CampaignResult read_result(const Campaign& campaign, int number, const std::stri
     result.problem += (result.problem.empty() ? "" : "; ") + problem.get<std::string>();
   }
   result.problem = one_line(result.problem);
+  result.damaged = report.value("damaged", false);
   const json& verdict = report["verdict"];
   if (!verdict.is_object()) return result;
   const json& figures = verdict["figures"];

@@ -18,6 +18,7 @@ struct CampaignResult {
   std::string failed;           ///< expectations that do not hold, separated by spaces
   std::string problem;          ///< what kept it from being judged, one line; empty if nothing
   std::vector<double> figures;  ///< in the order of campaign_figures(); NaN: not measured
+  bool damaged = false;         ///< the log; such a run has a problem, and is played again
 };
 
 /// Names of the figures that are kept of each run, as in the verdict.

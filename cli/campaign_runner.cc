@@ -58,6 +58,7 @@ class Pool {
                                        run.scenario,
                                        "--log",
                                        running(run.number, ".mcap").string()};
+    if (options_.trust) arguments.emplace_back("--trust");
     std::vector<std::string> settings = assignments(campaign_, run);
     settings.insert(settings.end(), options_.settings.begin(), options_.settings.end());
     for (const std::string& setting : settings) {

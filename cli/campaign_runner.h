@@ -17,6 +17,7 @@ struct RunnerOptions {
   std::filesystem::path folder;       ///< of the campaign
   std::vector<std::string> settings;  ///< KEY=VALUE, over those of the campaign
   int jobs = 1;                       ///< processes at once
+  bool trust = false;                 ///< load libraries that scenarios name by path
 };
 
 enum class RunnerEnd { kDone, kInterrupted, kFailed };

@@ -28,6 +28,7 @@ struct Arguments {
   std::string scenario;
   std::vector<std::string> overlays;
   std::string folder;
+  bool trust = false;
 };
 
 // A gaitd.yaml as KEY=VALUE, over what the scenario sets.
@@ -104,7 +105,8 @@ int compare(const Context& context, const Arguments& arguments) {
     std::string error;
     RunOptions options{fs::read_symlink("/proc/self/exe", ignored).parent_path() / "gaitd",
                        settings_of(overlay, &error),
-                       {}};
+                       {},
+                       arguments.trust};
     if (!error.empty()) return fail(context, kFailed, "compare", error);
     if (!arguments.folder.empty()) {
       options.log = fs::path(arguments.folder) / (std::string(1, static_cast<char>('a' + i)) + "-" +
@@ -119,7 +121,14 @@ int compare(const Context& context, const Arguments& arguments) {
     }
   }
   std::cout << (context.json ? json_text(json_of(arguments, runs)) : text_of(arguments, runs));
-  return kDone;
+  bool damaged = false;
+  for (const RunReport& report : runs) {
+    damaged |= report.damaged;
+    for (const std::string& problem : report.problems) {
+      std::cerr << "gaitctl: compare: " << report.log << ": " << problem << "\n";
+    }
+  }
+  return damaged ? kDamaged : kDone;
 }
 
 }  // namespace
@@ -131,7 +140,7 @@ void add_compare_command(CLI::App* app, Context* context) {
       "A.yaml and B.yaml are configurations as gaitd.yaml, laid over what the scenario sets, e.g.\n"
       "  schema: gaitd.config/1\n"
       "  step_adjuster: {variant: fixed_steps}\n"
-      "Exit code 0 if both were played, whatever their verdicts.");
+      "Exit code 0 if both were played, whatever their verdicts; 4 if a log is damaged.");
   auto arguments = std::make_shared<Arguments>();
   const auto* scenario =
       command->add_option("SCENARIO", arguments->scenario, "Name of a scenario, or its file")
@@ -143,6 +152,8 @@ void add_compare_command(CLI::App* app, Context* context) {
       ->expected(2)
       ->type_name("FILE");
   command->add_option("--log", arguments->folder, "Folder for both logs")->type_name("FOLDER");
+  command->add_flag("--trust", arguments->trust,
+                    "Load libraries that the scenario or its robot.yaml names by path");
   command->callback([context, arguments] {
     context->action = [context, arguments] { return compare(*context, *arguments); };
   });

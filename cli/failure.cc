@@ -67,7 +67,8 @@ std::string message_for(std::string_view command, std::string_view method,
 
 int fail(const Context& context, int exit_code, std::string_view command,
          std::string_view message) {
-  constexpr std::array<std::string_view, 4> kKinds = {"done", "failed", "usage", "no_daemon"};
+  constexpr std::array<std::string_view, 5> kKinds = {"done", "failed", "usage", "no_daemon",
+                                                      "damaged"};
   return report(context, {.exit_code = exit_code,
                           .kind = kKinds[static_cast<std::size_t>(exit_code)],
                           .command = command,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/failure.h"
+#include "cli/log_damage.h"
 #include "cli/print.h"
 #include "cli/replay_command.h"
 #include "daemon/log/export_csv.h"
@@ -48,7 +49,7 @@ int show_info(const Context& context, const std::string& file, bool signals) {
   } else {
     std::cout << with_newline(daemon::log_info_text(*log));
   }
-  return kDone;
+  return tell_damage("log info", *log, kDone);
 }
 
 struct ExportOptions {
@@ -84,17 +85,20 @@ int export_log(const Context& context, const ExportOptions& options) {
                   ": cannot write: " + std::strerror(errno));
   }
   if (context.json) {
-    std::cout << json_text({{"file", options.output},
-                            {"rows", log->tick_count()},
-                            {"signals", log->match(options.signals)}});
+    nlohmann::json result = {{"file", options.output},
+                             {"rows", log->tick_count()},
+                             {"signals", log->match(options.signals)}};
+    add_damage(*log, &result);
+    std::cout << json_text(result);
   }
-  return kDone;
+  return tell_damage("log export", *log, kDone);
 }
 
 }  // namespace
 
 void add_log_commands(CLI::App* app, Context* context) {
   auto* log = app->add_subcommand("log", "Read a log file");
+  log->footer("Exit code 4: done, but the log is damaged; what is missing is said.");
   log->require_subcommand(1);
 
   auto* info = log->add_subcommand("info", "What is in a log: length, signals, events, versions");

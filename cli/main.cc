@@ -18,6 +18,7 @@
 #include "cli/log_commands.h"
 #include "cli/man_text.h"
 #include "cli/param_commands.h"
+#include "cli/plain_output.h"
 #include "cli/plugin_commands.h"
 #include "cli/report/report_command.h"
 #include "cli/run_command.h"
@@ -44,7 +45,9 @@ int run(int argc, char** argv) {
                  "$XDG_RUNTIME_DIR/gaitd.sock, then /tmp/gaitd-<uid>/gaitd.sock")
       ->type_name("FILE");
   app.add_flag("--json", context.json, "Print results, and errors too, as JSON");
-  app.footer("Exit codes: 0 done, 1 refused or failed, 2 usage, 3 no daemon.");
+  app.footer(
+      "Exit codes: 0 done, 1 refused or failed, 2 usage, 3 no daemon, 4 done, but a log is "
+      "damaged.");
   add_daemon_commands(&app, &context);
   add_plugin_commands(&app, &context);
   add_joint_commands(&app, &context);
@@ -75,6 +78,8 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const gaitd::cli::PlainOutput out(&std::cout);
+  const gaitd::cli::PlainOutput err(&std::cerr);
   try {
     return run(argc, argv);
   } catch (const std::exception& e) {

@@ -22,6 +22,7 @@ usage::ManText man_text() {
            "be read.\n"
            "2\tThe command line is wrong; nothing was sent.\n"
            "3\tNo daemon can be reached, or it went away before it answered.\n"
+           "4\tDone, but a log that was read is damaged; what is missing is on standard error.\n"
            "130\tA run was interrupted.\n"},
           {"OUTPUT AS JSON",
            "With --json, standard output holds one JSON document: the result, or "

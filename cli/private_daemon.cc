@@ -66,6 +66,7 @@ std::optional<DaemonEnd> run_daemon(const DaemonRun& run, const Watch& watch, st
   const std::string socket = directory.path() + "/gaitd.sock";
   std::vector<std::string> arguments{run.program, "--scenario", run.scenario, "--clock", "lockstep",
                                      "--socket",  socket,       "--log",      run.log};
+  if (run.trust) arguments.emplace_back("--trust");
   for (const std::string& setting : run.settings) {
     arguments.push_back("--set");
     arguments.push_back(setting);

@@ -19,6 +19,7 @@ struct DaemonRun {
   std::filesystem::path log;          ///< it writes
   std::filesystem::path output;       ///< takes its standard output and error
   std::vector<std::string> settings;  ///< KEY=VALUE
+  bool trust = false;                 ///< of the libraries that the scenario names
 };
 
 /// How it ended.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/failure.h"
+#include "cli/log_damage.h"
 #include "cli/print.h"
 #include "daemon/config/paths.h"
 #include "daemon/replay/replay.h"
@@ -79,16 +80,33 @@ std::string report_text(const std::string& file, const ReplayReport& report) {
   return out;
 }
 
-int replay(const Context& context, const std::string& file, const std::vector<std::string>& set) {
+struct Arguments {
+  std::string file;
+  std::vector<std::string> set;
+  bool trust = false;
+};
+
+int replay(const Context& context, const Arguments& arguments) {
+  const std::string& file = arguments.file;
   std::string error;
   const auto log = daemon::LogReader::open(file, &error);
   if (!log) return fail(context, kFailed, "log replay", error);
-  const daemon::ReplayOptions options{daemon::Paths::detect().plugin_folders(), set, {}, {}};
+  daemon::ReplayOptions options;
+  options.plugin_folders = daemon::Paths::detect().plugin_folders();
+  options.set = arguments.set;
+  options.trust = arguments.trust;
   const auto report = daemon::replay(*log, options, &error);
   if (!report) return fail(context, kFailed, "log replay", error);
-  std::cout << (context.json ? json_text(report_json(file, *report)) : report_text(file, *report));
+  if (context.json) {
+    json result = report_json(file, *report);
+    add_damage(*log, &result);
+    std::cout << json_text(result);
+  } else {
+    std::cout << report_text(file, *report);
+  }
   // With another layer the difference is what was asked for.
-  return report->differences.empty() || !set.empty() ? kDone : kFailed;
+  const bool as_wanted = report->differences.empty() || !arguments.set.empty();
+  return tell_damage("log replay", *log, as_wanted ? kDone : kFailed);
 }
 
 }  // namespace
@@ -99,17 +117,22 @@ void add_replay_command(CLI::App* log, Context* context) {
   command->footer(
       "Exit code 0 if every signal of every tick is what was recorded; else the first tick, layer\n"
       "and signal that differ are named. With --set the difference that it makes is shown. It\n"
-      "needs the log, the plugins and no daemon; wall times and the simulation are not replayed.");
-  auto file = std::make_shared<std::string>();
-  auto set = std::make_shared<std::vector<std::string>>();
-  command->add_option("FILE", *file, "A log of gaitd (.mcap)")->required()->type_name("FILE");
+      "needs the log, the installed plugins and no daemon; wall times and the simulation are not\n"
+      "replayed. 4: the log is damaged, and was replayed up to the first tick that is missing.");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("FILE", arguments->file, "A log of gaitd (.mcap)")
+      ->required()
+      ->type_name("FILE");
   command
-      ->add_option("--set", *set,
+      ->add_option("--set", arguments->set,
                    "Change a configuration key, e.g. whole_body_controller.variant=com_height_qp")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  command->callback([context, file, set] {
-    context->action = [context, file, set] { return replay(*context, *file, *set); };
+  command->add_flag("--trust", arguments->trust,
+                    "Load a library from where the log says that it was, if the installed one is "
+                    "another");
+  command->callback([context, arguments] {
+    context->action = [context, arguments] { return replay(*context, *arguments); };
   });
 }
 

@@ -16,6 +16,7 @@
 #include "cli/print.h"
 #include "cli/scenario_run.h"
 #include "daemon/config/paths.h"
+#include "daemon/config/printable.h"
 
 namespace gaitd::cli {
 namespace {
@@ -28,6 +29,7 @@ struct Arguments {
   std::vector<std::string> scenarios;
   std::vector<std::string> settings;
   std::string log;
+  bool trust = false;
 };
 
 // gaitd stands beside this program, in a build tree and installed.
@@ -37,7 +39,8 @@ fs::path beside_this_program() {
 }
 
 void show_progress(const std::string& scenario, double time, double duration) {
-  std::fprintf(stderr, "\r%s: %.1f of %.1f s simulated\033[K", scenario.c_str(), time, duration);
+  std::fprintf(stderr, "\r%s: %.1f of %.1f s simulated\033[K", daemon::printable(scenario).c_str(),
+               time, duration);
   std::fflush(stderr);
 }
 
@@ -49,18 +52,21 @@ int run(const Context& context, const Arguments& arguments) {
         context, kUsage, "run",
         "--log " + arguments.log + ": one file for several scenarios; give a folder (ending in /)");
   }
-  const RunOptions options{beside_this_program(), arguments.settings, arguments.log};
+  const RunOptions options{beside_this_program(), arguments.settings, arguments.log,
+                           arguments.trust};
   const bool terminal = isatty(STDERR_FILENO) != 0;
   bool pass = true;
   bool interrupted = false;
+  bool damaged = false;
   std::size_t done = 0;
   nlohmann::json reports = nlohmann::json::array();
   for (const std::string& scenario : arguments.scenarios) {
     if (!terminal) std::cerr << "running " << scenario << std::endl;
     const RunReport report =
         run_scenario(scenario, options, terminal ? Progress(show_progress) : Progress());
-    if (terminal) std::cerr << "\r\033[K";
+    if (terminal) std::fputs("\r\033[K", stderr);
     pass &= report.pass();
+    damaged |= report.damaged;
     ++done;
     if (context.json) {
       reports.push_back(report_json(report));
@@ -72,6 +78,7 @@ int run(const Context& context, const Arguments& arguments) {
   }
   if (context.json) std::cout << json_text({{"pass", pass}, {"scenarios", reports}});
   if (interrupted) return kInterrupted;
+  if (damaged) return kDamaged;
   return pass ? kDone : kFailed;
 }
 
@@ -80,7 +87,8 @@ int run(const Context& context, const Arguments& arguments) {
 void add_run_command(CLI::App* app, Context* context) {
   auto* command = app->add_subcommand(
       "run", "Play scenarios on a private gaitd in lockstep and judge what the logs show");
-  command->footer("Exit code 0 only if every expectation of every scenario holds.");
+  command->footer(
+      "Exit code 0 only if every expectation of every scenario holds; 4 if a log is damaged.");
   auto arguments = std::make_shared<Arguments>();
   const auto* scenario =
       command
@@ -102,6 +110,8 @@ void add_run_command(CLI::App* app, Context* context) {
                    "$XDG_STATE_HOME/gaitd/logs (~/.local/state/gaitd/logs). The output of gaitd "
                    "goes beside it as .txt")
       ->type_name("FILE|FOLDER/");
+  command->add_flag("--trust", arguments->trust,
+                    "Load libraries that a scenario or its robot.yaml names by path");
   command->callback([context, arguments] {
     context->action = [context, arguments] { return run(*context, *arguments); };
   });

@@ -138,10 +138,12 @@ void judge(const Scenario& scenario, RunReport* report) {
     report->problems.push_back("no log to judge: " + error);
     return;
   }
-  if (!log->finished()) {
-    report->problems.push_back("the log is cut off: " + log->break_reason());
-  }
   report->verdict = daemon::compute_verdict(*log, scenario.expect);
+  for (const std::string& finding : log->damage().findings) {
+    report->problems.push_back("the log is damaged: " + finding);
+  }
+  if (log->changed()) report->problems.push_back("the log was changed while it was judged");
+  report->damaged = log->damage().any() || log->changed();
 }
 
 std::vector<std::string> refusals(const RunReport& report) {
@@ -187,8 +189,8 @@ RunReport run_scenario(const std::string& name, const RunOptions& options,
   std::error_code ignored;
   fs::remove(log, ignored);
 
-  DaemonRun run{options.gaitd, report.file, log, fs::path(log).replace_extension(".txt"),
-                options.settings};
+  DaemonRun run{options.gaitd,    report.file,  log, fs::path(log).replace_extension(".txt"),
+                options.settings, options.trust};
   Watch watch;
   if (progress) {
     watch = [&](const std::string& socket) {
@@ -219,10 +221,14 @@ std::string report_text(const RunReport& report) {
 }
 
 json report_json(const RunReport& report) {
-  json out = {
-      {"scenario", report.scenario}, {"file", report.file},          {"log", report.log},
-      {"pass", report.pass()},       {"refusals", refusals(report)}, {"problems", report.problems},
-      {"verdict", nullptr}};
+  json out = {{"scenario", report.scenario},
+              {"file", report.file},
+              {"log", report.log},
+              {"pass", report.pass()},
+              {"refusals", refusals(report)},
+              {"problems", report.problems},
+              {"damaged", report.damaged},
+              {"verdict", nullptr}};
   if (report.verdict) {
     out["verdict"] = json::parse(daemon::verdict_json(*report.verdict), nullptr, false);
   }

@@ -16,6 +16,7 @@ struct RunOptions {
   std::filesystem::path gaitd;        ///< the daemon's program
   std::vector<std::string> settings;  ///< KEY=VALUE, over those of the scenario
   std::filesystem::path log;  ///< where to write: a file, or a folder (ending in /); may be empty
+  bool trust = false;         ///< load libraries that the scenario names by path
 };
 
 /// Progress of the present scenario: simulated time and duration, s.
@@ -27,6 +28,7 @@ struct RunReport {
   std::string file;
   std::string log;
   std::vector<std::string> problems;  ///< what went wrong apart from the expectations
+  bool damaged = false;               ///< the log: what was judged is not all that was written
   bool interrupted = false;
   std::optional<daemon::Verdict> verdict;
 

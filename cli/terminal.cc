@@ -9,6 +9,7 @@
 #include <csignal>
 
 #include "cli/stop_signals.h"
+#include "daemon/config/printable.h"
 
 namespace gaitd::cli {
 namespace {
@@ -90,7 +91,7 @@ bool Screen::draw(const std::vector<std::string>& lines) {
   std::string text = kHome;
   for (std::size_t i = 0; i < lines.size() && i < height; ++i) {
     if (i > 0) text += "\r\n";
-    text += cut_to_width(lines[i], width) + kClearLine;
+    text += cut_to_width(daemon::printable(lines[i]), width) + kClearLine;
   }
   if (lines.size() < height) text += std::string("\r\n") + kClearBelow;
   return write_all(text);

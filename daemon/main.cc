@@ -14,6 +14,7 @@
 #include "daemon/app/application.h"
 #include "daemon/app/check_config.h"
 #include "daemon/app/command_line.h"
+#include "daemon/app/terminal_log.h"
 
 namespace {
 
@@ -59,7 +60,7 @@ class Messages {
     spdlog::set_default_logger(std::make_shared<spdlog::async_logger>(
         "gaitd", std::make_shared<spdlog::sinks::stdout_color_sink_mt>(), spdlog::thread_pool(),
         spdlog::async_overflow_policy::overrun_oldest));
-    spdlog::set_pattern("[%H:%M:%S.%e] %^%l%$ %v");
+    gaitd::daemon::set_terminal_log_format();
   }
   ~Messages() { spdlog::shutdown(); }  // says what waits
   Messages(const Messages&) = delete;

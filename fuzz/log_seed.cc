@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the seeds of target `log` into a folder: small logs, without checksums, so that a changed
-// byte gets past them to what reads the records.
+// byte gets past them to what reads the records, and one with all of them.
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -12,6 +12,7 @@
 
 #include "daemon/log/mcap_format.h"
 #include "daemon/telemetry/log_writer.h"
+#include "daemon/telemetry/test/old_log.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -52,7 +53,7 @@ void write_log(const std::string& file, McapCompression compression) {
 
 void clear_checksums(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  std::string bytes = without_seals({std::istreambuf_iterator<char>(in), {}});
   std::uint64_t length = 0;
   for (std::size_t at = mcap::kMagic.size(); at + mcap::kRecordHeaderSize < bytes.size();
        at += mcap::kRecordHeaderSize + length) {
@@ -80,6 +81,9 @@ int main(int argc, char** argv) {
     const std::string file = (folder / name).string();
     write_log(file, compression);
     clear_checksums(file);
+    if (compression == McapCompression::kNone) {
+      write_log((folder / "sealed.mcap").string(), compression);
+    }
   }
   return 0;
 }

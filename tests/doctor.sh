@@ -48,7 +48,7 @@ expect 0 gaitctl doctor walk.mcap >walk.txt
 grep -q 'no fall and no fault' walk.txt || { cat walk.txt; fail "a walk is not called well"; }
 grep -q ' s  ' walk.txt && { cat walk.txt; fail "something is found in a good walk"; }
 head -c 3000000 torque.mcap >cut.mcap
-gaitctl doctor cut.mcap >/dev/null 2>cut.txt || true
+expect 4 gaitctl doctor cut.mcap >/dev/null 2>cut.txt
 grep -q 'cut off' cut.txt || fail "nothing said of the cut: $(cat cut.txt)"
 echo nonsense >none.mcap
 expect 1 gaitctl doctor none.mcap 2>/dev/null

@@ -22,6 +22,7 @@ for _ in {1..1200}; do
   sleep 0.1
 done
 [[ $error == *"cannot write the log: File too large"* ]] || fail "the status says: $error"
+grep -q '"open": *false' status.json || fail "a log that is not written any more is called open"
 wait_for state standing 120
 expect 0 gaitctl walk --steps 2 --length 0.1
 wait_for state walking 60
@@ -30,8 +31,8 @@ stop_daemon 1
 grep -q 'the log is not complete' gaitd.txt || fail "gaitd ends without a word about the log"
 [[ $(grep -c 'the log ends here, the robot goes on' gaitd.txt) == 1 ]] ||
   { cat gaitd.txt; fail "not one message about the end of the log"; }
-expect 0 gaitctl log info log.mcap >info.txt
+expect 4 gaitctl log info log.mcap >info.txt
 grep -q 'unfinished' info.txt || fail "log info does not say that the log is cut off"
-expect 0 gaitctl log export log.mcap --signals 'time,safety/state' -o log.csv
+expect 4 gaitctl log export log.mcap --signals 'time,safety/state' -o log.csv
 (($(wc -l <log.csv) > 100)) || fail "only $(wc -l <log.csv) lines can be read"
 echo "the robot outlives its log"

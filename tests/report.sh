@@ -12,13 +12,14 @@ playwright=$GAITD_BUILD/cli/report/page/node_modules/playwright-core
 expect 0 gaitctl run estimators --log walk.mcap >run.txt
 expect 0 gaitctl report walk.mcap -o walk.html
 if grep -qE '(src|href)="?https?:' walk.html; then fail "the page loads something from elsewhere"; fi
+grep -q "Content-Security-Policy.*default-src 'none'" walk.html || fail "the page forbids itself nothing"
 expect 0 node "$GAITD_SOURCE/tests/report_page.mjs" "$playwright" "$scratch/walk.html"
 
 # A log that was cut off at any byte opens up to there.
 size=$(stat -c %s walk.mcap)
 for share in 50 5; do
   head -c $((size * share / 100)) walk.mcap >cut.mcap
-  expect 0 gaitctl report cut.mcap -o cut.html 2>cut.txt
+  expect 4 gaitctl report cut.mcap -o cut.html 2>cut.txt
   grep -q 'cut off' cut.txt || fail "nothing said of the cut: $(cat cut.txt)"
 done
 expect 0 node "$GAITD_SOURCE/tests/report_page.mjs" "$playwright" "$scratch/cut.html"
@@ -29,7 +30,7 @@ expect 1 gaitctl report none.mcap -o none.html
 expect 1 gaitctl report missing.mcap
 
 # One picture of the robot and one per plot, with something on it.
-expect 0 gaitctl report cut.mcap -o cut.html --png pictures
+expect 4 gaitctl report cut.mcap -o cut.html --png pictures
 for name in replay icp-path icp-x icp-y com-height knees torques forces step-adjustment tick-times; do
   (($(stat -c %s "pictures/$name.png") > 5000)) || fail "nothing on $name: $(ls -l pictures)"
   [[ $(head -c 8 "pictures/$name.png" | od -An -tx1 | tr -d ' ') == 89504e470d0a1a0a ]] ||

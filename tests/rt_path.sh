@@ -15,7 +15,7 @@ clean() {
 }
 # guarded NAME SCENARIO: played by a gaitd with the guard.
 guarded() {
-  GAITD_RT_GUARD=$PWD/$1.json LD_PRELOAD=$guard gaitd --scenario "$2" --clock lockstep \
+  GAITD_RT_GUARD=$PWD/$1.json LD_PRELOAD=$guard gaitd --scenario "$2" --trust --clock lockstep \
     --socket "$1.sock" --log "$1.mcap" >"$1.txt" 2>&1 || { cat "$1.txt"; fail "$1 does not run"; }
 }
 

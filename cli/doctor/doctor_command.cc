@@ -14,6 +14,7 @@
 #include "cli/doctor/machine_doctor.h"
 #include "cli/doctor/robot_doctor.h"
 #include "cli/failure.h"
+#include "cli/log_damage.h"
 #include "cli/print.h"
 #include "daemon/config/paths.h"
 #include "daemon/log/log_reader.h"
@@ -49,11 +50,15 @@ int of_log(const Context& context, const std::string& file) {
   if (log->tick_count() == 0) {
     return fail(context, kFailed, "doctor", file + ": holds no tick, nothing to look at");
   }
-  if (!log->finished()) std::cerr << "the log is cut off: " << log->break_reason() << "\n";
   const doctor::LogDiagnosis diagnosis = doctor::diagnose_log(*log);
-  std::cout << (context.json ? json_text(doctor::diagnosis_json(file, diagnosis))
-                             : doctor::diagnosis_text(file, diagnosis));
-  return diagnosis.ending.empty() ? kDone : kFailed;
+  if (context.json) {
+    nlohmann::json result = doctor::diagnosis_json(file, diagnosis);
+    add_damage(*log, &result);
+    std::cout << json_text(result);
+  } else {
+    std::cout << doctor::diagnosis_text(file, diagnosis);
+  }
+  return tell_damage("doctor", *log, diagnosis.ending.empty() ? kDone : kFailed);
 }
 
 int of_robot(const Context& context, const std::string& name) {
@@ -90,7 +95,7 @@ void add_doctor_command(CLI::App* app, Context* context) {
       "to\n"
       "look at. Exit code 0: nothing that keeps it from working, no fall and no fault; 1: there "
       "is;\n"
-      "warnings alone do not count.");
+      "warnings alone do not count; 4: the log is damaged.");
   auto file = std::make_shared<std::string>();
   command->add_option("FILE", *file, "A log (.mcap), a robot.yaml or the name of a robot")
       ->type_name("FILE");

@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "cli/child.h"
+#include "daemon/config/names.h"
 
 namespace gaitd::cli {
 namespace {
@@ -83,6 +84,7 @@ std::string write_pictures(std::string_view document, const fs::path& folder) {
     const std::size_t data = document.find(kData, at);
     if (data == std::string_view::npos) break;
     const std::string_view name = document.substr(at, data - at);
+    if (!daemon::is_file_name(name)) continue;
     const std::size_t begin = data + kData.size();
     const std::size_t end = document.find('"', begin);
     if (end == std::string_view::npos) break;

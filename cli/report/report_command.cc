@@ -10,6 +10,7 @@
 #include <string>
 
 #include "cli/failure.h"
+#include "cli/log_damage.h"
 #include "cli/print.h"
 #include "cli/report/pictures.h"
 #include "cli/report/report_data.h"
@@ -39,20 +40,19 @@ int run(const Context& context, const Arguments& arguments) {
     return fail(context, kFailed, "report",
                 arguments.output + ": cannot write: " + std::strerror(errno));
   }
-  if (!log->finished()) {
-    std::cerr << "the log is cut off: " << log->break_reason() << "\n";
-  }
   if (!arguments.png.empty()) {
     error = draw_pictures(arguments.output, arguments.png);
     if (!error.empty()) return fail(context, kFailed, "report", error);
   }
   if (context.json) {
-    std::cout << json_text({{"report", arguments.output}, {"ticks", log->tick_count()}});
+    nlohmann::json result = {{"report", arguments.output}, {"ticks", log->tick_count()}};
+    add_damage(*log, &result);
+    std::cout << json_text(result);
   } else {
     std::cout << "report: " << arguments.output << "\n";
     if (!arguments.png.empty()) std::cout << "pictures: " << arguments.png << "\n";
   }
-  return kDone;
+  return tell_damage("report", *log, kDone);
 }
 
 }  // namespace
@@ -60,6 +60,7 @@ int run(const Context& context, const Arguments& arguments) {
 void add_report_command(CLI::App* app, Context* context) {
   auto* command = app->add_subcommand(
       "report", "A page that replays a log in 3-D beside its plots; one file, no network");
+  command->footer("Exit code 4: done, but the log is damaged; what is missing is said.");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("FILE", arguments->log, "A log of gaitd (.mcap)")
       ->required()

@@ -12,10 +12,10 @@
 #include <system_error>
 #include <vector>
 
+#include "daemon/config/names.h"
 #include "daemon/config/node.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/scenario.h"
-#include "daemon/config/settings.h"
 #include "daemon/verdict/verdict.h"
 
 namespace gaitd::cli {
@@ -93,14 +93,19 @@ void add_signals(const LogReader& log, json* data) {
   }
 }
 
-// What the scenario expects, if it is still to be found by its name.
-daemon::Expectations expectations(const LogReader& log) {
-  const auto file = daemon::Paths::detect().scenario(log.metadata_value("scenario").value_or(""));
-  if (!file) return {};
-  daemon::Settings settings;
-  daemon::Issues issues;
-  const auto scenario = daemon::load_scenario(file->string(), &settings, &issues);
-  return scenario ? scenario->expect : daemon::Expectations();
+// What was expected of the run is in its log; a scenario of the same name that is installed here
+// may be another one.
+json verdict_of(const LogReader& log) {
+  const auto section = log.metadata_value("expect");
+  const auto expected = section ? daemon::read_logged_expectations(*section) : std::nullopt;
+  const daemon::Verdict verdict =
+      daemon::compute_verdict(log, expected.value_or(daemon::Expectations()));
+  json result = json::parse(daemon::verdict_json(verdict), nullptr, false);
+  const daemon::VerdictWord word =
+      daemon::verdict_word(verdict, expected.has_value(), log.damage().any());
+  result["word"] = word.text;
+  result["good"] = word.good;
+  return result;
 }
 
 // As the log holds it, else as it is installed now.
@@ -112,7 +117,9 @@ void add_robot(const LogReader& log, json* data) {
     (*data)["urdf"] = log.metadata_value("robot_urdf").value_or("");
     return;
   }
-  const auto file = daemon::Paths::detect().robot(log.metadata_value("robot").value_or(""));
+  const std::string name = log.metadata_value("robot").value_or("");
+  if (!daemon::is_file_name(name)) return;  // no path of this machine
+  const auto file = daemon::Paths::detect().robot(name);
   if (!file) return;
   const daemon::NodePtr node = daemon::load_yaml_file(file->string(), &issues);
   if (node == nullptr || !issues.ok()) return;
@@ -134,8 +141,8 @@ std::string report_data(const LogReader& log) {
   for (const auto& [key, value] : log.end_metadata()) metadata[key] = value;
   data["metadata"] = metadata;
   data["world"] = json::parse(log.metadata_value("world").value_or("null"), nullptr, false);
-  data["verdict"] = json::parse(
-      daemon::verdict_json(daemon::compute_verdict(log, expectations(log))), nullptr, false);
+  data["verdict"] = verdict_of(log);
+  data["damage"] = log.damage().findings;
   data["events"] = json::array();
   for (const daemon::Event& event : log.events()) {
     const json text = json::parse(event.text, nullptr, false);

@@ -16,6 +16,7 @@
 #include "daemon/app/metadata.h"
 #include "daemon/app/realtime.h"
 #include "daemon/config/command_parse.h"
+#include "daemon/config/library_paths.h"
 #include "daemon/control/command_json.h"
 #include "daemon/control/impedance.h"
 #include "daemon/control/parameter_methods.h"
@@ -123,6 +124,8 @@ Application::LayerRequests Application::choose_layers(Issues* all) {
       known_variants_[entry.layer].push_back(entry.variant);
     }
   }
+  check_library_paths(settings_, scenario_ ? &*scenario_ : nullptr,
+                      {options_.trust, !options_.config_is_checked}, &issues);
   LayerRequests requests;
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     const std::string& variant = config_.variants[layer];
@@ -288,6 +291,7 @@ LogMetadata Application::metadata() const {
     m["scenario"] = scenario_->name;
     m["seed"] = std::to_string(scenario_->seed);
     m["world"] = scenario_->simulator_config().dump();
+    m["expect"] = scenario_->expect_section.dump();
   }
   return m;
 }

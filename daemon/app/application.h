@@ -35,8 +35,10 @@ struct Options {
   std::string log;
   std::vector<std::string> set;
   bool require_rt = false;
+  bool trust = false;  // files may name libraries
   bool check_config = false;
-  std::string check_file;  // with check_config: a configuration, robot.yaml or scenario
+  std::string check_file;          // with check_config: a configuration, robot.yaml or scenario
+  bool config_is_checked = false;  // `config` is that file
 };
 
 // gaitd put together: configuration, robot, plugins, backend, telemetry, command server and the

@@ -26,6 +26,7 @@ bool choose_checked_file(Options* options, Issues* issues) {
     if (!name.starts_with(prefix)) continue;
     // With a slash it is taken for a path whatever it is called.
     *option = std::filesystem::absolute(options->check_file).string();
+    options->config_is_checked = option == &options->config;
     return true;
   }
   issues->add(schema ? schema->where : Location{options->check_file, 1}, "schema",

@@ -32,6 +32,8 @@ void add_options(CLI::App* app, Options* options, usage::ValueSources* values) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   app->add_flag("--require-rt", options->require_rt, "Refuse to run without all real-time means");
+  app->add_flag("--trust", options->trust,
+                "Load libraries that a scenario, a robot.yaml or a checked file names by path");
   auto* check = app->add_flag("--check-config", options->check_config,
                               "Check all that a start would check, then exit");
   app->add_option("FILE", options->check_file,

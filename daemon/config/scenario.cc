@@ -43,6 +43,18 @@ NodePtr with_overrides(NodePtr root, Settings* settings, Issues* issues) {
   return root;
 }
 
+// Logs are called by it.
+std::string read_name(MapReader* root) {
+  const std::string name = root->text("name").value_or("");
+  if (!name.empty() && !is_file_name(name)) {
+    root->fail("name",
+               "a name for files: letters, digits, '.', '_' and '-', at most " +
+                   std::to_string(kMaxFileName) + " of them, the first no '.'",
+               describe(*root->node("name")), "call it for example flat-0.35");
+  }
+  return name;
+}
+
 // Without a height the robot starts on the ground.
 GaitdStart read_start(MapReader map, const nlohmann::json& terrain, const Location& where) {
   GaitdStart start{};
@@ -119,7 +131,7 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
   root.schema("gaitd.scenario/1");
   Scenario scenario;
   scenario.file = file;
-  scenario.name = root.text("name").value_or("");
+  scenario.name = read_name(&root);
   scenario.robot = robot_from(file, root.text("robot").value_or(""));
   scenario.duration = root.number("duration", {0.001, 86400.0, "s"}).value_or(86400.0);
   scenario.seed = static_cast<std::uint64_t>(root.integer("seed", 0, 4294967295).value_or(1));
@@ -133,7 +145,11 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
   scenario.commands = read_scenario_commands(&root, scenario.duration);
   const CommandedSteps steps = check_commands(scenario.commands, scenario.mode, &found);
   scenario.disturbances = read_disturbances(&root, scenario.duration, steps);
-  scenario.expect = read_expectations(root.map("expect"), steps, scenario.duration);
+  MapReader expect = root.map("expect");
+  scenario.expect = read_expectations(expect);
+  check_expectations(scenario.expect, steps, scenario.duration, &expect);
+  const NodePtr section = root.node("expect");
+  scenario.expect_section = section ? to_json(*section) : nlohmann::json::object();
   if (const NodePtr set = root.node("set")) {
     MapReader map(set, "set", &found);
     if (map.valid()) settings->set_tree(SettingSource::kScenario, *set, &found);

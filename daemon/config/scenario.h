@@ -59,6 +59,7 @@ struct Scenario {
   std::vector<ScenarioCommand> commands;  // by time; equal times in the order of the file
   std::vector<ScenarioDisturbance> disturbances;
   Expectations expect;
+  nlohmann::json expect_section;  // as written in the file, for the log; {} if there is none
 
   // {"start": {x, y, z, yaw}, "seed", "terrain", "sensors", "actuators", "model_error"}
   nlohmann::json simulator_config() const;
@@ -66,11 +67,15 @@ struct Scenario {
 
 // Reads a scenario and puts its `set:` and `robot:` into the settings. Values that the command line
 // set under a key of the scenario (seed, duration, start.x, mode, terrain.friction, sensors.noise,
-// actuators.model, model_error.mass_scale.utorso, disturbances.0.force) take the place of those of the
-// file. Nothing when there is any error; warnings too go to `issues`.
+// actuators.model, model_error.mass_scale.utorso, disturbances.0.force) take the place of those of
+// the file. Nothing when there is any error; warnings too go to `issues`.
 std::optional<Scenario> load_scenario(const std::string& file, Settings* settings, Issues* issues);
 std::optional<Scenario> read_scenario(const NodePtr& root, const std::string& file,
                                       Settings* settings, Issues* issues);
+
+// The `expect` section as a log holds it (Scenario::expect_section as text). Nothing if it makes no
+// sense.
+std::optional<Expectations> read_logged_expectations(const std::string& text);
 
 // What could only be checked with the robot: the links that commands, disturbances and model errors
 // name, and whether there is room at the start.

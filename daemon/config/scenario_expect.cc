@@ -81,7 +81,7 @@ SignalCheck read_check(MapReader map) {
 
 }  // namespace
 
-Expectations read_expectations(MapReader map, const CommandedSteps& steps, double duration) {
+Expectations read_expectations(MapReader map) {
   Expectations expect;
   expect.no_fall = map.boolean("no_fall");
   if (const auto steps = map.integer("steps_taken", 0, 100000)) {
@@ -108,8 +108,17 @@ Expectations read_expectations(MapReader map, const CommandedSteps& steps, doubl
     const std::string path = map.path_of("checks") + "[" + std::to_string(i) + "]";
     expect.checks.push_back(read_check(MapReader(checks[i], path, map.issues())));
   }
-  check_expectations(expect, steps, duration, &map);
   map.finish();
+  return expect;
+}
+
+std::optional<Expectations> read_logged_expectations(const std::string& text) {
+  const nlohmann::json section = nlohmann::json::parse(text, nullptr, false);
+  if (!section.is_object()) return std::nullopt;
+  Issues issues;
+  const Expectations expect =
+      read_expectations(MapReader(from_json(section, {"the log", 0}), "expect", &issues));
+  if (!issues.ok()) return std::nullopt;
   return expect;
 }
 

@@ -28,7 +28,7 @@ CommandedSteps check_commands(const std::vector<ScenarioCommand>& commands, int 
 
 std::vector<ScenarioDisturbance> read_disturbances(MapReader* root, double duration,
                                                    const CommandedSteps& steps);
-Expectations read_expectations(MapReader map, const CommandedSteps& steps, double duration);
+Expectations read_expectations(MapReader map);
 // Reports what the commanded steps can never fulfil.
 void check_expectations(const Expectations& expect, const CommandedSteps& steps, double duration,
                         MapReader* map);

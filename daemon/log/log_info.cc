@@ -93,6 +93,24 @@ void append_metadata(const char* title, const LogMetadata& metadata, std::string
 
 }  // namespace
 
+nlohmann::json log_damage_json(const LogReader& log) {
+  const LogDamage& damage = log.damage();
+  nlohmann::json texts = damage.findings;
+  if (log.changed()) texts.push_back("the file was changed while it was read");
+  nlohmann::json lost = nlohmann::json::array();
+  const auto seconds = [](double time) {
+    return std::isfinite(time) ? nlohmann::json(time) : nlohmann::json();
+  };
+  for (const LostTicks& range : damage.lost) {
+    lost.push_back({{"first", range.first},
+                    {"last", range.last},
+                    {"from", seconds(range.from)},
+                    {"to", seconds(range.to)}});
+  }
+  return {
+      {"damage", std::move(texts)}, {"lost_ticks", damage.lost_ticks}, {"lost", std::move(lost)}};
+}
+
 std::string log_info_json(const LogReader& log) {
   const TimeRange range = time_range(log);
   Json json;
@@ -108,6 +126,8 @@ std::string log_info_json(const LogReader& log) {
   json["dropouts"] = log.dropouts();
   json["event_dropouts"] = log.event_dropouts();
   json["damaged"] = log.damaged();
+  json["checksums"] = log.sealed() ? "all" : "chunks";
+  json.update(log_damage_json(log));
   json["topics"] = {{kSignalsTopic, log.tick_count()},
                     {kSensorsTopic, log.sensors_count()},
                     {kEventsTopic, log.events().size()}};
@@ -131,16 +151,17 @@ std::string log_info_text(const LogReader& log) {
   std::string text = log.path() + "\n";
   text += "  written by  " + log.library() + "\n";
   text += format("  size        %.3f MB\n", static_cast<double>(log.file_size()) * 1e-6);
-  text += "  state       " + (log.finished() ? "finished" : "unfinished, " + log.break_reason());
-  text += format("\n  duration    %.3f s (%.3f to %.3f)\n", range.end - range.start, range.start,
+  text += log.finished() ? "  state       finished\n" : "  state       unfinished\n";
+  text += format("  duration    %.3f s (%.3f to %.3f)\n", range.end - range.start, range.start,
                  range.end);
   text += format("  ticks       %llu, %llu dropped\n",
                  static_cast<unsigned long long>(log.tick_count()),
                  static_cast<unsigned long long>(log.dropouts()));
-  if (log.damaged() > 0) {
-    text += format("  damaged     %llu chunks or messages left out\n",
-                   static_cast<unsigned long long>(log.damaged()));
+  for (const std::string& finding : log.damage().findings) {
+    text += "  damaged     " + finding + "\n";
   }
+  text += log.sealed() ? "  checksums   of everything\n"
+                       : "  checksums   of the chunks only: written without those of the rest\n";
   text += "topics\n";
   text += format("  %-16s %llu messages, %zu signals\n", kSignalsTopic,
                  static_cast<unsigned long long>(log.tick_count()), log.signals().size());

@@ -2,6 +2,8 @@
 #include "daemon/log/log_reader.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -22,10 +24,17 @@ struct Place {
   std::uint32_t size = 0;
 };
 
+constexpr double kMaxTick = 9e15;  // of a double that counts
+
 std::uint64_t to_count(const LogMetadata& metadata, const std::string& key) {
   const auto found = metadata.find(key);
   if (found == metadata.end()) return 0;
   return std::strtoull(found->second.c_str(), nullptr, 10);
+}
+
+std::string damage_text(const McapDamage& damage) {
+  return "bytes " + std::to_string(damage.begin) + " to " + std::to_string(damage.end) +
+         " are not what was written: " + damage.what;
 }
 
 }  // namespace
@@ -39,15 +48,20 @@ struct LogReader::Impl {
   LogMetadata end_metadata;
   std::vector<Place> ticks;
   std::vector<Place> sensors;
+  std::vector<std::uint64_t> sensors_rows;  // of the tick that stands before them
   std::vector<Event> events;
   std::uint64_t damaged = 0;
   std::uint64_t dropouts = 0;
   std::uint64_t event_dropouts = 0;
+  LogDamage damage;
+  mutable std::atomic<bool> changed{false};
 
   bool open(std::string* error);
   bool read_table(const McapChannel& channel, std::string* error);
-  void read_messages(const McapChannel& signals);
+  void read_messages(const McapChannel& signals, TickGaps* gaps);
   void count_dropouts();
+  void find_damage(const McapChannel& signals, TickGaps* gaps);
+  void find_missing(const char* topic, const char* what, std::uint64_t found);
   std::string_view data(const Place& place, std::size_t* loaded, std::string* chunk) const;
 };
 
@@ -56,7 +70,8 @@ bool LogReader::Impl::open(std::string* error) {
   const McapChannel* signals = file.find_channel(kSignalsTopic);
   if (signals == nullptr) {
     *error = path + ": not a log of gaitd: no channel " + kSignalsTopic;
-    if (!file.finished()) *error += " (" + file.break_reason() + ")";
+    for (const McapDamage& found : file.damage()) *error += "; " + damage_text(found);
+    if (!file.finished()) *error += "; " + file.break_reason();
     return false;
   }
   if (!read_table(*signals, error)) return false;
@@ -64,8 +79,10 @@ bool LogReader::Impl::open(std::string* error) {
     if (record.name == kStartMetadata) metadata = record.entries;
     if (record.name == kEndMetadata) end_metadata = record.entries;
   }
-  read_messages(*signals);
+  TickGaps gaps;
+  read_messages(*signals, &gaps);
   count_dropouts();
+  find_damage(*signals, &gaps);
   return true;
 }
 
@@ -87,19 +104,32 @@ bool LogReader::Impl::read_table(const McapChannel& channel, std::string* error)
   return true;
 }
 
-void LogReader::Impl::read_messages(const McapChannel& signals) {
+void LogReader::Impl::read_messages(const McapChannel& signals, TickGaps* gaps) {
   const McapChannel* sensors_channel = file.find_channel(kSensorsTopic);
   const McapChannel* events_channel = file.find_channel(kEventsTopic);
+  const int tick = find_signal(table, "tick");
+  const int time = find_signal(table, "time");
   RecordsCodec records;
   GaitdSensors scratch;
   std::string chunk;
   std::string error;
+  auto next_damage = file.damage().begin();
+  const auto pass_damage = [&](std::uint64_t offset) {
+    for (; next_damage != file.damage().end() && next_damage->begin <= offset; ++next_damage) {
+      damage.add(damage_text(*next_damage));
+      gaps->damage();
+    }
+  };
   for (std::size_t i = 0; i < file.chunks().size(); ++i) {
+    pass_damage(file.chunks()[i].offset);
     if (!file.read_chunk(file.chunks()[i], &chunk, &error)) {
       ++damaged;
+      if (!file.chunks()[i].suspect) damage.add(error.substr(path.size() + 2));
+      gaps->damage();
       continue;
     }
     std::uint64_t offset = 0;
+    std::uint64_t senseless = 0;
     McapMessage message;
     while (next_message(chunk, &offset, &message)) {
       const Place place = {static_cast<std::uint32_t>(i),
@@ -109,17 +139,31 @@ void LogReader::Impl::read_messages(const McapChannel& signals) {
       if (message.channel == signals.id) {
         valid = codec->matches(message.data);
         if (valid) ticks.push_back(place);
+        if (valid && tick >= 0) {
+          const double number = codec->value(message.data, static_cast<std::size_t>(tick));
+          gaps->row(
+              std::abs(number) < kMaxTick ? static_cast<std::int64_t>(number) : 0,
+              time >= 0 ? codec->value(message.data, static_cast<std::size_t>(time)) : number);
+        }
       } else if (sensors_channel != nullptr && message.channel == sensors_channel->id) {
         valid = records.parse_sensors(message.data, &scratch);
         if (valid) sensors.push_back(place);
+        if (valid) sensors_rows.push_back(ticks.empty() ? 0 : ticks.size() - 1);
       } else if (events_channel != nullptr && message.channel == events_channel->id) {
         Event event;
         valid = records.parse_event(message.data, &event);
         if (valid) events.push_back(std::move(event));
       }
-      if (!valid) ++damaged;
+      if (valid) continue;
+      ++damaged;
+      ++senseless;
+      gaps->damage();
     }
+    if (senseless == 0) continue;
+    damage.add("chunk at byte " + std::to_string(file.chunks()[i].offset) + ": " +
+               std::to_string(senseless) + " messages that make no sense were left out");
   }
+  pass_damage(file.file_size());
   std::stable_sort(events.begin(), events.end(),
                    [](const Event& a, const Event& b) { return a.tick < b.tick; });
 }
@@ -140,6 +184,50 @@ void LogReader::Impl::count_dropouts() {
   }
 }
 
+// What is written at the end of the file says what should be there; the numbers of the ticks say
+// where it is missing.
+void LogReader::Impl::find_damage(const McapChannel& signals, TickGaps* gaps) {
+  const bool damaged_bytes = !damage.findings.empty();
+  if (!file.finished()) damage.findings.push_back(file.break_reason());
+  const auto written = file.written_messages(signals.id);
+  gaps->finish(written, !metadata.contains("part"));
+  const std::uint64_t found = ticks.size();
+  damage.lost = gaps->lost();
+  // A gap in sound records is what the daemon dropped, as far as the log tells of that.
+  const std::uint64_t dropped = count_ticks(gaps->dropped());
+  if (dropped > dropouts) {
+    damage.lost.insert(damage.lost.end(), gaps->dropped().begin(), gaps->dropped().end());
+    std::sort(damage.lost.begin(), damage.lost.end(),
+              [](const LostTicks& a, const LostTicks& b) { return a.first < b.first; });
+  }
+  damage.lost_ticks =
+      std::max(count_ticks(damage.lost), written && *written > found ? *written - found : 0);
+  if (damage.lost_ticks > 0) {
+    damage.findings.push_back(std::to_string(damage.lost_ticks) + " ticks are missing" +
+                              (damage.lost.empty() ? "" : ": " + ranges_text(damage.lost)));
+  } else if (damaged_bytes) {
+    damage.findings.push_back(written ? "no tick is missing"
+                                      : "no gap in the ticks that are there");
+  }
+  find_missing(kSensorsTopic, "raw sensors of ticks", sensors.size());
+  find_missing(kEventsTopic, "events", events.size());
+  if (!damaged_bytes || !file.sealed()) return;
+  if (metadata.empty()) {
+    damage.findings.push_back("the metadata of the start, with robot and settings, are missing");
+  }
+  if (file.finished() && end_metadata.empty()) {
+    damage.findings.push_back("the metadata of the end are missing");
+  }
+}
+
+void LogReader::Impl::find_missing(const char* topic, const char* what, std::uint64_t found) {
+  const McapChannel* channel = file.find_channel(topic);
+  const auto written = channel == nullptr ? std::nullopt : file.written_messages(channel->id);
+  if (!written || *written <= found) return;
+  damage.findings.push_back(std::to_string(*written - found) + " of " + std::to_string(*written) +
+                            " " + what + " are missing");
+}
+
 // The data of the message, from a chunk that is kept for the next one. Nothing if the file is not
 // any more what it was when it was opened.
 std::string_view LogReader::Impl::data(const Place& place, std::size_t* loaded,
@@ -149,7 +237,10 @@ std::string_view LogReader::Impl::data(const Place& place, std::size_t* loaded,
     if (!file.read_chunk(file.chunks()[place.chunk], chunk, &error)) chunk->clear();
     *loaded = place.chunk;
   }
-  if (chunk->size() < place.offset || chunk->size() - place.offset < place.size) return {};
+  if (chunk->size() < place.offset || chunk->size() - place.offset < place.size) {
+    changed = true;
+    return {};
+  }
   return std::string_view(*chunk).substr(place.offset, place.size);
 }
 
@@ -169,6 +260,9 @@ std::uint64_t LogReader::file_size() const { return impl_->file.file_size(); }
 bool LogReader::finished() const { return impl_->file.finished(); }
 const std::string& LogReader::break_reason() const { return impl_->file.break_reason(); }
 std::uint64_t LogReader::damaged() const { return impl_->damaged; }
+const LogDamage& LogReader::damage() const { return impl_->damage; }
+bool LogReader::sealed() const { return impl_->file.sealed(); }
+bool LogReader::changed() const { return impl_->changed; }
 const LogMetadata& LogReader::metadata() const { return impl_->metadata; }
 const LogMetadata& LogReader::end_metadata() const { return impl_->end_metadata; }
 const SignalTable& LogReader::signals() const { return impl_->table; }
@@ -263,6 +357,10 @@ bool LogReader::SensorsCursor::next(GaitdSensors* sensors) {
   const Place& place = state.impl->sensors[state.next++];
   const std::string_view data = state.impl->data(place, &state.chunk_index, &state.chunk);
   return state.codec.parse_sensors(data, sensors);
+}
+
+std::uint64_t LogReader::SensorsCursor::row() const {
+  return state_->next == 0 ? 0 : state_->impl->sensors_rows[state_->next - 1];
 }
 
 }  // namespace gaitd::daemon

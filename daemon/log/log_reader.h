@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "daemon/log/event.h"
+#include "daemon/log/log_damage.h"
 #include "daemon/log/log_format.h"
 #include "daemon/log/signal.h"
 #include "gaitd/abi/types.h"
@@ -33,6 +34,14 @@ class LogReader {
   bool finished() const;
   const std::string& break_reason() const;
   std::uint64_t damaged() const;  // chunks and messages that were left out
+
+  // All that is damaged or missing, the cut end of an unfinished file included. Whoever uses what
+  // was read has to tell of it.
+  const LogDamage& damage() const;
+  // Checksums cover everything. Those of older files cover the ticks, sensors and events alone.
+  bool sealed() const;
+  // The file is not any more what it was when it was opened: values could not be read again.
+  bool changed() const;
 
   // As given to the writer at the start and at the end (empty if the file has no end).
   const LogMetadata& metadata() const;
@@ -81,6 +90,8 @@ class LogReader {
     SensorsCursor(SensorsCursor&&) noexcept;
     ~SensorsCursor();
     bool next(GaitdSensors* sensors);  // false at the end
+    // Which row of ticks() the last ones belong to, from 0. Rows of a damaged log may lack theirs.
+    std::uint64_t row() const;
 
    private:
     friend class LogReader;

@@ -24,6 +24,7 @@ enum Opcode : std::uint8_t {
   kMetadataIndex = 0x0D,
   kSummaryOffset = 0x0E,
   kDataEnd = 0x0F,
+  kSeal = 0x80,  // ours, see seal.h; 0x80 and above are left to applications
 };
 
 }  // namespace gaitd::daemon::mcap

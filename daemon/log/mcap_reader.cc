@@ -5,17 +5,18 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
+#include <utility>
 
 #include "daemon/log/bytes.h"
 #include "daemon/log/crc32.h"
 #include "daemon/log/mcap_format.h"
+#include "daemon/log/seal.h"
 
 namespace gaitd::daemon {
 
 namespace {
 
-// No record of ours comes near; a length beyond is a damaged file, not a reason to allocate.
-constexpr std::uint64_t kMaxRecordSize = 64u << 20;
 constexpr std::uint64_t kMaxChunkSize = 64u << 20;
 constexpr std::uint64_t kChunkHeadSize = 8 + 8 + 8 + 4;  // before the name of the compression
 constexpr std::uint64_t kMaxCompressionName = 16;
@@ -60,81 +61,190 @@ bool McapReader::open(const std::string& path, std::string* error) {
              "written by gaitd";
     return false;
   }
-  std::uint64_t offset = mcap::kMagic.size();
-  while (read_record(&offset)) {
+  std::uint64_t offset = 0;
+  while (read_sealed(&offset)) {
+  }
+  read_tail(std::max<std::uint64_t>(offset, mcap::kMagic.size()));
+  drop_copies();
+  std::string damaged_summary;
+  summary_ = read_summary(file_, &damaged_summary);
+  if (!summary_ && finished()) break_reason_ = damaged_summary;
+  // A table of signals is too much to lose for one byte: there is a copy.
+  if (!summary_ || damage_.empty()) return true;
+  for (const McapChannel& channel : summary_->channels) {
+    if (find_channel(channel.topic) == nullptr) channels_.push_back(channel);
   }
   return true;
 }
 
-bool McapReader::read_record(std::uint64_t* offset) {
-  const std::uint64_t start = *offset;
-  std::string header;
-  if (!file_.read(start, mcap::kRecordHeaderSize, &header)) {
-    return break_at(start,
-                    "the file ends without its end record (cut off, or still being written)");
+std::optional<McapReader::Head> McapReader::read_head(std::uint64_t offset) const {
+  std::string bytes;
+  if (!file_.read(offset, mcap::kRecordHeaderSize, &bytes)) return std::nullopt;
+  ByteReader reader(bytes);
+  Head head;
+  head.opcode = reader.take<std::uint8_t>();
+  head.length = reader.take<std::uint64_t>();
+  head.content = offset + mcap::kRecordHeaderSize;
+  head.whole = head.length <= file_.size() - head.content;
+  return head;
+}
+
+bool McapReader::read_sealed(std::uint64_t* offset) {
+  const std::uint64_t begin = *offset;
+  std::vector<Head> heads;
+  std::optional<FoundSeal> found;
+  std::uint64_t at = std::max<std::uint64_t>(begin, mcap::kMagic.size());
+  for (auto head = read_head(at); head && head->whole && head->opcode != 0; head = read_head(at)) {
+    if (head->opcode == mcap::kDataEnd) break;
+    std::string content;
+    if (head->opcode == mcap::kSeal && head->length == kSealContentSize &&
+        file_.read(head->content, head->length, &content)) {
+      if (const auto seal = parse_seal(content)) found = {at, *seal};
+      break;
+    }
+    heads.push_back(*head);
+    at = head->end();
   }
-  ByteReader reader(header);
-  const auto opcode = reader.take<std::uint8_t>();
-  const auto length = reader.take<std::uint64_t>();
-  const std::uint64_t content = start + mcap::kRecordHeaderSize;
-  const bool whole = length <= file_.size() - content;
-  if (opcode == mcap::kChunk) {
-    if (!read_chunk_head(content, length)) return break_at(start, "damaged head of a chunk");
-    if (!whole) return break_at(start, "the file ends inside a chunk");
-  } else if (opcode == mcap::kDataEnd) {
-    check_end(start);
-    return false;
-  } else if (!whole) {
-    return break_at(start, "a record is longer than the rest of the file");
-  } else if (!read_small_record(opcode, content, length)) {
-    return break_at(start, "damaged record of type " + std::to_string(opcode));
+  bool sound = found && found->seal.start == begin && found->seal.before == checksum_ &&
+               file_crc32(file_, begin, found->offset, found->seal.before) == found->seal.after;
+  if (!sound) found = find_seal(file_, begin);
+  if (!found) return false;
+  sealed_ = true;
+  if (sound) {
+    for (const Head& head : heads) sound = take_record(head) && sound;
   }
-  *offset = content + length;
+  if (!sound) {
+    add_damage(begin, found->offset);
+    salvage_chunks(std::max<std::uint64_t>(begin, mcap::kMagic.size()), found->offset);
+  }
+  *offset = found->offset + kSealSize;
+  checksum_ = file_crc32(file_, found->offset, *offset, found->seal.after).value_or(0);
   return true;
 }
 
-bool McapReader::read_small_record(std::uint8_t opcode, std::uint64_t offset,
-                                   std::uint64_t length) {
-  if (opcode == 0) return false;
-  const bool wanted = opcode == mcap::kHeader || opcode == mcap::kSchema ||
-                      opcode == mcap::kChannel || opcode == mcap::kMetadata;
+bool McapReader::take_record(const Head& head) {
+  if (head.opcode != mcap::kChunk) return take_small_record(head);
+  auto chunk = read_chunk_head(head);
+  if (chunk && chunk->offset != 0) chunks_.push_back(std::move(*chunk));
+  return chunk.has_value();
+}
+
+void McapReader::salvage_chunks(std::uint64_t begin, std::uint64_t end) {
+  for (std::uint64_t at = begin; at < end;) {
+    const auto head = read_head(at);
+    if (!head || head->opcode == 0 || head->end() > end || !head->whole) return;
+    if (head->opcode == mcap::kChunk) {
+      if (auto chunk = read_chunk_head(*head)) {
+        chunk->suspect = true;
+        chunks_.push_back(std::move(*chunk));
+      }
+    }
+    at = head->end();
+  }
+}
+
+// A block of the file that was written over another one: its chunks are sound, but stand there
+// twice.
+void McapReader::drop_copies() {
+  std::set<std::pair<std::uint32_t, std::uint64_t>> seen;
+  const auto key = [](const McapChunk& chunk) {
+    return std::pair(chunk.crc, chunk.uncompressed_size);
+  };
+  for (const McapChunk& chunk : chunks_) {
+    if (!chunk.suspect) seen.insert(key(chunk));
+  }
+  std::erase_if(chunks_, [&](const McapChunk& chunk) {
+    return chunk.suspect && !seen.insert(key(chunk)).second;
+  });
+}
+
+void McapReader::read_tail(std::uint64_t offset) {
+  std::vector<Head> heads;
+  std::uint64_t at = offset;
+  auto head = read_head(at);
+  for (; head && head->whole && head->opcode != 0; head = read_head(at)) {
+    if (head->opcode == mcap::kDataEnd) break;
+    heads.push_back(*head);
+    at = head->end();
+  }
+  const bool ends = head && head->whole && head->opcode == mcap::kDataEnd;
+  const bool cut = !head || !head->whole;
+  // With seals, what follows the last one is proven by the end of the data; of a file that was cut
+  // off it is what was being written.
+  bool sound = !sealed_ || cut;
+  if (sealed_ && ends) {
+    std::string content;
+    const auto checksum = file_crc32(file_, offset, at, checksum_);
+    sound = head->length == 4 && file_.read(head->content, head->length, &content) &&
+            ByteReader(content).take<std::uint32_t>() == checksum;
+    if (!sound) add_damage(offset, head->end());
+  }
+  for (std::size_t i = 0; i < heads.size(); ++i) {
+    if (!sound && heads[i].opcode != mcap::kChunk) continue;
+    if (take_record(heads[i])) {
+      if (!sound && !chunks_.empty()) chunks_.back().suspect = true;
+      continue;
+    }
+    return break_at(heads[i].content - mcap::kRecordHeaderSize,
+                    "damaged record: " + mcap_record_name(heads[i].opcode));
+  }
+  if (ends) return check_magic(*head);
+  if (!head) {
+    return break_at(at, "the file ends without its end record (cut off, or still being written)");
+  }
+  if (head->opcode == 0) return break_at(at, "bytes that are no record");
+  if (head->opcode != mcap::kChunk) {
+    return break_at(at, "a record is longer than the rest of the file");
+  }
+  if (!take_record(*head)) return break_at(at, "damaged head of a chunk");
+  break_at(at, "the file ends inside a chunk");
+}
+
+void McapReader::check_magic(const Head& data_end) {
+  std::string end;
+  const std::size_t size = mcap::kMagic.size();
+  if (file_.size() < data_end.end() + size || !file_.read(file_.size() - size, size, &end) ||
+      end != mcap::kMagic) {
+    break_reason_ = "cut off after the data, which are complete: the summary behind them is not";
+  }
+}
+
+bool McapReader::take_small_record(const Head& head) {
+  const bool wanted = head.opcode == mcap::kHeader || head.opcode == mcap::kSchema ||
+                      head.opcode == mcap::kChannel || head.opcode == mcap::kMetadata;
   if (!wanted) return true;
   std::string content;
-  if (length > kMaxRecordSize || !file_.read(offset, length, &content)) return false;
-  ByteReader reader(content);
-  if (opcode == mcap::kHeader) {
+  if (head.length > kMaxMcapRecord || !file_.read(head.content, head.length, &content)) {
+    return false;
+  }
+  if (head.opcode == mcap::kHeader) {
+    ByteReader reader(content);
     reader.take_string();  // profile
     library_ = reader.take_string();
-  } else if (opcode == mcap::kSchema) {
-    McapSchema schema;
-    schema.id = reader.take<std::uint16_t>();
-    schema.name = reader.take_string();
-    schema.encoding = reader.take_string();
-    schema.data = reader.take_string();
-    if (reader.ok()) schemas_.push_back(std::move(schema));
-  } else if (opcode == mcap::kChannel) {
-    McapChannel channel;
-    channel.id = reader.take<std::uint16_t>();
-    channel.schema = reader.take<std::uint16_t>();
-    channel.topic = reader.take_string();
-    channel.message_encoding = reader.take_string();
-    channel.metadata = reader.take_map();
-    if (reader.ok()) channels_.push_back(std::move(channel));
-  } else {
-    McapMetadata metadata;
-    metadata.name = reader.take_string();
-    metadata.entries = reader.take_map();
-    if (reader.ok()) metadata_.push_back(std::move(metadata));
+    return reader.ok();
   }
-  return reader.ok();
+  if (head.opcode == mcap::kSchema) {
+    auto schema = parse_schema(content);
+    if (schema) schemas_.push_back(std::move(*schema));
+    return schema.has_value();
+  }
+  if (head.opcode == mcap::kChannel) {
+    auto channel = parse_channel(content);
+    if (channel) channels_.push_back(std::move(*channel));
+    return channel.has_value();
+  }
+  auto metadata = parse_metadata(content);
+  if (metadata) metadata_.push_back(std::move(*metadata));
+  return metadata.has_value();
 }
 
-bool McapReader::read_chunk_head(std::uint64_t offset, std::uint64_t length) {
+// One without an offset: the file ends inside its head, so that it holds nothing.
+std::optional<McapChunk> McapReader::read_chunk_head(const Head& head) const {
   const std::uint64_t most = kChunkHeadSize + 4 + kMaxCompressionName + 8;
-  const std::uint64_t available = std::min({most, length, file_.size() - offset});
-  std::string head;
-  if (!file_.read(offset, available, &head)) return false;
-  ByteReader reader(head);
+  const std::uint64_t available = std::min({most, head.length, file_.size() - head.content});
+  std::string bytes;
+  if (!file_.read(head.content, available, &bytes)) return std::nullopt;
+  ByteReader reader(bytes);
   McapChunk chunk;
   reader.take<std::uint64_t>();
   reader.take<std::uint64_t>();
@@ -142,28 +252,34 @@ bool McapReader::read_chunk_head(std::uint64_t offset, std::uint64_t length) {
   chunk.crc = reader.take<std::uint32_t>();
   chunk.compression = reader.take_string();
   const auto size = reader.take<std::uint64_t>();
-  if (!reader.ok()) return available < std::min(most, length);  // cut off inside the head: no data
-  chunk.offset = offset + (head.size() - reader.rest().size());
-  if (size != length - (chunk.offset - offset)) return false;
+  if (!reader.ok()) {
+    return available < std::min(most, head.length) ? std::optional(McapChunk{}) : std::nullopt;
+  }
+  chunk.offset = head.content + (bytes.size() - reader.rest().size());
+  if (size != head.length - (chunk.offset - head.content)) return std::nullopt;
   chunk.size = std::min(size, file_.size() - chunk.offset);
   chunk.cut = chunk.size < size;
-  chunks_.push_back(std::move(chunk));
-  return true;
+  return chunk;
 }
 
-bool McapReader::break_at(std::uint64_t offset, const std::string& why) {
-  break_reason_ = "at byte " + std::to_string(offset) + " of " + std::to_string(file_.size()) +
-                  ": " + why + "; all before it is read";
-  return false;
+// Names the first record that stands there, if its head was spared.
+void McapReader::add_damage(std::uint64_t begin, std::uint64_t end) {
+  const auto head = read_head(std::max<std::uint64_t>(begin, mcap::kMagic.size()));
+  const std::string what =
+      head && head->end() <= end ? mcap_record_name(head->opcode) : "something";
+  damage_.push_back({begin, end, what});
 }
 
-void McapReader::check_end(std::uint64_t offset) {
-  std::string end;
-  const std::size_t size = mcap::kMagic.size();
-  if (file_.size() < offset + size || !file_.read(file_.size() - size, size, &end) ||
-      end != mcap::kMagic) {
-    break_at(offset, "the data are complete, the summary after them is not");
-  }
+void McapReader::break_at(std::uint64_t offset, const std::string& why) {
+  break_reason_ = "cut off at byte " + std::to_string(offset) + " of " +
+                  std::to_string(file_.size()) + ": " + why + "; all before it is read";
+}
+
+std::optional<std::uint64_t> McapReader::written_messages(std::uint16_t channel) const {
+  if (!summary_) return std::nullopt;
+  const auto count = summary_->message_counts.find(channel);
+  if (count == summary_->message_counts.end()) return std::nullopt;
+  return count->second;
 }
 
 bool McapReader::read_chunk(const McapChunk& chunk, std::string* records,
@@ -192,7 +308,7 @@ bool McapReader::read_chunk(const McapChunk& chunk, std::string* records,
     *error = where + "compression '" + chunk.compression + "' is not known; expected zstd or none";
     return false;
   }
-  if (chunk.crc != 0 && crc32(*records) != chunk.crc) {
+  if ((chunk.crc != 0 || chunk.suspect) && crc32(*records) != chunk.crc) {
     *error = where + "wrong checksum";
     return false;
   }

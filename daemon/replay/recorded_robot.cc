@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "daemon/config/daemon_config.h"
+#include "daemon/config/library_paths.h"
 #include "daemon/config/node.h"
 #include "daemon/control/impedance.h"
 #include "daemon/host/layers.h"
@@ -44,36 +45,72 @@ bool RecordedRobot::read_settings(const LogReader& log, const ReplayOptions& opt
   return issues.ok();
 }
 
-// With `values` these; else those of the settings.
-std::unique_ptr<LoadedLayer> RecordedRobot::load_layer(int layer, const std::string& variant,
-                                                       const std::string& file,
-                                                       const std::string& hash,
-                                                       const std::vector<double>* values,
-                                                       int* table, std::string* error) {
-  // The file itself if it is still what it was, else the variant of this installation.
+// The library of a variant as a person asks for it, who may give a path.
+std::optional<PluginFile> RecordedRobot::find_wanted(int layer, const std::string& variant,
+                                                     std::string* error) const {
   Refusal refusal;
-  std::filesystem::path path = file;
-  auto library =
-      std::filesystem::exists(path) ? read_plugin_file(path, layer, &refusal) : std::nullopt;
-  if (!library || (!hash.empty() && library->hash() != hash)) {
-    if (const auto found = directory_.find(layer, variant, error)) path = *found;
-    error->clear();
-    refusal = {};
-    library = read_plugin_file(path, layer, &refusal);
+  const auto path = directory_.find(layer, variant, error);
+  auto library = path ? read_plugin_file(*path, layer, &refusal) : std::nullopt;
+  if (path && !library) *error = refusal.text();
+  return library;
+}
+
+// The library that a log says was in use: the installed one of that name, be it another build, or
+// with trust the very file. A hash that the log lacks equals none.
+std::optional<PluginFile> RecordedRobot::find_recorded(int layer, const json& recorded,
+                                                       std::string* error) const {
+  const auto text = [&](const char* key) {
+    const auto found = recorded.find(key);
+    return found != recorded.end() && found->is_string() ? found->get<std::string>() : "";
+  };
+  const std::string variant = text("variant");
+  const std::string hash = text("hash");
+  const std::string name = std::string(layer_name(layer)) + "/" + variant;
+  const auto is_recorded = [&](const std::optional<PluginFile>& library) {
+    return library && !hash.empty() && library->hash() == hash;
+  };
+  std::optional<PluginFile> library;
+  if (is_library_path(variant)) {
+    *error =
+        "it names the library " + variant + " as a variant of " + std::string(layer_name(layer));
+  } else {
+    library = find_wanted(layer, variant, error);
+  }
+  const std::string file = text("file");
+  if (trust_ && !is_recorded(library) && !file.empty()) {
+    Refusal refusal;
+    auto named = read_plugin_file(file, layer, &refusal);
+    if (!named) *error += "; " + refusal.text();
+    if (named && (is_recorded(named) || !library)) library = std::move(named);
   }
   if (!library) {
-    *error = refusal.text();
-    return nullptr;
+    *error = name + ": " + *error;
+    if (!trust_ && !file.empty()) {
+      *error += "; the log names " + file + ", which is loaded only with --trust";
+    }
+    return std::nullopt;
   }
-  if (!hash.empty() && library->hash() != hash) {
-    notes_->push_back(std::string(layer_name(layer)) + "/" + variant + ": the library is " +
-                      library->hash() + ", " + hash + " was recorded: another build");
+  if (hash.empty()) {
+    notes_->push_back(name + ": the log has no hash of its library; " + library->path.string() +
+                      ", " + library->hash() + ", may be another build");
+  } else if (library->hash() != hash) {
+    notes_->push_back(name + ": the library " + library->path.string() + " is " + library->hash() +
+                      ", " + hash + " was recorded: another build");
   }
+  return library;
+}
+
+// With `values` these; else those of the settings. Without a library nothing.
+std::unique_ptr<LoadedLayer> RecordedRobot::load_layer(int layer,
+                                                       const std::optional<PluginFile>& library,
+                                                       const std::vector<double>* values,
+                                                       int* table, std::string* error) {
+  if (!library) return nullptr;
   const GaitdPluginDescriptor& d = library->descriptor;
   const std::span<const GaitdParameter> declared{d.parameters, d.parameter_count};
   Issues issues;
   LoadedLayer::Request request;
-  request.path = path;
+  request.path = library->path;
   request.layer = layer;
   request.model = &robot_.model;
   request.parameters =
@@ -82,6 +119,7 @@ std::unique_ptr<LoadedLayer> RecordedRobot::load_layer(int layer, const std::str
   if (*table < 0) {
     *table = parameters_.add(layer, layer_name(layer), d.id, declared, request.parameters);
   }
+  Refusal refusal;
   auto loaded = issues.ok() ? LoadedLayer::load(request, &refusal) : nullptr;
   if (loaded == nullptr) *error = issues.ok() ? refusal.text() : issues.error_text();
   return loaded;
@@ -91,16 +129,14 @@ bool RecordedRobot::load_layers(const json& plugins, LayerChain::Layers* layers,
                                 std::string* error) {
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     const std::string key(layer_name(layer));
-    const json was = plugins.value(key, json::object());
-    const std::string recorded = was.value("variant", "");
+    const json was = plugins.is_object() ? plugins.value(key, json::object()) : json::object();
     // --set may want another variant.
     const NodePtr wanted = settings_.find(key + ".variant");
     const auto set = settings_.from(SettingSource::kCommandLine, key + ".variant");
-    const bool other = !set.empty() && wanted;
+    const auto library = !set.empty() && wanted ? find_wanted(layer, wanted->text, error)
+                                                : find_recorded(layer, was, error);
     int table = -1;
-    (*layers)[layer] = load_layer(layer, other ? wanted->text : recorded,
-                                  other ? wanted->text : was.value("file", ""),
-                                  other ? "" : was.value("hash", ""), nullptr, &table, error);
+    (*layers)[layer] = load_layer(layer, library, nullptr, &table, error);
     if ((*layers)[layer] == nullptr) return false;
   }
   return true;
@@ -114,8 +150,8 @@ bool RecordedRobot::load_swap(const json& event, SwapOrder* order, std::string* 
   if (event.value("rollback", false)) return true;
   const std::string variant = event.value("variant", "");
   const auto values = event.value("parameters", std::vector<double>{});
-  auto loaded = load_layer(*layer, variant, event.value("file", ""), event.value("hash", ""),
-                           &values, &order->table, error);
+  const auto library = find_recorded(*layer, event, error);
+  auto loaded = load_layer(*layer, library, &values, &order->table, error);
   if (loaded == nullptr) return false;
   order->variant = variant_word(*layer, variant);
   order->candidate = loaded.release();

@@ -11,6 +11,7 @@
 #include "daemon/config/settings.h"
 #include "daemon/control/pipeline.h"
 #include "daemon/host/plugin_directory.h"
+#include "daemon/host/plugin_file.h"
 #include "daemon/parameters/live_parameters.h"
 #include "daemon/replay/replay.h"
 
@@ -32,17 +33,22 @@ class RecordedRobot {
   const GaitdModel& model() const { return robot_.model; }
 
  private:
-  explicit RecordedRobot(const ReplayOptions& options) : directory_(options.plugin_folders) {}
+  explicit RecordedRobot(const ReplayOptions& options)
+      : directory_(options.plugin_folders), trust_(options.trust) {}
   bool read_robot(const LogReader& log, std::string* error);
   bool read_settings(const LogReader& log, const ReplayOptions& options, std::string* error);
   int variant_word(int layer, const std::string& variant) const;
   bool load_layers(const nlohmann::json& plugins, LayerChain::Layers* layers, std::string* error);
-  std::unique_ptr<LoadedLayer> load_layer(int layer, const std::string& variant,
-                                          const std::string& file, const std::string& hash,
+  std::optional<PluginFile> find_recorded(int layer, const nlohmann::json& recorded,
+                                          std::string* error) const;
+  std::optional<PluginFile> find_wanted(int layer, const std::string& variant,
+                                        std::string* error) const;
+  std::unique_ptr<LoadedLayer> load_layer(int layer, const std::optional<PluginFile>& library,
                                           const std::vector<double>* values, int* table,
                                           std::string* error);
 
   PluginDirectory directory_;
+  bool trust_ = false;  // of the paths that the log names
   Settings settings_;
   Robot robot_;
   LiveParameters parameters_;

@@ -68,6 +68,7 @@ class Player {
 
  private:
   bool begin_tick(std::int64_t tick, std::string* error);
+  static bool end_early(std::int64_t tick, ReplayReport* report);
   bool execute(const Event& event, std::string* error);
   void compare(std::int64_t tick, ReplayReport* report);
 
@@ -142,6 +143,13 @@ void Player::compare(std::int64_t tick, ReplayReport* report) {
   }
 }
 
+// What comes after cannot be computed without what is missing.
+bool Player::end_early(std::int64_t tick, ReplayReport* report) {
+  report->notes.push_back("replayed up to tick " + std::to_string(tick) +
+                          ", which is missing in the log or has no sensors there");
+  return true;
+}
+
 bool Player::play(const ReplayOptions& options, ReplayReport* report, std::string* error) {
   const SignalTable& table = log_.signals();
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -159,7 +167,9 @@ bool Player::play(const ReplayOptions& options, ReplayReport* report, std::strin
   const FlushDenormals flush;  // as on the control thread
   for (std::int64_t tick = 0; ticks.next(recorded_); ++tick) {
     const bool first_part = tick > 0 || recorded_[1] == 0.0;  // the signal "tick"
-    if (!first_part || recorded_[1] != static_cast<double>(tick)) {
+    const bool next = recorded_[1] == static_cast<double>(tick);
+    if (first_part && !next && log_.damage().any()) return end_early(tick, report);
+    if (!first_part || !next) {
       *error = first_part ? "ticks are missing in the log from tick " + std::to_string(tick) +
                                 " on (dropped): a replay ends there"
                           : "the log does not begin with tick 0: replay the first of its parts";
@@ -167,7 +177,9 @@ bool Player::play(const ReplayOptions& options, ReplayReport* report, std::strin
     }
     if (!begin_tick(tick, error)) return false;
     // After the commands: the reset of a simulation clears what it finds, as on the control thread.
-    if (!sensors.next(&data.readings)) break;
+    if (!sensors.next(&data.readings) || sensors.row() != static_cast<std::uint64_t>(tick)) {
+      return end_early(tick, report);
+    }
     data.has_truth = has_truth;
     if (health >= 0) data.health = static_cast<std::uint32_t>(recorded_[health]);
     if (options.before_tick) options.before_tick(robot_.model(), tick, pipeline);
@@ -194,8 +206,14 @@ std::optional<ReplayReport> replay(const LogReader& log, const ReplayOptions& op
   if (log.event_dropouts() > 0) return failed("commands were lost in the log: no exact replay");
   ReplayReport report;
   std::string why;
-  const auto robot = RecordedRobot::load(log, options, &report.notes, &why);
-  if (robot == nullptr || !Player(log, robot.get()).play(options, &report, &why)) return failed(why);
+  try {
+    const auto robot = RecordedRobot::load(log, options, &report.notes, &why);
+    if (robot == nullptr) return failed(why);
+    if (!Player(log, robot.get()).play(options, &report, &why)) return failed(why);
+  } catch (const json::exception& exception) {
+    return failed(std::string("metadata or an event of another form than gaitd writes: ") +
+                  exception.what());
+  }
   std::stable_sort(report.differences.begin(), report.differences.end(),
                    [](const SignalDifference& a, const SignalDifference& b) {
                      if (a.tick != b.tick) return a.tick < b.tick;

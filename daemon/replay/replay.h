@@ -20,6 +20,9 @@ struct ReplayOptions {
   /// tick were taken and its sensors are there.
   std::function<void(const GaitdModel&, std::int64_t tick, Pipeline&)> before_tick;
   std::function<void(const TickData&)> after_tick;
+  /// A log names the files of its libraries. Code is loaded from them only if this is set; else
+  /// only installed variants are, whatever the log says.
+  bool trust = false;
 };
 
 /// A signal that is not what was recorded, bit by bit.
@@ -36,12 +39,13 @@ struct ReplayReport {
   std::int64_t ticks = 0;                     ///< replayed
   std::size_t signals = 0;                    ///< compared in each
   std::vector<SignalDifference> differences;  ///< the first first: by tick, then by stage
-  std::vector<std::string> notes;             ///< e.g. plugins of another build
+  std::vector<std::string> notes;             ///< e.g. plugins of another build, an early end
 };
 
 /// Feeds the recorded sensors, commands, parameter changes and swaps to the gait machine and the
-/// layers, as fast as they go, and compares every signal that they write. Nothing with `error` if
-/// the log does not hold what it takes.
+/// layers, as fast as they go, and compares every signal that they write. Of a damaged log the
+/// ticks before the first that is missing. Nothing with `error` if the log does not hold what it
+/// takes.
 std::optional<ReplayReport> replay(const LogReader& log, const ReplayOptions& options,
                                    std::string* error);
 

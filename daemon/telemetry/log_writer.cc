@@ -110,7 +110,10 @@ void LogWriter::set_dropouts(std::uint64_t ticks, std::uint64_t events) {
                        ",\"events\":" + std::to_string(events) + "}"});
 }
 
-void LogWriter::flush() { impl_->file.flush(); }
+void LogWriter::flush() {
+  impl_->file.flush();
+  impl_->file.check();
+}
 
 bool LogWriter::close(const LogMetadata& metadata) {
   Impl& impl = *impl_;

@@ -38,14 +38,15 @@ class LogWriter {
   // Ticks and events that never reached this writer, for the end of the file.
   void set_dropouts(std::uint64_t ticks, std::uint64_t events);
 
-  // Closes the chunk that is being filled, so that all so far is in the file.
+  // Closes the chunk that is being filled, so that all so far is in the file, and looks whether
+  // that is still there: a file that somebody removed, replaced or cut off ends the writing.
   void flush();
 
   // Writes the end of the file with `metadata` (e.g. realtime_factor) and closes it. True if the
   // file is complete; error() otherwise.
   bool close(const LogMetadata& metadata = {});
 
-  bool is_open() const;
+  bool is_open() const;  // false after a failure too
   bool ok() const;
   const std::string& error() const;
   std::uint64_t bytes_written() const;

@@ -9,6 +9,7 @@
 #include "daemon/log/bytes.h"
 #include "daemon/log/crc32.h"
 #include "daemon/log/mcap_format.h"
+#include "daemon/log/seal.h"
 
 namespace gaitd::daemon {
 
@@ -40,11 +41,14 @@ bool McapWriter::open(const std::string& path, const std::string& library,
   options_ = options;
   if (!file_.open(path)) return false;
   chunk_.reserve(options.chunk_bytes + (64u << 10));
-  file_.write(mcap::kMagic);
+  checksum_ = sealed_checksum_ = 0;
+  sealed_size_ = 0;
+  write(mcap::kMagic);
   std::string header;
   put_string(header, "");  // profile
   put_string(header, library);
   write_record(mcap::kHeader, header);
+  seal();
   return ok();
 }
 
@@ -57,6 +61,7 @@ std::uint16_t McapWriter::add_schema(const std::string& name, const std::string&
   put_string(record, encoding);
   put_string(record, data);
   write_record(mcap::kSchema, record);
+  seal();
   schemas_.push_back(std::move(record));
   return id;
 }
@@ -72,6 +77,7 @@ std::uint16_t McapWriter::add_channel(std::uint16_t schema, const std::string& t
   put_string(channel.record, message_encoding);
   put_map(channel.record, metadata);
   write_record(mcap::kChannel, channel.record);
+  seal();
   channels_.push_back(std::move(channel));
   return id;
 }
@@ -87,6 +93,7 @@ void McapWriter::add_metadata(const std::string& name,
   put(index, static_cast<std::uint64_t>(record.size() + mcap::kRecordHeaderSize));
   put_string(index, name);
   write_record(mcap::kMetadata, record);
+  seal();
   metadata_indexes_.push_back(std::move(index));
 }
 
@@ -131,12 +138,23 @@ void McapWriter::clear_chunk() {
   for (Channel& channel : channels_) channel.index.clear();
 }
 
+void McapWriter::write(std::string_view bytes) {
+  checksum_ = crc32(bytes, checksum_);
+  file_.write(bytes);
+}
+
 void McapWriter::write_record(std::uint8_t opcode, std::string_view content) {
   std::string header;
   put(header, opcode);
   put(header, static_cast<std::uint64_t>(content.size()));
-  file_.write(header);
-  file_.write(content);
+  write(header);
+  write(content);
+}
+
+void McapWriter::seal() {
+  write_record(mcap::kSeal, encode_seal({sealed_size_, sealed_checksum_, checksum_}));
+  sealed_size_ = file_.size();
+  sealed_checksum_ = checksum_;
 }
 
 void McapWriter::write_chunk() {
@@ -160,8 +178,8 @@ void McapWriter::write_chunk() {
   std::string record;
   put(record, static_cast<std::uint8_t>(mcap::kChunk));
   put(record, static_cast<std::uint64_t>(head.size() + records.size()));
-  file_.write(record + head);
-  file_.write(records);
+  write(record + head);
+  write(records);
 
   std::string index;
   put(index, chunk_start_time_);
@@ -171,6 +189,7 @@ void McapWriter::write_chunk() {
   const std::uint64_t indexes_start = file_.size();
   put_string(index, write_message_indexes());
   put(index, file_.size() - indexes_start);
+  seal();
   put_string(index, compression);
   put(index, static_cast<std::uint64_t>(records.size()));
   put(index, static_cast<std::uint64_t>(chunk_.size()));
@@ -202,7 +221,7 @@ bool McapWriter::close() {
   if (!is_open()) return ok();
   flush();
   std::string data_end;
-  put(data_end, std::uint32_t{0});  // no checksum of the whole: every chunk has its own
+  put(data_end, checksum_);
   write_record(mcap::kDataEnd, data_end);
   write_summary();
   return file_.close();

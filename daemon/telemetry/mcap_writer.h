@@ -23,9 +23,10 @@ struct McapOptions {
   std::uint64_t chunk_ns = 1'000'000'000;  // or when its messages span this much time
 };
 
-// Writes MCAP (https://mcap.dev/spec, version 0): chunks with message indexes and checksums, and a
-// summary at the end. Schemas, channels and metadata stand outside the chunks, so that a file that
-// was cut off still has them. After a failed write it does nothing more; see error().
+// Writes MCAP (https://mcap.dev/spec, version 0): chunks with message indexes and checksums, seals
+// over everything (daemon/log/seal.h), and a summary at the end. Schemas, channels and metadata
+// stand outside the chunks, so that a file that was cut off still has them. After a failed write it
+// does nothing more; see error().
 class McapWriter {
  public:
   McapWriter();
@@ -47,6 +48,7 @@ class McapWriter {
   void end_message();
 
   void flush();
+  bool check() { return file_.check(); }  // see OutputFile
   bool close();
 
   bool is_open() const { return file_.is_open(); }
@@ -63,7 +65,9 @@ class McapWriter {
   };
   struct Compressor;
 
+  void write(std::string_view bytes);
   void write_record(std::uint8_t opcode, std::string_view content);
+  void seal();
   void write_chunk();
   std::string write_message_indexes();
   void write_summary();
@@ -85,6 +89,10 @@ class McapWriter {
   std::uint64_t start_time_ = 0;
   std::uint64_t end_time_ = 0;
   std::uint64_t message_count_ = 0;
+
+  std::uint32_t checksum_ = 0;         // of the file so far
+  std::uint64_t sealed_size_ = 0;      // bytes of the file with its last seal
+  std::uint32_t sealed_checksum_ = 0;  // of those
 };
 
 }  // namespace gaitd::daemon

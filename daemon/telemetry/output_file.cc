@@ -2,10 +2,12 @@
 #include "daemon/telemetry/output_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 namespace gaitd::daemon {
 
@@ -40,7 +42,7 @@ bool OutputFile::open(const std::string& path) {
   path_ = path;
   size_ = 0;
   error_.clear();
-  descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644);
   return descriptor_ >= 0 || fail("create", errno);
 }
 
@@ -56,8 +58,31 @@ bool OutputFile::write(std::string_view bytes) {
   return true;
 }
 
-bool OutputFile::close() {
+bool OutputFile::check() {
   if (descriptor_ < 0) return error_.empty();
+  struct stat own {};
+  struct stat named {};
+  if (::fstat(descriptor_, &own) != 0) return fail("look after", errno);
+  if (!S_ISREG(own.st_mode)) return true;  // a device or a pipe has no size to look at
+  constexpr char kAdvice[] = "; let nobody touch a log while it is written";
+  if (static_cast<std::uint64_t>(own.st_size) < size_) {
+    return fail(path_ + ": the log was cut off by somebody else at byte " +
+                std::to_string(own.st_size) + " of " + std::to_string(size_) + kAdvice);
+  }
+  if (::stat(path_.c_str(), &named) != 0) {
+    if (errno == ENOENT) {
+      return fail(path_ + ": the log was removed or renamed while it was written" + kAdvice);
+    }
+    return fail("find", errno);
+  }
+  if (named.st_dev != own.st_dev || named.st_ino != own.st_ino) {
+    return fail(path_ + ": another file took the place of the log while it was written" + kAdvice);
+  }
+  return true;
+}
+
+bool OutputFile::close() {
+  if (descriptor_ < 0 || !check()) return error_.empty();
   const int result = ::close(descriptor_);
   descriptor_ = -1;
   if (result != 0 && errno != EINTR && error_.empty()) return fail("close", errno);
@@ -65,8 +90,14 @@ bool OutputFile::close() {
 }
 
 bool OutputFile::fail(const char* action, int code) {
-  error_ = path_ + ": cannot " + action + " the log: " + std::generic_category().message(code) +
-           advice(code);
+  return fail(path_ + ": cannot " + action + " the log: " + std::generic_category().message(code) +
+              advice(code));
+}
+
+bool OutputFile::fail(std::string error) {
+  error_ = std::move(error);
+  if (descriptor_ >= 0) ::close(descriptor_);
+  descriptor_ = -1;
   return false;
 }
 

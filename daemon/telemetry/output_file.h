@@ -18,14 +18,18 @@ class OutputFile {
 
   bool open(const std::string& path);  // creates or empties it
   bool write(std::string_view bytes);
-  bool close();
+  // Is what was written still there, under its name? A file that was removed, replaced or cut off
+  // meanwhile is a failure like a full disk.
+  bool check();
+  bool close();  // checks first
 
-  bool is_open() const { return descriptor_ >= 0; }
+  bool is_open() const { return descriptor_ >= 0; }    // a failure closes it
   std::uint64_t size() const { return size_; }         // bytes written
   const std::string& error() const { return error_; }  // empty: none so far
 
  private:
   bool fail(const char* action, int code);
+  bool fail(std::string error);
 
   std::string path_;
   int descriptor_ = -1;

@@ -49,6 +49,14 @@ struct Verdict {
 // Everything comes from the log alone. Truth is used where the log has it, the estimate otherwise.
 Verdict compute_verdict(const LogReader& log, const Expectations& expectations);
 
+// What may be said of a run in a word. A fall never passes here, and neither does a run whose log
+// does not hold what was expected of it (`judged` false) or is damaged.
+struct VerdictWord {
+  std::string text;
+  bool good = false;
+};
+VerdictWord verdict_word(const Verdict& verdict, bool judged, bool damaged);
+
 std::string verdict_text(const Verdict& verdict);
 std::string verdict_json(const Verdict& verdict);
 

@@ -31,6 +31,15 @@ std::string number_text(double value, const std::string& unit) {
   return unit.empty() ? text : std::string(text) + " " + unit;
 }
 
+VerdictWord verdict_word(const Verdict& verdict, bool judged, bool damaged) {
+  const bool fell = verdict.figure("falls") > 0.0;
+  if (judged && !verdict.pass) return {"FAILED", false};
+  if (fell) return {judged ? "FELL, as the scenario allows" : "FELL, not judged", false};
+  if (damaged) return {"not judged: the log is damaged", false};
+  if (!judged) return {"not judged: the log holds no expectations", false};
+  return {"passed", true};
+}
+
 std::string verdict_text(const Verdict& verdict) {
   std::size_t name_width = 0;
   std::size_t figure_width = 0;

@@ -31,6 +31,42 @@ std::string errors_of(const std::string& text) {
 #define EXPECT_PART(text, part) \
   EXPECT_NE((text).find(part), std::string::npos) << part << "\nin:\n" << (text)
 
+TEST(Scenario, ANameLeadsToNoOtherFolder) {
+  const auto errors_of_name = [](const std::string& name) {
+    return errors_of("schema: gaitd.scenario/1\nname: '" + name +
+                     "'\nrobot: atlas\nduration: 10\n" + "terrain: {ground_z: 0}\n");
+  };
+  for (const char* name :
+       {"../x", "/tmp/x", "a/b", ".hidden", "..", "a b", "a\\b", "caf\xC3\xA9"}) {
+    EXPECT_PART(errors_of_name(name), "test.yaml:2: name: expected a name for files");
+    EXPECT_PART(errors_of_name(name), "got '" + std::string(name));
+  }
+  EXPECT_PART(errors_of_name(std::string(101, 'a')), "at most 100");
+  for (const char* name : {"flat-0.35", "Push_3", "a..b", "7"}) EXPECT_EQ(errors_of_name(name), "");
+}
+
+TEST(Scenario, ALogHoldsWhatIsExpected) {
+  Issues issues;
+  Settings settings;
+  const auto scenario = read(kHead +
+                                 "terrain: {ground_z: 0}\n"
+                                 "expect: {no_fall: true, icp_error_rms_max: 0.02, checks: "
+                                 "[{signal: com/z, stat: p99, during: always, max: 1.5}]}\n",
+                             &issues, &settings);
+  ASSERT_TRUE(scenario) << issues.error_text();
+  const auto logged = read_logged_expectations(scenario->expect_section.dump());
+  ASSERT_TRUE(logged);
+  EXPECT_EQ(logged->no_fall, true);
+  EXPECT_EQ(logged->icp_error_rms_max, 0.02);
+  ASSERT_EQ(logged->checks.size(), 1u);
+  EXPECT_EQ(logged->checks[0].statistic, Statistic::kP99);
+  EXPECT_EQ(logged->checks[0].max, 1.5);
+  EXPECT_TRUE(read_logged_expectations("{}"));
+  for (const char* text : {"", "null", "[]", "{\"no_such\": 1}", "{\"no_fall\": 3}"}) {
+    EXPECT_FALSE(read_logged_expectations(text)) << text;
+  }
+}
+
 TEST(Scenario, ReadsEverySection) {
   Issues issues;
   Settings settings;

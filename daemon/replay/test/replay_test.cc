@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 
@@ -66,6 +68,60 @@ TEST(Replay, SaysWhatALogLacks) {
   EXPECT_NE(error_of(table, {{"replay", "{}"}, {"robot_yaml", "name: 1"}, {"robot_urdf", "<x/>"}})
                 .find("its robot cannot be read"),
             std::string::npos);
+}
+
+std::string file_text(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// A log whose estimator was `estimator`, as its metadata have it.
+std::string log_with(const std::string& estimator) {
+  const std::string file = ::testing::TempDir() + "replay_trust_test.mcap";
+  const std::string robot = std::string(GAITD_SOURCE_DIR) + "/robots/atlas/";
+  const LogMetadata metadata = {{"replay", "{}"},
+                                {"settings", "{}"},
+                                {"robot_yaml", file_text(robot + "robot.yaml")},
+                                {"robot_urdf", file_text(robot + "atlas.urdf")},
+                                {"plugins", R"({"state_estimator": )" + estimator + "}"}};
+  std::string error;
+  Telemetry telemetry(make_signal_table(testing::atlas(), kVariants, true), {});
+  EXPECT_TRUE(telemetry.open_log(file, metadata, {}, &error)) << error;
+  telemetry.start();
+  telemetry.close();
+  return file;
+}
+
+// Why it is not replayed where no plugin is installed.
+std::string refusal_of(const std::string& file, bool trust) {
+  std::string error;
+  const auto log = LogReader::open(file, &error);
+  EXPECT_NE(log, nullptr) << error;
+  ReplayOptions options;
+  options.trust = trust;
+  EXPECT_FALSE(replay(*log, options, &error));
+  return error;
+}
+
+TEST(Replay, ReadsNoLibraryBecauseALogNamesIt) {
+  const std::string library = ::testing::TempDir() + "named_by_a_log.so";
+  std::ofstream(library) << "no library";
+  const std::string named = R"({"variant": "mine", "hash": "", "file": ")" + library + "\"}";
+  std::string error = refusal_of(log_with(named), false);
+  EXPECT_NE(error.find("state_estimator/mine: no variant 'mine'"), std::string::npos) << error;
+  EXPECT_NE(error.find(library + ", which is loaded only with --trust"), std::string::npos)
+      << error;
+  EXPECT_EQ(error.find(": refused"), std::string::npos) << "it was read: " << error;
+  error = refusal_of(log_with(named), true);
+  EXPECT_NE(error.find(library + ": refused"), std::string::npos) << error;
+  // The name of a variant is no path either.
+  error = refusal_of(log_with(R"({"variant": ")" + library + "\"}"), false);
+  EXPECT_NE(error.find("it names the library"), std::string::npos) << error;
+  EXPECT_EQ(error.find(": refused"), std::string::npos) << "it was read: " << error;
+}
+
+TEST(Replay, AnswersWithTheReasonToMetadataOfAnotherForm) {
+  EXPECT_NE(refusal_of(log_with("[3]"), true).find("no variant"), std::string::npos);
 }
 
 }  // namespace

@@ -355,5 +355,24 @@ TEST(Verdict, TextAndJsonHoldEveryFigure) {
   }
 }
 
+TEST(VerdictWord, AFallNeverPasses) {
+  Verdict stood{.pass = true, .figures = {{"falls", 0.0, ""}}};
+  Verdict fell{.pass = true, .figures = {{"falls", 1.0, ""}}};
+  EXPECT_EQ(verdict_word(stood, true, false).text, "passed");
+  EXPECT_TRUE(verdict_word(stood, true, false).good);
+  for (const bool judged : {false, true}) {
+    for (const bool damaged : {false, true}) {
+      const VerdictWord word = verdict_word(fell, judged, damaged);
+      EXPECT_FALSE(word.good);
+      EXPECT_NE(word.text.find("FELL"), std::string::npos) << word.text;
+      if (judged && !damaged) continue;
+      EXPECT_FALSE(verdict_word(stood, judged, damaged).good);
+      EXPECT_NE(verdict_word(stood, judged, damaged).text.find("not judged"), std::string::npos);
+    }
+  }
+  stood.pass = false;
+  EXPECT_EQ(verdict_word(stood, true, false).text, "FAILED");
+}
+
 }  // namespace
 }  // namespace gaitd::daemon

@@ -16,8 +16,9 @@ function fillTexts(log) {
   document.title = $('title').textContent = log.title;
   const {verdict} = log;
   if (verdict) {
-    $('verdict').textContent = verdict.pass ? 'passed' : 'FAILED';
-    $('verdict').className = verdict.pass ? 'pass' : 'fail';
+    $('verdict').textContent = verdict.word;
+    $('verdict').className = verdict.good ? 'pass' : 'fail';
+    for (const text of log.damage) row('judgements', ['', 'damaged', text], 'fail');
     for (const {name, figure, bound, note, pass} of verdict.expectations) {
       row('judgements', [pass ? 'ok' : 'FAIL', name, figure, bound, note ?? ''], pass ? '' : 'fail');
     }

@@ -113,7 +113,10 @@ export class Scene {
     this.pelvis = new THREE.Group();
     this.scene.add(this.pelvis);
     if (!this.log.urdf) return;
-    this.robot = new URDFLoader().parse(this.log.urdf);
+    const loader = new URDFLoader();
+    // Whoever wrote the log chose the addresses of its meshes: nothing is fetched from anywhere.
+    loader.loadMeshCb = (path, manager, done) => done(new THREE.Group());
+    this.robot = loader.parse(this.log.urdf);
     simplify(this.robot);
     this.pelvis.add(this.robot);
     this.joints = Object.values(this.robot.joints)
