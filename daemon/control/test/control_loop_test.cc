@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -73,8 +75,8 @@ class ControlLoopTest : public ::testing::Test {
     ScenarioPlayer player(scenario, atlas(), backend.bench.parameters, &issues);
     EXPECT_TRUE(issues.ok()) << issues.error_text();
     TickWatch watch(kPipelinePeriod);
-    ControlLoop loop({}, atlas(), &pipeline, backend.instance(), &telemetry, nullptr, &player,
-                     nullptr, &watch);
+    ControlLoop loop({}, atlas(), &pipeline, backend.instance(), &telemetry, bridge, &player,
+                     nullptr, &watch, &estop);
     const LoopReport report = loop.run();
     EXPECT_TRUE(telemetry.close({}, &error)) << error;
     const auto log = LogReader::open(path, &error);
@@ -105,7 +107,38 @@ class ControlLoopTest : public ::testing::Test {
 
   FailingBackend backend;
   std::vector<Event> events;
+  EstopFlag estop;
+  CommandBridge* bridge = nullptr;
 };
+
+TEST_F(ControlLoopTest, AnEstopIsTakenBeforeEverythingElse) {
+  const std::uint64_t number = estop.raise();
+  run(standing(0.05));
+  EXPECT_TRUE(estop.acted_on(number));
+  EXPECT_EQ(estop.tick(), 0);
+  EXPECT_TRUE(told(EventKind::kFault, "\"estop\""));
+}
+
+TEST_F(ControlLoopTest, AResetThatDoesNotKnowOfAnEstopIsRefused) {
+  const auto commands = std::make_unique<CommandBridge>();
+  bridge = commands.get();
+  std::optional<RpcResult> outdated;
+  std::optional<RpcResult> late;
+  Command reset;
+  reset.type = CommandType::kReset;
+  commands->submit(reset, {.connection = 1, .estops = estop.asked()},
+                   [&](RpcResult r) { outdated = std::move(r); });
+  estop.raise();
+  commands->submit(reset, {.connection = 1, .estops = estop.asked()},
+                   [&](RpcResult r) { late = std::move(r); });
+  run(standing(0.05));
+  commands->poll(CommandBridge::Clock::now() + std::chrono::seconds(1));
+  ASSERT_TRUE(outdated && late);
+  const auto* refused = std::get_if<RpcError>(&*outdated);
+  ASSERT_NE(refused, nullptr);
+  EXPECT_NE(refused->message.find("an e-stop was asked for after this command"), std::string::npos);
+  EXPECT_TRUE(std::holds_alternative<nlohmann::json>(*late));
+}
 
 TEST_F(ControlLoopTest, ARunWithoutFailureSaysSo) {
   const LoopReport report = run(standing(0.5));

@@ -62,7 +62,7 @@ class Swaps : public ::testing::Test {
   }
   Answer call(const char* method, const json& params) {
     auto answer = std::make_shared<std::optional<RpcResult>>();
-    (*methods_.find(method))(params, [answer](RpcResult r) { *answer = std::move(r); });
+    (*methods_.find(method))(params, Caller{}, [answer](RpcResult r) { *answer = std::move(r); });
     return answer;
   }
   Answer swap(const std::string& to, const char* layer = "toe_off") {
