@@ -2,6 +2,7 @@
 #include "cli/campaign_sweep.h"
 
 #include <algorithm>
+#include <set>
 
 #include "daemon/config/paths.h"
 #include "daemon/log/glob.h"
@@ -45,7 +46,11 @@ void read_sweep(daemon::MapReader map, Campaign* campaign) {
     const std::string name =
         row.variant.empty() ? row.key : scope + "/" + row.variant + row.key.substr(dot);
     const GaitdParameter& p = row.declared;
-    for (const double end : {p.minimum, p.maximum}) {
+    std::set<double> values{p.minimum, p.maximum};
+    if (row.effect.kind == daemon::ParameterEffect::kBounded) {
+      values.insert({row.effect.minimum, row.effect.maximum});
+    }
+    for (const double end : values) {
       if (end == p.default_value) continue;
       std::vector<std::string> assignments;
       if (!row.variant.empty()) assignments.push_back(scope + ".variant=" + row.variant);
