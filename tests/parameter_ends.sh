@@ -7,7 +7,7 @@ cd "$scratch"
 keys='limits.torque_ratio, limits.velocity_ratio, safety.fall_height, safety.force_range,
       safety.torque_rate, objectives.com_height, objectives.momentum_weight,
       objectives.acceleration_weight, objectives.swing_weight, objectives.swing_height_stiffness,
-      step_adjuster.margin, state_estimator.tilt_rate, state_estimator.leg_pole,
+      objectives.rho_*, step_adjuster.margin, state_estimator.tilt_rate, state_estimator.leg_pole,
       state_estimator.upper_body_pole, whole_body_controller.torque_scale,
       whole_body_controller.joint_acceleration_limit'
 sed "s#commands/#$GAITD_SOURCE/sim/campaigns/commands/#; s#^sweep:#&\n  parameters: [${keys//$'\n'/}]#" \
