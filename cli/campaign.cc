@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/campaign.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -10,6 +12,7 @@
 
 #include "cli/campaign_plot.h"
 #include "cli/campaign_search.h"
+#include "cli/campaign_sweep.h"
 #include "daemon/config/node.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/settings.h"
@@ -18,6 +21,7 @@
 namespace gaitd::cli {
 namespace {
 
+namespace fs = std::filesystem;
 using daemon::Issues;
 using daemon::MapReader;
 using daemon::Node;
@@ -31,18 +35,29 @@ std::string value_text(const Node& node) {
   return node.kind == NodeKind::kScalar && !node.quoted ? node.text : daemon::to_json(node).dump();
 }
 
+// A path is meant from the folder of the campaign, where there is such a file.
+std::string scenario_from(const std::string& campaign_file, const std::string& scenario) {
+  const fs::path beside = fs::path(campaign_file).parent_path() / scenario;
+  std::error_code error;
+  if (scenario.ends_with(".yaml") && fs::is_regular_file(beside, error)) {
+    return beside.lexically_normal().string();
+  }
+  return scenario;
+}
+
 void read_scenarios(MapReader* root, Campaign* campaign) {
   const daemon::Paths paths = daemon::Paths::detect();
   int i = 0;
   for (const NodePtr& node : root->list("scenarios", 1, 1000)) {
     const std::string path = "scenarios[" + std::to_string(i++) + "]";
-    if (node->kind != NodeKind::kScalar || !paths.scenario(node->text)) {
+    const std::string scenario = scenario_from(campaign->file, node->text);
+    if (node->kind != NodeKind::kScalar || !paths.scenario(scenario)) {
       root->issues()->add(node->where, path, "the name of a scenario or the path of its file",
                           daemon::describe(*node),
                           daemon::suggestion(node->text, paths.scenarios()));
       continue;
     }
-    campaign->scenarios.push_back(node->text);
+    campaign->scenarios.push_back(scenario);
   }
 }
 
@@ -61,9 +76,22 @@ void read_settings(MapReader map, Campaign* campaign) {
   }
 }
 
+bool read_choices(MapReader map, CampaignDraw* draw) {
+  for (const NodePtr& item : map.list("choose", 1, 1000)) {
+    draw->choices.push_back(value_text(*item));
+  }
+  map.require({"choose"});
+  map.finish();
+  return !draw->choices.empty();
+}
+
 void read_draws(MapReader map, Campaign* campaign) {
   for (const Node::Entry& entry : map.entries()) {
-    CampaignDraw draw{entry.key, {}, {}, false};
+    CampaignDraw draw{entry.key, {}, {}, false, {}};
+    if (entry.value->kind == NodeKind::kMap) {
+      if (read_choices(map.map(entry.key), &draw)) campaign->draws.push_back(std::move(draw));
+      continue;
+    }
     std::vector<double>* ends[] = {&draw.low, &draw.high};
     bool fits = entry.value->kind == NodeKind::kList && entry.value->items.size() == 2;
     for (std::size_t end = 0; fits && end < 2; ++end) {
@@ -79,7 +107,8 @@ void read_draws(MapReader map, Campaign* campaign) {
     fits = fits && !draw.low.empty() && draw.low.size() == draw.high.size();
     for (std::size_t i = 0; fits && i < draw.low.size(); ++i) fits = draw.low[i] <= draw.high[i];
     if (!fits) {
-      map.fail(entry.key, "[lowest, highest], two numbers or two lists of as many",
+      map.fail(entry.key,
+               "[lowest, highest], two numbers or two lists of as many, or {choose: [values]}",
                daemon::describe(*entry.value), "for example [0.9, 1.1]");
       continue;
     }
@@ -129,6 +158,10 @@ double uniform(std::uint64_t seed, const std::string& key, std::size_t i) {
 }
 
 std::string draw_value(const CampaignDraw& draw, std::uint64_t seed) {
+  if (const std::size_t count = draw.choices.size(); count > 0) {
+    const double place = uniform(seed, draw.key, 0) * static_cast<double>(count);
+    return draw.choices[std::min(count - 1, static_cast<std::size_t>(place))];
+  }
   std::string text;
   for (std::size_t i = 0; i < draw.low.size(); ++i) {
     const double value = draw.low[i] + (draw.high[i] - draw.low[i]) * uniform(seed, draw.key, i);
@@ -156,6 +189,7 @@ std::optional<Campaign> load_campaign(const std::string& file, Issues* issues) {
   campaign.name = root.text("name").value_or("");
   read_scenarios(&root, &campaign);
   read_settings(root.map("set"), &campaign);
+  read_sweep(root.map("sweep"), &campaign);
   read_search(root.map("search"), &campaign);
   read_plot(root.map("plot"), &campaign);
   read_draws(root.map("draw"), &campaign);
@@ -203,7 +237,12 @@ std::vector<CampaignRun> expand(const Campaign& campaign) {
 std::vector<std::string> assignments(const Campaign& campaign, const CampaignRun& run) {
   std::vector<std::string> out{"seed=" + std::to_string(run.seed)};
   for (std::size_t i = 0; i < run.values.size(); ++i) {
-    out.push_back(campaign.settings[i].key + "=" + run.values[i]);
+    if (campaign.settings[i].key == kSweptSetting) {
+      const std::vector<std::string>& swept = campaign.swept.at(run.values[i]);
+      out.insert(out.end(), swept.begin(), swept.end());
+    } else {
+      out.push_back(campaign.settings[i].key + "=" + run.values[i]);
+    }
   }
   for (std::size_t i = 0; i < run.drawn.size(); ++i) {
     out.push_back(campaign.draws[i].key + "=" + run.drawn[i]);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,11 +18,13 @@ struct CampaignSetting {
   std::vector<std::string> values;
 };
 
-/// A key whose value is drawn anew for each seed, evenly between two numbers, or two lists of them.
+/// A key whose value is drawn anew for each seed, evenly between two numbers or two lists of them,
+/// or from some values.
 struct CampaignDraw {
   std::string key;
   std::vector<double> low, high;
   bool is_list = false;
+  std::vector<std::string> choices;  ///< instead of the bounds
 };
 
 /// Polar plots of what a search found, one file for each scenario.
@@ -42,6 +45,8 @@ struct Campaign {
   std::vector<std::string> scenarios;     ///< names, or paths of files
   std::vector<CampaignSetting> settings;  ///< every combination is tried
   bool searches = false;  ///< the last setting ascends, and is bisected instead of tried in full
+  /// Of a sweep: KEY=VALUE of everything that each value of the setting kSweptSetting stands for.
+  std::map<std::string, std::vector<std::string>> swept;
   std::optional<CampaignPlot> plot;
   std::vector<CampaignDraw> draws;
   std::vector<std::uint64_t> seeds;

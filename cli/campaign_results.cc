@@ -102,7 +102,8 @@ CampaignResult read_result(const Campaign& campaign, int number, const std::stri
     if (judgement.value("pass", false)) continue;
     result.failed += (result.failed.empty() ? "" : " ") + judgement.value("name", "");
   }
-  if (!report["refusals"].empty()) result.failed += result.failed.empty() ? "refused" : " refused";
+  result.refused = !report["refusals"].empty();
+  if (result.refused) result.failed += result.failed.empty() ? "refused" : " refused";
   const json falls = figures.value("falls", json());
   result.fell = falls.is_number() && falls.get<double>() > 0.0;
   const bool judged = result.problem.empty() && falls.is_number();
@@ -121,7 +122,7 @@ std::string ResultFile::header() const {
   std::vector<std::string> fields{"run", "scenario", "seed"};
   for (const CampaignSetting& setting : campaign_.settings) fields.push_back(setting.key);
   for (const CampaignDraw& draw : campaign_.draws) fields.push_back(draw.key);
-  fields.insert(fields.end(), {"success", "fell", "failed", "problem"});
+  fields.insert(fields.end(), {"success", "fell", "refused", "failed", "problem"});
   fields.insert(fields.end(), campaign_figures().begin(), campaign_figures().end());
   return joined(fields);
 }
@@ -141,12 +142,13 @@ bool ResultFile::open(const fs::path& path, std::string* error) {
       if (fields.size() != columns || number < 1 || number > static_cast<int>(runs_.size())) {
         continue;
       }
-      const std::size_t first = columns - figures - 4;
+      const std::size_t first = columns - figures - 5;
       CampaignResult result{number,
                             fields[first] == "1",
                             fields[first + 1] == "1",
-                            fields[first + 2],
+                            fields[first + 2] == "1",
                             fields[first + 3],
+                            fields[first + 4],
                             {}};
       for (std::size_t i = columns - figures; i < columns; ++i) {
         result.figures.push_back(fields[i].empty() ? kNaN : std::atof(fields[i].c_str()));
@@ -174,8 +176,8 @@ bool ResultFile::append(const CampaignResult& result, std::string* error) {
                                   std::to_string(run.seed)};
   fields.insert(fields.end(), run.values.begin(), run.values.end());
   fields.insert(fields.end(), run.drawn.begin(), run.drawn.end());
-  fields.insert(fields.end(), {result.success ? "1" : "0", result.fell ? "1" : "0", result.failed,
-                               result.problem});
+  fields.insert(fields.end(), {result.success ? "1" : "0", result.fell ? "1" : "0",
+                               result.refused ? "1" : "0", result.failed, result.problem});
   for (const double figure : result.figures) fields.push_back(number_text(figure));
   const std::string line = joined(fields);
   results_[result.number] = result;

@@ -15,6 +15,7 @@ struct CampaignResult {
   int number = 0;  ///< of the run, from 1
   bool success = false;
   bool fell = false;
+  bool refused = false;         ///< at least one of its commands
   std::string failed;           ///< expectations that do not hold, separated by spaces
   std::string problem;          ///< what kept it from being judged, one line; empty if nothing
   std::vector<double> figures;  ///< in the order of campaign_figures(); NaN: not measured

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "cli/campaign_sweep.h"
 #include "cli/print.h"
 #include "daemon/verdict/number_text.h"
 
@@ -78,12 +79,13 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
   int total = 0;
   bool pass = order->remaining() == 0;
   std::map<int, std::pair<int, int>> counts;  // successes and runs by cell
-  std::map<int, int> falls;
+  std::map<int, int> falls, refusals;
   for (const auto& [number, result] : results) {
     const int cell = runs[static_cast<std::size_t>(number) - 1].cell;
     counts[cell].first += result.success ? 1 : 0;
     counts[cell].second += 1;
     falls[cell] += result.fell ? 1 : 0;
+    refusals[cell] += result.refused ? 1 : 0;
     total += result.success ? 1 : 0;
   }
   if (campaign.searches) pass = add_found(campaign, order, &cells) && pass;
@@ -98,6 +100,7 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
                      {"runs", count.second},
                      {"successes", count.first},
                      {"falls", falls[cell]},
+                     {"refusals", refusals[cell]},
                      {"success_rate", rate},
                      {"low", interval.low},
                      {"high", interval.high}});
@@ -147,6 +150,10 @@ std::string summary_text(const json& summary) {
   std::vector<std::vector<std::string>> rows;
   for (const json& cell : summary["cells"]) {
     const std::string settings = settings_text(cell["set"]);
+    // Of the many cells of a sweep only those that fail.
+    if (cell["set"].contains(kSweptSetting) && cell["success_rate"] >= summary["success_min"]) {
+      continue;
+    }
     if (searches) {
       rows.push_back({cell["scenario"], held_text(cell), settings});
       continue;
@@ -154,13 +161,13 @@ std::string summary_text(const json& summary) {
     rows.push_back({cell["scenario"], cell["successes"].dump() + "/" + cell["runs"].dump(),
                     percent(cell["success_rate"]),
                     percent(cell["low"]) + " .. " + percent(cell["high"]), cell["falls"].dump(),
-                    settings});
+                    cell["refusals"].dump(), settings});
   }
   std::string text = summary["campaign"].get<std::string>() + ": " + summary["finished"].dump() +
                      " of " + summary["runs"].dump() + " runs, " + summary["successes"].dump() +
                      " succeeded\n\n";
-  std::vector<std::string> header = {"SCENARIO",      "SUCCESS", "RATE",
-                                     "95 % INTERVAL", "FALLS",   "SETTINGS"};
+  std::vector<std::string> header = {"SCENARIO", "SUCCESS", "RATE",    "95 % INTERVAL",
+                                     "FALLS",    "REFUSED", "SETTINGS"};
   if (searches)
     header = {"SCENARIO", "LARGEST " + summary["searched"].get<std::string>(), "SETTINGS"};
   text += table(header, rows);

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -131,6 +132,76 @@ TEST_F(CampaignTest, DrawsFromTheSeedAloneAndWithinTheBounds) {
   EXPECT_NEAR(sum / 200, 0.75, 0.05);
   EXPECT_EQ(different.size(), 200u);
   EXPECT_EQ(expand(*loaded)[7].drawn, expand(*loaded)[7].drawn);
+}
+
+TEST_F(CampaignTest, DrawsFromChoicesEvenly) {
+  campaign("scenarios: [" + file("good.yaml") +
+           "]\ndraw: {a: {choose: [x, [1, 2], [[1, 2], [3, 4]]]}}\nseeds: 300\n");
+  daemon::Issues issues;
+  const auto loaded = load_campaign(file("c.yaml"), &issues);
+  ASSERT_TRUE(loaded) << issues.error_text();
+  std::map<std::string, int> counts;
+  for (const CampaignRun& run : expand(*loaded)) ++counts[run.drawn[0]];
+  ASSERT_EQ(counts.size(), 3u);
+  for (const char* value : {"x", "[1,2]", "[[1,2],[3,4]]"}) {
+    EXPECT_NEAR(counts[value], 100, 30) << value;
+  }
+}
+
+TEST_F(CampaignTest, AScenarioIsLookedForBesideTheCampaign) {
+  campaign("scenarios: [good.yaml]\n");
+  daemon::Issues issues;
+  const auto loaded = load_campaign(file("c.yaml"), &issues);
+  ASSERT_TRUE(loaded) << issues.error_text();
+  EXPECT_EQ(loaded->scenarios[0], file("good.yaml"));
+}
+
+// What the values of a sweep stand for, each as one text.
+std::map<std::string, std::string> swept(const Campaign& campaign) {
+  std::map<std::string, std::string> all;
+  for (const CampaignRun& run : expand(campaign)) {
+    std::string& text = all[run.values.back()];
+    for (const std::string& assignment : assignments(campaign, run)) text += " " + assignment;
+  }
+  return all;
+}
+
+TEST_F(CampaignTest, SweepsBothEndsOfEveryParameterThatMatches) {
+  campaign("scenarios: [" + file("good.yaml") +
+           "]\nset: {mode: [walk-bent]}\nsweep: {parameters: [gait.recovery*, safety.tilt_limit], "
+           "ends: [commands.1.param, commands.3.param], defaults: [commands.2.param]}\n");
+  daemon::Issues issues;
+  const auto loaded = load_campaign(file("c.yaml"), &issues);
+  ASSERT_TRUE(loaded) << issues.error_text();
+  const auto all = swept(*loaded);
+  EXPECT_EQ(all.size(), 9u);  // of a switch only the end that is not its default
+  EXPECT_TRUE(all.contains("gait.recovery=false"));
+  EXPECT_FALSE(all.contains("gait.recovery=true"));
+  ASSERT_TRUE(all.contains("safety.tilt_limit=3"));
+  EXPECT_EQ(all.at("safety.tilt_limit=3"),
+            " seed=1 mode=walk-bent commands.1.param.safety.tilt_limit=3"
+            " commands.3.param.safety.tilt_limit=3 commands.2.param.safety.tilt_limit=0.8");
+}
+
+TEST_F(CampaignTest, ASweepWithoutPlacesSetsThemFromTheStart) {
+  campaign("scenarios: [" + file("good.yaml") + "]\nsweep: {parameters: [gait.omega]}\n");
+  daemon::Issues issues;
+  const auto loaded = load_campaign(file("c.yaml"), &issues);
+  ASSERT_TRUE(loaded) << issues.error_text();
+  const auto all = swept(*loaded);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all.at("gait.omega=10"), " seed=1 gait.omega=10");
+  const Outcome outcome = run();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_HAS(workspace_.read("calls"), "--set gait.omega=10");
+  EXPECT_EQ(outcome.out.find("gait.omega"), outcome.out.rfind("gait.omega")) << outcome.out;
+}
+
+TEST_F(CampaignTest, ASweepOfNothingIsAnError) {
+  campaign("scenarios: [" + file("good.yaml") + "]\nsweep: {parameters: [gate.*]}\n");
+  const Outcome outcome = run();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_HAS(outcome.err, "sweep.parameters: expected globs of keys");
 }
 
 TEST_F(CampaignTest, PlaysAllAndSumsUp) {

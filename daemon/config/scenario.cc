@@ -13,22 +13,24 @@ namespace gaitd::daemon {
 namespace {
 
 // What the command line may replace.
-constexpr std::array<std::string_view, 9> kOverridable = {
-    "duration", "seed",      "start",       "mode",        "terrain",
-    "sensors",  "actuators", "model_error", "disturbances"};
+constexpr std::array<std::string_view, 10> kOverridable = {
+    "duration", "seed",      "start",       "mode",         "terrain",
+    "sensors",  "actuators", "model_error", "disturbances", "commands"};
 
-// Of the disturbances single keys of those that are there: disturbances.0.force.
+// Of a list only single keys of what is there: disturbances.0.force, commands.0.walk.length.
 bool is_there(const NodePtr& root, const std::string& key, const Location& where, Issues* issues) {
-  const std::string list_key = "disturbances";
-  if (!key.starts_with(list_key)) return true;
+  const std::string list_key = key.substr(0, key.find('.'));
+  if (list_key != "disturbances" && list_key != "commands") return true;
   const Node::Entry* entry = root->find(list_key);
   const NodePtr list = entry != nullptr ? entry->value : nullptr;
   const std::string rest = key.substr(std::min(key.size(), list_key.size() + 1));
   if (item_index(list, std::string_view(rest).substr(0, rest.find('.')))) return true;
   const std::size_t count = list ? list->items.size() : 0;
-  issues->add(where, key, "one of the " + std::to_string(count) + " disturbances of the scenario",
+  issues->add(where, key,
+              "one of the " + std::to_string(count) + " " + list_key + " of the scenario",
               rest.empty() ? "all of them" : "'" + rest + "'",
-              "count from 0, for example disturbances.0.force=[100, 0, 0]");
+              "count from 0, for example " + list_key +
+                  (list_key == "commands" ? ".0.walk.length=0.3" : ".0.force=[100, 0, 0]"));
   return false;
 }
 

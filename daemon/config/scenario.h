@@ -67,8 +67,9 @@ struct Scenario {
 
 // Reads a scenario and puts its `set:` and `robot:` into the settings. Values that the command line
 // set under a key of the scenario (seed, duration, start.x, mode, terrain.friction, sensors.noise,
-// actuators.model, model_error.mass_scale.utorso, disturbances.0.force) take the place of those of
-// the file. Nothing when there is any error; warnings too go to `issues`.
+// actuators.model, model_error.mass_scale.utorso, disturbances.0.force, commands.0.walk.length)
+// take the place of those of the file. Nothing when there is any error; warnings too go to
+// `issues`.
 std::optional<Scenario> load_scenario(const std::string& file, Settings* settings, Issues* issues);
 std::optional<Scenario> read_scenario(const NodePtr& root, const std::string& file,
                                       Settings* settings, Issues* issues);

@@ -39,14 +39,19 @@ void add_swap(MapReader map, ScenarioCommand command, std::vector<ScenarioComman
   out->push_back(std::move(command));
 }
 
-void add_parameters(MapReader map, const ScenarioCommand& command,
+// A scope may be a map of its own, as under `set:`; `scope` is its name with a dot, or empty.
+void add_parameters(MapReader map, const std::string& scope, const ScenarioCommand& command,
                     std::vector<ScenarioCommand>* out) {
   for (const Node::Entry& entry : map.entries()) {
+    if (entry.value->kind == NodeKind::kMap) {
+      add_parameters(map.map(entry.key), scope + entry.key + ".", command, out);
+      continue;
+    }
     if (!as_number(*entry.value) && !as_boolean(*entry.value)) {
       map.fail(entry.key, "a number, true or false", describe(*entry.value), "write one");
     }
     ScenarioCommand one = command;
-    one.params = {{"name", entry.key}, {"value", to_json(*entry.value)}};
+    one.params = {{"name", scope + entry.key}, {"value", to_json(*entry.value)}};
     out->push_back(std::move(one));
   }
 }
@@ -71,7 +76,7 @@ void read_command(MapReader map, double duration, const std::vector<Verb>& verbs
     if (verb.method == "plugin.swap") {
       add_swap(map.map(verb.key), command, out);
     } else if (verb.method == "param.set") {
-      add_parameters(map.map(verb.key), command, out);
+      add_parameters(map.map(verb.key), "", command, out);
     } else {
       parse_command(verb.method, params, nullptr, map.path_of(verb.key), map.issues());
       command.params = to_json(*params);

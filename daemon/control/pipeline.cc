@@ -106,6 +106,16 @@ CommandReply Pipeline::set_parameter(const Command& command) {
                   key);
     return reply;
   }
+  const bool allowed = command.parameter_value >= row.effect.minimum &&
+                       command.parameter_value <= row.effect.maximum;
+  if (row.effect.kind == ParameterEffect::kBounded && !at_rest && !allowed) {
+    std::snprintf(text, size,
+                  "%s: %g can only be set while the robot stands, %g to %g expected: "
+                  "%s; `gaitctl stop`, then set it again",
+                  key, command.parameter_value, row.effect.minimum, row.effect.maximum,
+                  row.effect.text);
+    return reply;
+  }
   if (!apply(row.owner, row.index, command.parameter_value)) {
     std::snprintf(text, size, "%s: the plugin %s refuses to change it while it runs", key,
                   row.variant.c_str());

@@ -23,6 +23,8 @@ json effect_json(const ParameterEffect& effect) {
       return "at rest";
     case ParameterEffect::kLater:
       return effect.text;
+    case ParameterEffect::kBounded:
+      return bounded_text(effect);
     default:
       return "at once";
   }

@@ -27,8 +27,9 @@ gaitctl param set gait.swing_height 0.12
 Each of them can be changed while gaitd runs, also while the robot walks: a new value is checked,
 taken at the boundary between two ticks, and logged with the tick, the old and the new value. The
 column *effect* says when it shows: *at once*; what it holds for; or *at rest*, where a change is
-refused while the robot walks or readies, because something would jump. A new plan of the capture
-point begins at the reference of the old one.
+refused while the robot walks or readies, because something would jump. Where it names a range *while
+walking*, a value beyond it makes a walk fall and is refused until the robot stands. A new plan of the
+capture point begins at the reference of the old one.
 
 Changes are kept in memory: `reset`, `arm` and `sim reset` leave them, a restart of gaitd begins again
 with the configuration. Put what proves good into gaitd.yaml or robot.yaml. All other keys of the
@@ -48,6 +49,8 @@ std::string effect_text(const ParameterEffect& effect) {
       return std::string("at rest: ") + effect.text;
     case ParameterEffect::kLater:
       return effect.text;
+    case ParameterEffect::kBounded:
+      return bounded_text(effect) + ": " + effect.text;
     default:
       return "at once";
   }

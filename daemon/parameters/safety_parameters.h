@@ -31,7 +31,7 @@ enum class SafetyParameter {
 };
 inline constexpr std::array<GaitdParameter, 20> kSafetyParameters = {
     sdk::real_parameter("tilt_limit", "rad", 0.1, 3, 0.8, "of the pelvis, beyond is a fall"),
-    sdk::real_parameter("fall_height", "", 0.1, 1, 0.6,
+    sdk::real_parameter("fall_height", "", 0.1, 0.8, 0.6,
                         "pelvis above the lower foot, over the nominal height; below is a fall"),
     sdk::real_parameter("capture_reach", "com heights", 0, 10, 0.85,
                         "longest step that could catch the robot; 0: no fault capture"),
@@ -45,7 +45,7 @@ inline constexpr std::array<GaitdParameter, 20> kSafetyParameters = {
                         "that a joint may be told to move without a new reading; 0: any"),
     sdk::real_parameter("gyro_jump", "rad/s", 0.1, 1e6, 10, "in a tick, beyond is not believed"),
     sdk::real_parameter("accelerometer_jump", "m/s^2", 1, 1e6, 200, "likewise"),
-    sdk::real_parameter("force_range", "weight", 1, 1e6, 20,
+    sdk::real_parameter("force_range", "weight", 3, 1e6, 20,
                         "forces on a foot beyond are not believed"),
     sdk::real_parameter("solver_patience", "s", 0, 1, 0.05,
                         "without a solution before the safe stop"),
@@ -61,14 +61,14 @@ inline constexpr std::array<GaitdParameter, 20> kSafetyParameters = {
     sdk::real_parameter("ready_load", "weight", 0, 1, 0.6, "on both feet together before standing"),
     sdk::real_parameter("fault_damping", "limits s/rad", 0, 1, 0.03,
                         "joint damping after a fault, in effort limits"),
-    sdk::real_parameter("torque_rate", "limits/s", 1, 1e5, 1000, "clamp of the change of torque"),
+    sdk::real_parameter("torque_rate", "limits/s", 100, 1e5, 1000, "clamp of the change of torque"),
 };
 
 // Clamps behind the plugins, against the limits of the model.
 enum class Limit { kTorqueRatio, kVelocityRatio, kPositionMargin, kCount };
 inline constexpr std::array<GaitdParameter, 3> kLimitParameters = {
-    sdk::real_parameter("torque_ratio", "", 0, 1, 1, "of the effort limits, clamp of torques"),
-    sdk::real_parameter("velocity_ratio", "", 0, 1, 1,
+    sdk::real_parameter("torque_ratio", "", 0.05, 1, 1, "of the effort limits, clamp of torques"),
+    sdk::real_parameter("velocity_ratio", "", 0.05, 1, 1,
                         "of the velocity limits; a joint that is faster is not driven further"),
     sdk::real_parameter("position_margin", "rad", 0, 0.5, 0,
                         "inside the position limits, clamp of the references of the drives"),

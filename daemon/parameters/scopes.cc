@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/parameters/scopes.h"
 
+#include <cstdio>
 #include <iterator>
 
 #include "daemon/parameters/safety_parameters.h"
@@ -28,9 +29,11 @@ struct Rule {
 
 constexpr auto kLater = ParameterEffect::kLater;
 constexpr auto kAtRest = ParameterEffect::kAtRest;
+constexpr auto kBounded = ParameterEffect::kBounded;
 constexpr const char* kCommanded = "footsteps commanded afterwards";
 constexpr const char* kNextSwing = "the next swing";
 constexpr const char* kRamp = "a joint on its ramp to the standing posture would jump";
+constexpr const char* kWeak = "the legs would be too weak for the next step";
 constexpr const char* kKnee = "a knee on its ramp would jump";
 
 constexpr Rule kRules[] = {
@@ -58,6 +61,9 @@ constexpr Rule kRules[] = {
     {"safety.ready_duration", {kAtRest, kRamp}},
     {"safety.ready_stiffness", {kAtRest, kRamp}},
     {"safety.ready_damping", {kAtRest, kRamp}},
+    {"limits.torque_ratio", {kBounded, kWeak, 0.5, 1.0}},
+    {"limits.velocity_ratio", {kBounded, kWeak, 0.5, 1.0}},
+    {"whole_body_controller.joint_acceleration_limit", {kBounded, kWeak, 300.0, 1e5}},
 };
 
 }  // namespace
@@ -69,6 +75,13 @@ ParameterEffect parameter_effect(std::string_view key) {
     if (rule.key == key) return rule.effect;
   }
   return {};
+}
+
+std::string bounded_text(const ParameterEffect& effect) {
+  char text[64];
+  std::snprintf(text, sizeof(text), "at once; while walking %g..%g", effect.minimum,
+                effect.maximum);
+  return text;
 }
 
 int parameter_rule_count() { return static_cast<int>(std::size(kRules)); }

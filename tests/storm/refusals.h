@@ -48,6 +48,7 @@ inline const RefusalRow kRefusals[] = {
     {-32000, {"disarm: ", "; ", "gaitctl "}},
     {-32000, {"sim push: ", "; "}},
     {-32000, {" can only be changed while the robot stands: ", "; "}},
+    {-32000, {" can only be set while the robot stands, ", " expected: ", "; "}},
     {-32002,
      {"busy: ", " commands of this connection wait for the control thread already; send fewer "}},
     {-32002, {"busy: ", " clients are connected already; "}},

@@ -70,10 +70,9 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const
         "0.001 to 1 m expected, or 0 for the default",
         number, side, step.swing_duration, step.transfer_duration, step.swing_height);
   }
-  if (step.polygon_count < 0 || step.polygon_count > GAITD_MAX_FOOT_POINTS ||
-      step.region_count < 0 || step.region_count > GAITD_MAX_REGION_POINTS) {
-    return refuse("footstep %d (%s): polygon of %d and region of %d points, at most %d expected",
-                  number, side, step.polygon_count, step.region_count, GAITD_MAX_FOOT_POINTS);
+  if (step.region_count < 0 || step.region_count > GAITD_MAX_REGION_POINTS) {
+    return refuse("footstep %d (%s): landing_region of %d points, at most %d expected", number,
+                  side, step.region_count, GAITD_MAX_REGION_POINTS);
   }
   const Eigen::Vector3d rpy = sdk::roll_pitch_yaw(q);
   const double stance_yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/foothold_check.h"
 #include "gaitd/walking/gait_machine.h"
 #include "gaitd/walking/support.h"
 
@@ -21,11 +22,25 @@ Refusal GaitMachine::check_room(int count) const {
                 queue_.free(), kQueueCapacity);
 }
 
-void GaitMachine::complete(GaitdFootstep& step) {
+void GaitMachine::fill_in(GaitdFootstep& step) const {
   if (step.swing_duration <= 0.0) step.swing_duration = parameters_[Gait::kSwingDuration];
   if (step.transfer_duration <= 0.0) step.transfer_duration = parameters_[Gait::kTransferDuration];
   if (step.swing_height <= 0.0) step.swing_height = parameters_[Gait::kSwingHeight];
+}
+
+void GaitMachine::complete(GaitdFootstep& step) {
+  fill_in(step);
   step.id = next_id_++;
+}
+
+Refusal GaitMachine::check(const GaitdFootstep& step, const GaitdPose& stance,
+                           const GaitdPose& from, int number) const {
+  Refusal r = check_footstep(step, stance, from, number, parameters_);
+  if (!r.refused()) r = check_contact_polygon(model_, step, number);
+  if (r.refused()) return r;
+  GaitdFootstep filled = step;
+  fill_in(filled);
+  return swing_limits_.check(filled, stance, from, number);
 }
 
 Refusal GaitMachine::set_mode(int mode) {
@@ -66,13 +81,11 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
                   parameters_[Gait::kMinFootSeparation]);
   }
   GaitdPose middle = middle_pose(feet[GAITD_LEFT], feet[GAITD_RIGHT]);
-  FootstepGenerator check(walk, middle, first, width, parameters_);
+  FootstepGenerator trial(walk, middle, first, width, parameters_);
   GaitdPose at[2] = {feet[GAITD_LEFT], feet[GAITD_RIGHT]};
-  for (int i = 0; i < check.count(); ++i) {
-    const GaitdFootstep step = check.next();
-    if (Refusal r = check_footstep(step, at[other_side(step.side)], at[step.side], i + 1,
-                                   parameters_);
-        r.refused()) {
+  for (int i = 0; i < trial.count(); ++i) {
+    const GaitdFootstep step = trial.next();
+    if (Refusal r = check(step, at[other_side(step.side)], at[step.side], i + 1); r.refused()) {
       return r;
     }
     at[step.side] = step.pose;
@@ -114,9 +127,7 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
                     i == 0 ? " with the footsteps already ahead" : "",
                     step.side == GAITD_LEFT ? "left" : "right");
     }
-    if (Refusal r = check_footstep(step, feet[other_side(step.side)], feet[step.side], i + 1,
-                                   parameters_);
-        r.refused()) {
+    if (Refusal r = check(step, feet[other_side(step.side)], feet[step.side], i + 1); r.refused()) {
       return r;
     }
     feet[step.side] = step.pose;

@@ -40,6 +40,12 @@ double LegGeometry::knee(double length) const {
   return std::acos(std::clamp(cosine, -1.0, 1.0)) - offset_;
 }
 
+double LegGeometry::thigh(double length) const {
+  const double cosine =
+      (length * length + thigh_ * thigh_ - shank_ * shank_) / (2.0 * thigh_ * length);
+  return std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
 StepReach step_reach(const LegGeometry& leg, double horizontal, double drop, double straight,
                      double largest_drop) {
   const double longest = leg.length(straight);

@@ -382,6 +382,34 @@ TEST(Scenario, TheCommandLineReplacesKeysOfADisturbance) {
   EXPECT_PART(wrong.error_text(), "disturbances[0].direction: expected none beside a force");
 }
 
+TEST(Scenario, TheCommandLineReplacesKeysOfACommand) {
+  const std::string commanded =
+      kHead + "mode: walk-bent\ncommands:\n" + "  - {at: 0.1, walk: {steps: 2, length: 0.2}}\n" +
+      "  - {at: 0.2, param: {}}\n" + "  - at: 0.3\n    footsteps: [{side: left, x: 1, y: 1}]\n";
+  const auto with = [&](std::initializer_list<const char*> assignments, Issues* issues) {
+    Settings settings;
+    for (const char* assignment : assignments) settings.set_assignment(assignment, issues);
+    return read(commanded, issues, &settings);
+  };
+  Issues issues;
+  const auto scenario =
+      with({"commands.0.walk.length=0.3", "commands.1.param.gait.swing_height=0.2",
+            "commands.2.footsteps.0.contact_polygon=[[0.1, 0], [0, 0.1], [0, 0]]"},
+           &issues);
+  ASSERT_TRUE(scenario) << issues.error_text();
+  ASSERT_EQ(scenario->commands.size(), 3u);
+  EXPECT_EQ(scenario->commands[0].params["length"], 0.3);
+  EXPECT_EQ(scenario->commands[0].params["steps"], 2);
+  EXPECT_EQ(scenario->commands[1].params["name"], "gait.swing_height");
+  EXPECT_EQ(scenario->commands[1].params["value"], 0.2);
+  EXPECT_EQ(scenario->commands[2].params[0]["contact_polygon"][1][1], 0.1);
+
+  Issues wrong;
+  EXPECT_FALSE(with({"commands.3.at=0", "commands.0.walk.lenght=1"}, &wrong));
+  EXPECT_PART(wrong.error_text(), "commands.3.at: expected one of the 3 commands of the scenario");
+  EXPECT_PART(wrong.error_text(), "lenght");
+}
+
 TEST(Scenario, ErrorsOfAnOverrideNameTheCommandLine) {
   Issues issues;
   Settings settings;

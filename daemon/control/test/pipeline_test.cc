@@ -98,6 +98,34 @@ TEST(Pipeline, SetsParametersOfLayersAndOfItsOwnAndTellsTheOldValue) {
   }
 }
 
+TEST(Pipeline, AValueThatAWalkDoesNotBearIsRefusedUntilTheRobotIsAtRest) {
+  Bench b;
+  std::string error;
+  Command command;
+  command.type = CommandType::kSetParameter;
+  command.parameter_index = b.parameters.find("limits.torque_ratio", &error);
+  ASSERT_GE(command.parameter_index, 0) << error;
+  const auto set = [&](double value) {
+    command.parameter_value = value;
+    return b.pipeline->execute(command);
+  };
+  EXPECT_TRUE(set(0.2).accepted);
+  EXPECT_TRUE(set(1.0).accepted);
+  b.run_for(0.1);
+  ASSERT_TRUE(b.execute(CommandType::kArm).accepted);
+  b.run_for(0.1);
+  ASSERT_EQ(b.state(), SafetyState::kReadying);
+  const CommandReply refused = set(0.2);
+  EXPECT_FALSE(refused.accepted);
+  const std::string why = refused.message.data();
+  EXPECT_NE(why.find("limits.torque_ratio: 0.2 can only be set while the robot stands"),
+            std::string::npos)
+      << why;
+  EXPECT_NE(why.find("0.5 to 1 expected"), std::string::npos) << why;
+  EXPECT_EQ(b.parameters.value(command.parameter_index), 1.0);
+  EXPECT_TRUE(set(0.9).accepted);
+}
+
 TEST(Pipeline, OnHardwareSwapsOnlyWhenTheConfigurationAllowsIt) {
   Bench b;
   b.pipeline->layers().rules().simulation = false;

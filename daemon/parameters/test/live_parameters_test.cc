@@ -159,10 +159,21 @@ TEST_F(Live, ARowIsDescribedWithItsPresentValue) {
 }
 
 TEST_F(Live, EveryRuleIsAboutAParameterThatThereIs) {
+  constexpr std::array<GaitdParameter, 1> kOfLayers = {
+      sdk::real_parameter("joint_acceleration_limit", "rad/s^2", 10, 1e5, 2000, "of every joint")};
+  parameters_.add(GAITD_LAYER_WHOLE_BODY_CONTROLLER, "whole_body_controller", "any", kOfLayers,
+                  {2000.0});
   int with_rule = 0;
   for (int i = 0; i < parameters_.size(); ++i) {
     if (parameters_.row(i).effect.kind == ParameterEffect::kAtOnce) continue;
-    EXPECT_STRNE(parameters_.row(i).effect.text, "");
+    const LiveParameters::Row& row = parameters_.row(i);
+    EXPECT_STRNE(row.effect.text, "");
+    if (row.effect.kind == ParameterEffect::kBounded) {
+      EXPECT_GE(row.effect.minimum, row.declared.minimum) << row.key;
+      EXPECT_LE(row.effect.maximum, row.declared.maximum) << row.key;
+      EXPECT_GE(row.declared.default_value, row.effect.minimum) << row.key;
+      EXPECT_LE(row.declared.default_value, row.effect.maximum) << row.key;
+    }
     ++with_rule;
   }
   EXPECT_EQ(with_rule, parameter_rule_count());

@@ -58,9 +58,9 @@ class InvariantEkf {
                           "normal force of a contact of a light robot: above offset and noise of "
                           "its sensors"),
       sdk::real_parameter("force_filter", "Hz", 1, 500, 80, "low-pass of the normal force"),
-      sdk::real_parameter("leg_pole", "1/s", 1, 2000, 300,
+      sdk::real_parameter("leg_pole", "1/s", 50, 2000, 300,
                           "two low-passes of the rates of leg joints and of the pelvis twist"),
-      sdk::real_parameter("upper_body_pole", "1/s", 1, 2000, 300,
+      sdk::real_parameter("upper_body_pole", "1/s", 50, 2000, 300,
                           "the same for all other joints, which follow their commands closely"),
       sdk::real_parameter("gyro_noise", "rad/s/sqrtHz", 0, 1, 3e-4, "density"),
       sdk::real_parameter("accelerometer_noise", "m/s^2/sqrtHz", 0, 10, 0.01, "density"),

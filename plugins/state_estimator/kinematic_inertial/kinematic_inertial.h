@@ -67,7 +67,7 @@ class KinematicInertial {
                           "the same for all other joints, which follow their commands closely"),
       sdk::real_parameter("position_rate", "1/s", 0.5, 200, 12,
                           "pole of the observer of position, velocity and bias"),
-      sdk::real_parameter("tilt_rate", "1/s", 0, 10, 0.5,
+      sdk::real_parameter("tilt_rate", "1/s", 0, 3, 0.5,
                           "levelling in a walk; three times faster when standing"),
       sdk::real_parameter("tilt_bias_rate", "1/s^2", 0, 10, 0.05, "gyroscope bias from the same"),
       sdk::real_parameter("anchor_rate", "1/s", 0, 50, 2,

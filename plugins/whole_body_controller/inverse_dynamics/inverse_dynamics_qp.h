@@ -23,7 +23,7 @@ inline constexpr GaitdParameter kJointAccelerationParameter =
 inline constexpr GaitdParameter kBaseAccelerationParameter = sdk::real_parameter(
     "base_acceleration_limit", "m/s^2", 10, 1e5, 1000, "of the pelvis, also in rad/s^2");
 inline constexpr GaitdParameter kTorqueScaleParameter =
-    sdk::real_parameter("torque_scale", "", 0.05, 1, 1, "share of the effort limits in use");
+    sdk::real_parameter("torque_scale", "", 0.4, 1, 1, "share of the effort limits in use");
 inline constexpr GaitdParameter kRiseSpeedParameter =
     sdk::real_parameter("rise_speed", "m/s", 0, 100, 0.7,
                         "of the CoM, upwards, that the contacts may build up: no jumps");

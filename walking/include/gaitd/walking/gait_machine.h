@@ -9,6 +9,7 @@
 #include "gaitd/walking/footsteps.h"
 #include "gaitd/walking/refusal.h"
 #include "gaitd/walking/step_timing.h"
+#include "gaitd/walking/swing_limits.h"
 
 namespace gaitd::walking {
 
@@ -77,7 +78,12 @@ class GaitMachine {
   int first_free() const { return state_.phase == GAITD_PHASE_SWING ? 1 : 0; }
   GaitdFootstep closing_step(const GaitdPose& stance, int side) const;
   Refusal check_room(int count) const;
+  // Whether the footstep can be taken, from `stance` by the foot that stands at `from` before.
+  Refusal check(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
+                int number) const;
   void complete(GaitdFootstep& step);
+  // Of a footstep that gives none.
+  void fill_in(GaitdFootstep& step) const;
 
   const GaitdModel model_;
   GaitParameters parameters_;
@@ -86,12 +92,13 @@ class GaitMachine {
   GaitdPose lift_off_{};
   Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();        // m, of the current swing's foothold
   Eigen::Vector3d path_offset_ = Eigen::Vector3d::Zero();  // m, of the next foothold after it
-  double time_shift_ = 0.0;                            // s, of the current phase
+  double time_shift_ = 0.0;                                // s, of the current phase
   StepTiming timing_;
+  SwingLimits swing_limits_;
   StepTiming::Changes time_changes_{};  // s, from the transfer of the current step on
-  double time_unheld_ = 0.0;  // s, since the feet cannot hold the ICP
-  bool recovering_ = false;   // the steps of now are the robot's own
-  double height_offset_ = 0.0;  // m, measured minus commanded height of the ground so far
+  double time_unheld_ = 0.0;            // s, since the feet cannot hold the ICP
+  bool recovering_ = false;             // the steps of now are the robot's own
+  double height_offset_ = 0.0;          // m, measured minus commanded height of the ground so far
   int pending_mode_ = GAITD_MODE_WALK_BENT;
   std::uint32_t next_id_ = 1;
   double nominal_omega_;

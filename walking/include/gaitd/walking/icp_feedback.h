@@ -34,7 +34,7 @@ inline constexpr std::array<GaitdParameter, 12> kFeedbackParameters = {
     sdk::real_parameter("integral_limit", "m", 0, 0.1, 0.03, "of the CMP by integral feedback"),
     sdk::real_parameter("direction_speed", "m/s", 0, 1, 0.05,
                         "slower references keep the last direction"),
-    sdk::real_parameter("margin", "m", 0, 0.1, 0.01, "of the CMP to the edge of the polygon"),
+    sdk::real_parameter("margin", "m", 0, 0.05, 0.01, "of the CMP to the edge of the polygon"),
     sdk::real_parameter("excursion", "m", 0, 0.3, 0.03,
                         "of the CMP out of the polygon, paid with angular momentum"),
     sdk::real_parameter("kappa_min", "", 0.3, 1, 0.8, "clamp of kappa (theory section 1)"),

@@ -15,6 +15,8 @@ class LegGeometry {
   double length(double knee) const;
   // rad, the bent knee that makes the leg `length` metres long; the nearest there is.
   double knee(double length) const;
+  // rad, by which the thigh of a leg of that length points ahead of the line from hip to ankle.
+  double thigh(double length) const;
 
  private:
   double thigh_ = 0.4, shank_ = 0.4;  // m

@@ -1,0 +1,15 @@
+# Parameters that once made a walk fall at an end of their range: set while the robot walks, and in
+# both gait modes, they do not, or are refused. All of them: gaitctl campaign
+# sim/campaigns/parameters.yaml.
+source "$(dirname "$0")/common.sh"
+cd "$scratch"
+
+keys='limits.torque_ratio, limits.velocity_ratio, safety.fall_height, safety.force_range,
+      safety.torque_rate, objectives.com_height, objectives.momentum_weight,
+      objectives.acceleration_weight, objectives.swing_weight, objectives.swing_height_stiffness,
+      objectives.rho_*, step_adjuster.margin, state_estimator.tilt_rate, state_estimator.leg_pole,
+      state_estimator.upper_body_pole, whole_body_controller.torque_scale,
+      whole_body_controller.joint_acceleration_limit'
+sed "s#commands/#$GAITD_SOURCE/sim/campaigns/commands/#; s#^sweep:#&\n  parameters: [${keys//$'\n'/}]#" \
+  "$GAITD_SOURCE/sim/campaigns/parameters.yaml" >parameters.yaml
+expect 0 gaitctl campaign parameters.yaml -o out
