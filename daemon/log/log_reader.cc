@@ -114,11 +114,15 @@ void LogReader::Impl::read_messages(const McapChannel& signals, TickGaps* gaps) 
   std::string chunk;
   std::string error;
   auto next_damage = file.damage().begin();
+  std::uint64_t damaged_to = 0;
+  std::uint64_t last_offset = 0;
   const auto pass_damage = [&](std::uint64_t offset) {
     for (; next_damage != file.damage().end() && next_damage->begin <= offset; ++next_damage) {
       damage.add(damage_text(*next_damage));
-      gaps->damage();
+      damaged_to = next_damage->end;
     }
+    if (damaged_to > last_offset) gaps->damage();  // between the chunk before and what is there
+    last_offset = offset;
   };
   for (std::size_t i = 0; i < file.chunks().size(); ++i) {
     pass_damage(file.chunks()[i].offset);

@@ -146,15 +146,18 @@ void McapReader::salvage_chunks(std::uint64_t begin, std::uint64_t end) {
 // A block of the file that was written over another one: its chunks are sound, but stand there
 // twice.
 void McapReader::drop_copies() {
+  if (damage_.empty() && finished()) return;
   std::set<std::pair<std::uint32_t, std::uint64_t>> seen;
   const auto key = [](const McapChunk& chunk) {
     return std::pair(chunk.crc, chunk.uncompressed_size);
   };
   for (const McapChunk& chunk : chunks_) {
-    if (!chunk.suspect) seen.insert(key(chunk));
+    if (!chunk.suspect && !chunk.cut) seen.insert(key(chunk));
   }
+  std::set<std::pair<std::uint32_t, std::uint64_t>> kept;
   std::erase_if(chunks_, [&](const McapChunk& chunk) {
-    return chunk.suspect && !seen.insert(key(chunk)).second;
+    const bool doubtful = chunk.suspect || chunk.cut;
+    return !(doubtful ? seen : kept).insert(key(chunk)).second;
   });
 }
 
