@@ -14,8 +14,9 @@ namespace {
 constexpr double kTolerance = 0.005;
 // A corner that bends inwards by less is straight (m^2).
 constexpr double kStraight = 1e-9;
-// Of the width of the sole: what is left has to hold the margins and errors of the CoP.
-constexpr double kLeastShare = 0.25;
+// Of the width of the sole, half of it but for rounding: what is left has to hold the margins and
+// errors of the CoP.
+constexpr double kLeastShare = 0.499;
 
 Eigen::Vector2d corner(const GaitdFootstep& step, int i) {
   const double(&p)[2] = step.contact_polygon[i % step.polygon_count];
@@ -97,8 +98,8 @@ Refusal check_contact_polygon(const GaitdModel& model, const GaitdFootstep& step
   const double least = kLeastShare * width(sole);
   if (const double wide = width(polygon); !(wide >= least)) {
     return refuse(
-        "footstep %d (%s): contact_polygon is %.3f m wide, at least %.3f expected, a "
-        "quarter of the sole; find a foothold that carries more of it",
+        "footstep %d (%s): contact_polygon is %.3f m wide, at least %.3f expected, "
+        "half of the sole; find a foothold that carries more of it",
         number, side, wide, least);
   }
   return {};
