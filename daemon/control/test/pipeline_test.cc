@@ -83,18 +83,20 @@ TEST(Pipeline, SameInputsGiveTheSameBitsAndSoAfterAReset) {
 TEST(Pipeline, SetsParametersOfLayersAndOfItsOwnAndTellsTheOldValue) {
   Bench b;
   std::string error;
-  for (const char* key : {"gait.swing_height", "whole_body_controller.torque_scale"}) {
+  const std::pair<const char*, double> values[] = {{"gait.swing_height", 0.2},
+                                                   {"whole_body_controller.torque_scale", 0.9}};
+  for (const auto& [key, value] : values) {
     const int index = b.parameters.find(key, &error);
     ASSERT_GE(index, 0) << error;
     Command command;
     command.type = CommandType::kSetParameter;
     command.parameter_index = index;
-    command.parameter_value = 0.2;
+    command.parameter_value = value;
     const double before = b.parameters.value(index);
     const CommandReply reply = b.pipeline->execute(command);
     EXPECT_TRUE(reply.accepted) << reply.message.data();
     EXPECT_EQ(reply.old_value, before);
-    EXPECT_EQ(b.parameters.value(index), 0.2);
+    EXPECT_EQ(b.parameters.value(index), value);
   }
 }
 
