@@ -194,7 +194,8 @@ void LogReader::Impl::find_damage(const McapChannel& signals, TickGaps* gaps) {
   const bool damaged_bytes = !damage.findings.empty();
   if (!file.finished()) damage.findings.push_back(file.break_reason());
   const auto written = file.written_messages(signals.id);
-  gaps->finish(written, !metadata.contains("part"));
+  // Without numbers only the count of the rows tells.
+  if (find_signal(table, "tick") >= 0) gaps->finish(written, !metadata.contains("part"));
   const std::uint64_t found = ticks.size();
   damage.lost = gaps->lost();
   // A gap in sound records is what the daemon dropped, as far as the log tells of that.
