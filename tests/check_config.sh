@@ -84,7 +84,7 @@ printf 'schema: gaitd.other/1\n' >other.yaml
 refused "other.yaml:1: schema: expected gaitd.config/1, gaitd.robot/1 or gaitd.scenario/1" \
   -- other.yaml
 truncate -s 5M large.yaml
-refused 'large.yaml: expected at most 4194304 bytes, got 5242880' -- large.yaml
+refused 'large.yaml: expected at most 1048576 bytes, got 5242880' -- large.yaml
 
 # The URDF of a robot, with its own lines.
 sed 's/^urdf: .*/urdf: none.urdf/' "$robot" >robot/no-urdf.yaml
