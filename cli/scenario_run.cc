@@ -139,11 +139,13 @@ void judge(const Scenario& scenario, RunReport* report) {
     return;
   }
   report->verdict = daemon::compute_verdict(*log, scenario.expect);
+  // A gaitd that crashed cuts its log off: then the crash is what is wrong.
+  const bool ended_well = report->problems.empty();
   for (const std::string& finding : log->damage().findings) {
     report->problems.push_back("the log is damaged: " + finding);
   }
   if (log->changed()) report->problems.push_back("the log was changed while it was judged");
-  report->damaged = log->damage().any() || log->changed();
+  report->damaged = ended_well && (log->damage().any() || log->changed());
 }
 
 std::vector<std::string> refusals(const RunReport& report) {

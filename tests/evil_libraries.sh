@@ -115,7 +115,7 @@ sleep 0.5
 kill -KILL "$daemon"
 wait "$daemon" || true
 daemon=
-left=$(find "$XDG_RUNTIME_DIR" -mindepth 1 ! -name 'gaitd.sock*')
+left=$(find "$XDG_RUNTIME_DIR" -mindepth 1 ! -name 'gaitd*.sock*')
 [[ -z $left ]] || fail "left: $left"
 echo "a swap leaves no file behind, even after SIGKILL"
 

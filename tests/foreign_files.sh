@@ -20,7 +20,7 @@ loads() {
 }
 # scenario NAME LINE...
 scenario() {
-  printf 'schema: gaitd.scenario/1\nname: %s\nrobot: atlas\nduration: 0.3\nseed: 1\n' "$1" >"${2:-$1}.yaml"
+  printf 'schema: gaitd.scenario/1\nname: %s\nrobot: atlas\nduration: 3\nseed: 1\n' "$1" >"${2:-$1}.yaml"
   printf '%s\n' "${@:3}" >>"${2:-$1}.yaml"
 }
 

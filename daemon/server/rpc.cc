@@ -160,17 +160,30 @@ Exchange::Request Exchange::Request::read(json value) {
 struct Exchange::Collector {
   Send send;
   bool batch = false;
-  std::vector<json> answers;  // null: none (yet, or never)
+  std::vector<std::string> answers;  // empty: none (yet, or never)
+  std::size_t bytes = 0;
   std::size_t open = 0;
 
+  void take(std::size_t i, const json& id, RpcResult result) {
+    std::string text = dump(answer(id, std::move(result)));
+    if (batch && bytes + text.size() > bounds::kUnreadBytes) {
+      text = dump(
+          answer(id, RpcError{rpc_code::kBusy, "busy: the answers to this batch are longer than " +
+                                                   std::to_string(bounds::kUnreadBytes) +
+                                                   " bytes together; ask for less at a time"}));
+    }
+    bytes += text.size();
+    answers[i] = std::move(text);
+  }
   void finish() {
     if (open > 0) return;
-    json out = json::array();
-    for (json& one : answers) {
-      if (!one.is_null()) out.push_back(std::move(one));
+    std::string out;
+    for (std::string& one : answers) {
+      if (one.empty()) continue;
+      out += (out.empty() ? "" : ",") + one;
+      one = std::string();
     }
-    if (out.empty()) return;
-    send(dump(batch ? out : out[0]));
+    if (!out.empty()) send(batch ? "[" + out + "]" : out);
   }
 };
 
@@ -252,7 +265,7 @@ bool Exchange::step() {
     run(request, [collector = collector_, done, i, id = request.id,
                   silent = request.notification](RpcResult result) {
       if (std::exchange(*done, true)) return;
-      if (!silent) collector->answers[i] = answer(id, std::move(result));
+      if (!silent) collector->take(i, id, std::move(result));
       --collector->open;
       collector->finish();
     });

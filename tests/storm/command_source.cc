@@ -297,6 +297,7 @@ Request CommandSource::wrong_parameter() {
 Request CommandSource::no_request(const Scene& scene) {
   Request r = request(Request::Kind::kInvalid, good_call(scene));
   json object = json::parse(r.line);
+  if (object["method"] == "estop") object["method"] = "stop";  // is never refused for its form
   r.code = kInvalidRequest;
   switch (integer(0, 10)) {
     case 0:

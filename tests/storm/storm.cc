@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "gaitd/sdk/bounds.h"
 #include "tests/storm/refusals.h"
 
 namespace gaitd::storm {
@@ -174,7 +175,7 @@ void Storm::mishap() {
       request.method = "too long";
       request.code = -32600;
       request.names = "longer than";
-      request.line = std::string((1 << 20) + 1, ' ');
+      request.line = std::string(bounds::kRequestBytes + 1, ' ');
       send(ill, {request}, false);
       const json answer = ill.socket->answer();
       if (answer.is_object()) take_answer(ill, answer);

@@ -197,6 +197,26 @@ TEST_F(Rpc, AnyBytesAreAnswered) {
   }
 }
 
+TEST_F(Rpc, TheAnswersToABatchAreBoundedTogether) {
+  methods_.add("large", [](const json&) -> RpcResult { return std::string(100000, 'x'); });
+  json batch = json::array();
+  for (int i = 0; i < 200; ++i) {
+    batch.push_back({{"jsonrpc", "2.0"}, {"id", i}, {"method", i % 2 == 0 ? "large" : "status"}});
+  }
+  sent_.clear();
+  std::size_t size = 0;
+  json answers;
+  handle_line(methods_, limits_, caller_, batch.dump(), [&](std::string text) {
+    size = text.size();
+    answers = json::parse(text);
+  });
+  EXPECT_LT(size, bounds::kUnreadBytes + 200 * 300);
+  ASSERT_EQ(answers.size(), 200u);
+  EXPECT_TRUE(answers[0].contains("result"));
+  EXPECT_EQ(answers[198]["error"]["code"], -32002);
+  EXPECT_EQ(answers[198]["id"], 198);
+}
+
 TEST_F(Rpc, AnIdComesBackAsItCameOrIsRefused) {
   for (const char* id :
        {"18446744073709551615", "-9223372036854775808", "\"18446744073709551616\""}) {
