@@ -39,9 +39,9 @@ loads gaitctl run swap.yaml --trust --log swap.mcap
 
 cp -r "$GAITD_SOURCE/robots/atlas" robot
 sed -i "s|^parameters:|&\n  toe_off.variant: $evil|" robot/robot.yaml
-refused --trust gaitd --check-config robot/robot.yaml
-refused --trust gaitd --robot robot/robot.yaml --check-config
-loads gaitd --robot robot/robot.yaml --check-config --trust
+printf 'schema: gaitd.config/1\n' >empty.yaml # the installed one chooses the layers itself
+refused --trust gaitd --config empty.yaml --check-config robot/robot.yaml
+refused --trust gaitd --config empty.yaml --robot robot/robot.yaml --check-config
 
 # The configuration that gaitd is started with may; one that is only checked may not.
 printf 'schema: gaitd.config/1\ntoe_off: {variant: %s}\n' "$evil" >gaitd.yaml

@@ -2,6 +2,7 @@
 // The client against peers that misbehave.
 #include "cli/rpc_client.h"
 
+#include <grp.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -143,7 +144,7 @@ TEST_F(Stranger, LooksNoFurtherThanWhereHeMayNotConnect) {
   chmod(workspace_.file("open").c_str(), 0666);
   child_ = fork();
   if (child_ == 0) {
-    if (setuid(65534) != 0) _exit(1);
+    if (setgroups(0, nullptr) != 0 || setgid(65534) != 0 || setuid(65534) != 0) _exit(1);
     const auto client = RpcClient::connect(
         {{workspace_.file("closed"), workspace_.file("open")}, false, daemon::Role::kCommand},
         &error);
