@@ -149,7 +149,7 @@ def run(hours, folder):
         begin = time.monotonic()
         with gaitd.client('-observe') as watcher:
             while time.monotonic() - begin < 3600.0 * hours:
-                time.sleep(min(60.0, 3600.0 * hours))
+                time.sleep(min(60.0, max(1.0, 3600.0 * hours - (time.monotonic() - begin))))
                 if gaitd.process.poll() is not None:
                     sys.exit(f'gaitd ended with {gaitd.process.returncode}: {gaitd.said()}')
                 status = watcher.ask('status')
