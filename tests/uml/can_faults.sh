@@ -2,7 +2,7 @@
 # no torque is sent after it. Injected by the fake robot, over real CAN sockets.
 source "$(dirname "$0")/uml.sh"
 uml_start_or_skip
-uml_run can_faults_inside.sh 1500
+uml_run can_faults_inside.sh 2700
 
 # Within how many cycles the last torque is sent, and that none follows until an operator resets and
 # arms.
