@@ -3,6 +3,7 @@
 
 # condition FAULT CYCLES ARGUMENTS OF THE FAKE ROBOT...
 conditions=0
+patience=10    # s of wall time that either side waits for frames that do not come
 stall_time=600 # s of wall time: a motor that hears nothing outlasts its condition on any machine
 condition() {
   local fault=$1 cycles=$2 off=30
