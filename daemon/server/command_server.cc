@@ -109,6 +109,7 @@ class CommandServer::Impl {
   void turn_away(Door& door);
   bool handle(const std::shared_ptr<Session>& session, std::string_view line);
   bool handle_estop(const std::shared_ptr<Session>& session, std::string_view line);
+  void finish_guest(const std::shared_ptr<Session>& session);
   void poll_estops();
   void give_room(std::uint64_t client);
   void forget(const std::shared_ptr<Session>& session);
@@ -319,9 +320,14 @@ bool CommandServer::Impl::handle(const std::shared_ptr<Session>& session, std::s
   Caller caller = session->caller();
   caller.estops = estop_->asked();
   if (!worker_.push(caller, line, send)) return false;
+  finish_guest(session);
+  return true;
+}
+
+// A guest has had its one request.
+void CommandServer::Impl::finish_guest(const std::shared_ptr<Session>& session) {
   const auto client = clients_.find(session->caller().connection);
   if (client != clients_.end() && client->second.guest) session->finish();
-  return true;
 }
 
 bool CommandServer::Impl::handle_estop(const std::shared_ptr<Session>& session,
@@ -332,8 +338,7 @@ bool CommandServer::Impl::handle_estop(const std::shared_ptr<Session>& session,
     if (!silent) session->send(answer_line(id, std::move(result)));
   });
   poll_estops();
-  const auto client = clients_.find(session->caller().connection);
-  if (client != clients_.end() && client->second.guest) session->finish();
+  finish_guest(session);
   return true;
 }
 
