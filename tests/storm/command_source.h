@@ -16,6 +16,7 @@ struct Request {
   enum class Kind {
     kQuery,    // answered with a result, changes nothing
     kCommand,  // accepted, or refused in the state the robot is in
+    kFlood,    // accepted or refused as too many, changes nothing: not repeated in the replay
     kInvalid,  // refused with `code`, whatever the state
   };
   Kind kind = Kind::kInvalid;

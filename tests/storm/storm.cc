@@ -63,6 +63,8 @@ bool Storm::after_tick(const GaitdJointCommands& commands, const GaitdTruth& tru
   ++tick_;
   if (options_.replay) {
     replay();
+  } else if (flooded_) {
+    wait_for_the_flood();
   } else if (last_tick_ < 0) {
     recover();
     if (tick_ >= next_burst_) burst();
@@ -123,13 +125,21 @@ void Storm::burst() {
     synchronise(c);
   }
   if (source_.chance(0.02)) mishap();
-  // Now and then more than the control thread takes at a time. In which tick it takes them nobody
-  // can know, so they do nothing.
+  // Now and then more than the control thread takes at a time.
   if (!source_.chance(0.002)) return;
   std::vector<Request> flood;
   for (int j = 0; j < 90; ++j) flood.push_back(source_.without_effect());
   send(connection(0), flood, false);
   synchronise(connection(0));
+  flooded_ = true;
+}
+
+// The ticks that take a flood depend on the machine, and so would those of commands behind it.
+void Storm::wait_for_the_flood() {
+  synchronise(connection(0));
+  flooded_ = std::any_of(pending_.begin(), pending_.end(), [](const auto& entry) {
+    return entry.second.request.kind == Request::Kind::kFlood;
+  });
 }
 
 void Storm::send(Connection& c, const std::vector<Request>& requests, bool as_batch) {
@@ -256,7 +266,9 @@ void Storm::check(const Request& request, const json& answer) {
   if (!names_its_reason(code, message)) fail("a refusal unlike any in refusals.h: " + about);
   const bool by_state = code == kRefused || code == kBusy;
   if (request.kind == Request::Kind::kQuery) fail("a query was refused: " + about);
-  if (request.kind == Request::Kind::kCommand && !by_state) fail("refused by mistake: " + about);
+  const bool command =
+      request.kind == Request::Kind::kCommand || request.kind == Request::Kind::kFlood;
+  if (command && !by_state) fail("refused by mistake: " + about);
   if (request.kind == Request::Kind::kInvalid) {
     const bool as_expected = code == request.code || (request.code == kRefused && code == kBusy);
     if (!as_expected) fail("expected error " + std::to_string(request.code) + ": " + about);

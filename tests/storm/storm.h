@@ -52,6 +52,7 @@ class Storm {
   void burst();
   void send(Connection& c, const std::vector<Request>& requests, bool as_batch);
   void expect(Connection& c, const Request& request);
+  void wait_for_the_flood();
   void mishap();
   void recover();
   void replay();
@@ -73,6 +74,7 @@ class Storm {
   int damped_ = 0;               // ticks that the joints have been so
   int sent_ = 0;
   int falls_ = 0;
+  bool flooded_ = false;                          // some of the last flood are not answered yet
   std::unique_ptr<daemon::RawClient> half_line_;  // held to the end
   std::vector<std::uint64_t> hashes_;             // of each tick
   std::map<std::int64_t, Sent> pending_;
