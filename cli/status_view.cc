@@ -73,7 +73,7 @@ std::string log(const json& log) {
   const std::string file = text(at(log, "file"));
   if (file.empty() || file == "-") return "none";
   const std::string error = text(at(log, "error"));
-  if (!error.empty() && error != "-") return "ENDED: " + error;
+  if (text(at(log, "open")) == "false") return "STOPPED: " + error;
   return file + ", " + number(at(log, "bytes"), 1, 1e6) + " MB, " + text(at(log, "dropouts")) +
          " ticks dropped";
 }

@@ -16,6 +16,8 @@ install(FILES ${gaitd_etc}/systemd/gaitd.sysusers.conf DESTINATION /usr/lib/sysu
         RENAME gaitd.conf COMPONENT system EXCLUDE_FROM_ALL)
 install(FILES ${gaitd_etc}/systemd/gaitd.tmpfiles.conf DESTINATION /usr/lib/tmpfiles.d
         RENAME gaitd.conf COMPONENT system EXCLUDE_FROM_ALL)
+install(FILES ${gaitd_etc}/systemd/gaitd.rules DESTINATION /usr/lib/udev/rules.d
+        RENAME 60-gaitd.rules COMPONENT system EXCLUDE_FROM_ALL)
 install(DIRECTORY ${gaitd_etc}/network DESTINATION /usr/share/doc/gaitd/examples COMPONENT system
         EXCLUDE_FROM_ALL)
 gaitd_system_files(/usr/share/doc/gaitd ${PROJECT_SOURCE_DIR}/cmake/package/copyright)

@@ -7,6 +7,7 @@ make_packages "$scratch"
 root=$scratch/root
 for name in gaitd gaitd-dev; do dpkg-deb -x "$scratch/$name.deb" "$root"; done
 for file in etc/gaitd/gaitd.yaml usr/lib/sysusers.d/gaitd.conf usr/lib/tmpfiles.d/gaitd.conf \
+  usr/lib/udev/rules.d/60-gaitd.rules \
   lib/systemd/system/gaitd.service usr/share/doc/gaitd/examples/network/80-can-fd.network \
   usr/bin/gaitd usr/bin/gaitctl usr/bin/gaitd-fake-robot \
   usr/lib/gaitd/plugins/backend/socketcan.so usr/share/gaitd/robots/atlas/can-fd.yaml \

@@ -9,6 +9,12 @@ start_daemon --clock realtime --socket "$socket" --log "$scratch/walk.mcap"
 wait_for state standing 20
 [[ $(field clock) == realtime ]] || fail "the clock is $(field clock)"
 
+# Idle processors stay awake for as long as it runs, where the machine has something to say for it.
+if [[ -w /dev/cpu_dma_latency ]]; then
+  ls -l "/proc/$daemon/fd" | grep -q /dev/cpu_dma_latency ||
+    fail "it does not hold /dev/cpu_dma_latency: $(grep 'real time' "$scratch/gaitd.txt")"
+fi
+
 command walk --steps 14 --length 0.3 --swing 0.6 --transfer 0.25
 wait_for state walking 5
 wait_for step_index 3 30

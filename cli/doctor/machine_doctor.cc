@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -73,6 +74,18 @@ Findings check_limits() {
               : format("this user may lock only %.0f MB of memory",
                        static_cast<double>(memory.rlim_cur) / (1 << 20)),
        enough ? "" : "LimitMEMLOCK=infinity in the service, or 'memlock unlimited' in limits.d"});
+  const bool sleeps = access("/dev/cpu_dma_latency", F_OK) == 0;
+  if (sleeps && access("/dev/cpu_dma_latency", W_OK) != 0) {
+    findings.push_back({"idle", Severity::kWarning,
+                        "this user cannot keep idle processors awake: each wake-up may come tens "
+                        "of microseconds late",
+                        "a udev rule that lets it write /dev/cpu_dma_latency, as the package of "
+                        "gaitd has for the group gaitd"});
+  } else {
+    findings.push_back({"idle", Severity::kOk,
+                        sleeps ? "idle processors can be kept awake" : "processors never sleep",
+                        ""});
+  }
   return findings;
 }
 

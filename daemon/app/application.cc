@@ -374,10 +374,15 @@ nlohmann::json Application::status() const {
   }
   s["health"] = health();
   const Telemetry::LogStatus log = telemetry_->log_status();
-  s["log"] = {
-      {"file", log.file},       {"part", log.part},       {"open", log.open},
-      {"error", log.error},     {"ticks", log.ticks},     {"bytes", log.bytes},
-      {"waiting", log.waiting}, {"stalled", log.stalled}, {"dropouts", telemetry_->dropouts()}};
+  s["log"] = {{"file", log.file},
+              {"part", log.part},
+              {"open", log.open},
+              {"error", log.error},
+              {"ticks", log.ticks},
+              {"bytes", log.bytes},
+              {"waiting", log.waiting},
+              {"stalled", log.stalled},
+              {"dropouts", telemetry_->dropouts() + log.lost}};
   add_age(&s);
   return s;
 }
@@ -482,6 +487,16 @@ bool Application::report_overruns(std::uint64_t* told) const {
   return true;
 }
 
+void tell_of_log(const Telemetry::LogStatus& now, const Telemetry::LogStatus& before) {
+  if (before.open && !now.open) {
+    spdlog::error("{}; the log stops here until there is room, the robot goes on", now.error);
+  } else if (now.part != before.part && before.open) {
+    spdlog::info("log: full, goes on in {}", now.file);
+  } else if (now.part != before.part) {
+    spdlog::info("log: goes on in {}; {} ticks are lost", now.file, now.lost);
+  }
+}
+
 // Says on the terminal what other threads cannot: faults, when they come and go, and where the log
 // goes on or why it ended.
 void Application::watch_telemetry(const std::atomic<bool>& running, ServiceManager* manager) const {
@@ -497,10 +512,7 @@ void Application::watch_telemetry(const std::atomic<bool>& running, ServiceManag
     const auto now = std::chrono::steady_clock::now();
     if (now >= next_told && report_overruns(&overruns_told)) next_told = now + kTellOverruns;
     const Telemetry::LogStatus log = telemetry_->log_status();
-    if (log.part != last_log.part) spdlog::info("log: full, goes on in {}", log.file);
-    if (log.error != last_log.error) {
-      spdlog::error("{}; the log ends here, the robot goes on", log.error);
-    }
+    tell_of_log(log, last_log);
     last_log = log;
     if (signal < 0 || state < 0 || !telemetry_->latest(values)) continue;
     const auto faults = static_cast<std::uint32_t>(values[signal]);
@@ -532,9 +544,11 @@ bool Application::become_realtime() {
 int Application::run() {
   const GaitdBackendInstance& backend = backend_->instance();
   const bool paced = config_.clock == GAITD_CLOCK_REALTIME;
+  CpuLatency latency;
   if (paced) {
     const std::scoped_lock lock(realtime_mutex_);
     lock_memory(config_.realtime, &realtime_);
+    stay_awake(config_.realtime, &latency, &realtime_);
   }
   if (backend.vtable->start(backend.self) != GAITD_OK) {
     spdlog::error("backend {}: start failed; see the messages above", config_.backend);

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "daemon/config/robot.h"
 #include "daemon/app/realtime.h"
+#include "daemon/config/robot.h"
 #include "daemon/control/tick_watch.h"
 #include "daemon/telemetry/log_writer.h"
 #include "daemon/telemetry/telemetry.h"

@@ -6,6 +6,7 @@
 #include <sys/mman.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 
@@ -42,6 +43,19 @@ void lock_memory(const RealtimeConfig& config, RealtimeReport* report) {
   } else {
     report->degraded.push_back(
         "the kernel is not PREEMPT_RT: wake-ups may be late by milliseconds");
+  }
+}
+
+void stay_awake(const RealtimeConfig& config, CpuLatency* latency, RealtimeReport* report) {
+  if (config.cpu_latency >= CpuLatency::kMaxSeconds) return;
+  std::string error;
+  if (!latency->hold(config.cpu_latency, &error)) {
+    report->degraded.push_back(error);
+  } else if (latency->held()) {
+    char text[80];
+    std::snprintf(text, sizeof(text), "idle processors wake up within %.0f us (PM QoS)",
+                  1e6 * config.cpu_latency);
+    report->got.push_back(text);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "daemon/app/cpu_latency.h"
 #include "daemon/config/daemon_config.h"
 
 namespace gaitd::daemon {
@@ -19,6 +20,8 @@ struct RealtimeReport {
 
 // Locks the memory of the process, present and future. To be called before the control thread.
 void lock_memory(const RealtimeConfig& config, RealtimeReport* report);
+// Keeps idle processors as awake as configured, as long as `latency` lives.
+void stay_awake(const RealtimeConfig& config, CpuLatency* latency, RealtimeReport* report);
 // On the control thread: SCHED_FIFO, affinity, a stack that has been touched.
 void enter_realtime(const RealtimeConfig& config, RealtimeReport* report);
 

@@ -7,6 +7,8 @@
 
 namespace gaitd::daemon {
 
+using Clock = std::chrono::steady_clock;
+
 namespace fs = std::filesystem;
 
 RotatingLog::RotatingLog(SignalTable table)
@@ -26,38 +28,64 @@ bool RotatingLog::open(const std::string& path, const LogMetadata& metadata,
   metadata_ = metadata;
   options_ = options;
   limits_ = limits;
-  const bool opened = open_part();
+  const bool opened = open_next_part();
   *error = error_;
   return opened;
 }
 
-bool RotatingLog::open_part() {
+bool RotatingLog::open_next_part() {
   LogMetadata metadata = metadata_;
-  const std::string previous = fs::path(file_).filename().string();
-  file_ = path_of(++part_);
-  if (part_ > 1) {
-    metadata["part"] = std::to_string(part_);
-    metadata["previous"] = previous;
+  if (part_ > 0) {
+    metadata["part"] = std::to_string(part_ + 1);
+    metadata["previous"] = fs::path(file_).filename().string();
   }
-  if (!writer_->open(file_, metadata, options_, &error_)) return false;
-  files_.push_back(file_);
+  auto writer = std::make_unique<LogWriter>(table_);
+  const std::string next = path_of(part_ + 1);
+  std::string error;
+  if (!writer->open(next, metadata, options_, &error)) {
+    error_ = error;
+    return false;
+  }
+  error_ = this->error();
+  before_ = {bytes_written(), ticks_written(), ticks_lost(), events_lost()};
+  writer_ = std::move(writer);
+  ++part_;
+  file_ = next;
+  files_.push_back(next);
+  delete_oldest();
   return true;
 }
 
-void RotatingLog::rotate_if_full() {
-  const bool writing = writer_->is_open() && writer_->ok();
-  if (!writing || limits_.max_bytes == 0 || writer_->bytes_written() < limits_.max_bytes) return;
+void RotatingLog::next_file_if_due() {
+  if (part_ == 0) return;
+  if (!writer_->is_open()) return go_on_after_failure();
+  if (limits_.max_bytes == 0 || writer_->bytes_written() < limits_.max_bytes) return;
   const std::string next = fs::path(path_of(part_ + 1)).filename().string();
   if (!writer_->close({{"next", next}})) return;
-  before_ = {bytes_written(), ticks_written(), latest_.tick_dropouts, latest_.event_dropouts};
-  writer_ = std::make_unique<LogWriter>(table_);
-  if (open_part()) delete_oldest();
+  told_ = latest_;
+  open_next_part();
+}
+
+// In a file of its own: the old one may be cut off in the middle of a record.
+void RotatingLog::go_on_after_failure() {
+  const auto now = Clock::now();
+  const bool first = next_try_ == Clock::time_point();
+  if (!first && now < next_try_) return;
+  next_try_ = now + std::chrono::duration_cast<Clock::duration>(
+                        std::chrono::duration<double>(limits_.retry));
+  if (!first && has_room() && open_next_part()) next_try_ = {};
+}
+
+bool RotatingLog::has_room() const {
+  std::error_code unknown;
+  const fs::path folder = fs::absolute(path_, unknown).parent_path();
+  const fs::space_info space = fs::space(folder, unknown);
+  return !unknown && space.available >= limits_.room;
 }
 
 void RotatingLog::set_dropouts(std::uint64_t ticks, std::uint64_t events) {
-  latest_.tick_dropouts = ticks;
-  latest_.event_dropouts = events;
-  writer_->set_dropouts(ticks - before_.tick_dropouts, events - before_.event_dropouts);
+  latest_ = {ticks + ticks_lost(), events + events_lost()};
+  writer_->set_dropouts(latest_.ticks - told_.ticks, latest_.events - told_.events);
 }
 
 void RotatingLog::delete_oldest() {

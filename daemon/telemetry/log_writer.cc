@@ -30,6 +30,14 @@ std::uint64_t to_nanoseconds(double time) {
 struct LogWriter::Impl {
   explicit Impl(SignalTable signals) : table(std::move(signals)), codec(table) {}
 
+  // If the file has grown it wrote out its chunk.
+  void look_what_is_stored() {
+    if (!file.ok() || file.bytes_written() == bytes_stored) return;
+    bytes_stored = file.bytes_written();
+    ticks_stored = ticks;
+    events_stored = events;
+  }
+
   SignalTable table;
   SignalCodec codec;
   RecordsCodec records;
@@ -38,7 +46,11 @@ struct LogWriter::Impl {
   std::uint16_t signals_channel = 0;
   std::uint16_t sensors_channel = 0;
   std::uint16_t events_channel = 0;
-  std::uint64_t ticks = 0;
+  std::uint64_t ticks = 0;   // that were given to write
+  std::uint64_t events = 0;  // and of those
+  std::uint64_t ticks_stored = 0;
+  std::uint64_t events_stored = 0;
+  std::uint64_t bytes_stored = 0;
   std::uint64_t dropouts = 0;
   std::uint64_t event_dropouts = 0;
   std::int64_t last_tick = 0;
@@ -75,15 +87,18 @@ bool LogWriter::open(const std::string& path, const LogMetadata& metadata,
 void LogWriter::write_tick(std::int64_t tick, double time, std::span<const double> values,
                            const GaitdSensors* sensors) {
   Impl& impl = *impl_;
-  if (!is_open() || !ok()) return;
-  const std::uint64_t stamp = to_nanoseconds(time);
-  impl.codec.append(values, &impl.file.begin_message(impl.signals_channel, stamp));
-  impl.file.end_message();
-  if (sensors != nullptr) {
-    impl.records.append_sensors(*sensors, &impl.file.begin_message(impl.sensors_channel, stamp));
+  if (is_open() && ok()) {
+    const std::uint64_t stamp = to_nanoseconds(time);
+    impl.codec.append(values, &impl.file.begin_message(impl.signals_channel, stamp));
     impl.file.end_message();
+    if (sensors != nullptr) {
+      impl.records.append_sensors(*sensors, &impl.file.begin_message(impl.sensors_channel, stamp));
+      impl.file.end_message();
+    }
+    if (impl.scene != nullptr) impl.scene->write(stamp, values, &impl.file);
   }
-  if (impl.scene != nullptr) impl.scene->write(stamp, values, &impl.file);
+  // What the file wrote out just now holds the ticks before this one, perhaps only a part of it.
+  impl.look_what_is_stored();
   ++impl.ticks;
   impl.last_tick = tick;
   impl.last_time = time;
@@ -91,10 +106,13 @@ void LogWriter::write_tick(std::int64_t tick, double time, std::span<const doubl
 
 void LogWriter::write_event(const Event& event) {
   Impl& impl = *impl_;
-  if (!is_open() || !ok()) return;
-  const std::uint64_t stamp = to_nanoseconds(event.time);
-  impl.records.append_event(event, &impl.file.begin_message(impl.events_channel, stamp));
-  impl.file.end_message();
+  if (is_open() && ok()) {
+    const std::uint64_t stamp = to_nanoseconds(event.time);
+    impl.records.append_event(event, &impl.file.begin_message(impl.events_channel, stamp));
+    impl.file.end_message();
+  }
+  impl.look_what_is_stored();
+  ++impl.events;
 }
 
 // Also an event, so that a file without an end tells about them too.
@@ -112,6 +130,7 @@ void LogWriter::set_dropouts(std::uint64_t ticks, std::uint64_t events) {
 
 void LogWriter::flush() {
   impl_->file.flush();
+  impl_->look_what_is_stored();
   impl_->file.check();
 }
 
@@ -123,13 +142,22 @@ bool LogWriter::close(const LogMetadata& metadata) {
   end["dropouts"] = std::to_string(impl.dropouts);
   end["event_dropouts"] = std::to_string(impl.event_dropouts);
   impl.file.add_metadata(kEndMetadata, end);
-  return impl.file.close();
+  if (!impl.file.close()) return false;
+  impl.ticks_stored = impl.ticks;
+  impl.events_stored = impl.events;
+  return true;
 }
 
 bool LogWriter::is_open() const { return impl_->file.is_open(); }
 bool LogWriter::ok() const { return impl_->file.ok(); }
 const std::string& LogWriter::error() const { return impl_->file.error(); }
 std::uint64_t LogWriter::bytes_written() const { return impl_->file.bytes_written(); }
-std::uint64_t LogWriter::ticks_written() const { return impl_->ticks; }
+std::uint64_t LogWriter::ticks_written() const {
+  return is_open() ? impl_->ticks : impl_->ticks_stored;
+}
+std::uint64_t LogWriter::ticks_lost() const { return impl_->ticks - ticks_written(); }
+std::uint64_t LogWriter::events_lost() const {
+  return is_open() ? 0 : impl_->events - impl_->events_stored;
+}
 
 }  // namespace gaitd::daemon

@@ -16,7 +16,8 @@ namespace gaitd::daemon {
 
 // Writes one log file: MCAP with protobuf messages whose schema is in the file. Not thread-safe;
 // not for the real-time thread. Once writing fails (disk full) it stops for good: every later call
-// does nothing, ok() is false and error() says why. What had been written stays readable.
+// only counts what is lost, ok() is false and error() says why. What had been written stays
+// readable.
 class LogWriter {
  public:
   // The table must be valid.
@@ -50,7 +51,11 @@ class LogWriter {
   bool ok() const;
   const std::string& error() const;
   std::uint64_t bytes_written() const;
+  // Once it is closed or has failed: those that are in the file for certain, and those that are
+  // not.
   std::uint64_t ticks_written() const;
+  std::uint64_t ticks_lost() const;
+  std::uint64_t events_lost() const;
 
  private:
   struct Impl;

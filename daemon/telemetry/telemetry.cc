@@ -140,7 +140,7 @@ void Telemetry::Impl::run() {
       report_dropouts();
       on_disk([this] {
         log.writer().flush();
-        log.rotate_if_full();
+        log.next_file_if_due();
       });
       tell_log_status();
       last_flush = Clock::now();
@@ -151,8 +151,8 @@ void Telemetry::Impl::run() {
 }
 
 void Telemetry::Impl::tell_log_status() {
-  LogStatus now{log.file(),  log.part(),          log.writer().is_open(),
-                log.error(), log.ticks_written(), log.bytes_written()};
+  LogStatus now{log.file(),          log.part(),          log.writer().is_open(), log.error(),
+                log.ticks_written(), log.bytes_written(), log.ticks_lost()};
   const std::scoped_lock lock(status_mutex);
   status = std::move(now);
 }
@@ -360,7 +360,7 @@ bool Telemetry::close(const LogMetadata& metadata, std::string* error) {
   while (impl.drain()) {
   }
   impl.report_dropouts();
-  const bool complete = impl.log.close(metadata);
+  const bool complete = impl.log.close(metadata) && impl.log.ticks_lost() == 0;
   impl.tell_log_status();
   if (error != nullptr) *error = impl.log.error();
   return complete;

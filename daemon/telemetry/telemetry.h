@@ -94,25 +94,27 @@ class Telemetry {
   std::vector<double> recent_maxima() const;
 
   const SignalTable& table() const;
-  double period() const;                    // s, of the tick
-  std::uint64_t dropouts() const noexcept;  // ticks
+  double period() const;  // s, of the tick
+  // Ticks, events that found the ring full.
+  std::uint64_t dropouts() const noexcept;
   std::uint64_t event_dropouts() const noexcept;
 
-  // [any thread but rt] Of the log; `error` is empty while it is being written.
+  // [any thread but rt] Of the log.
   struct LogStatus {
     std::string file;  // that is being written; the last one
     int part = 0;      // its number, from 1; 0: there is no log
     bool open = false;
-    std::string error;        // first one; the log is not written any more, the robot walks on
+    std::string error;        // the last one; if `open`, the log goes on in a file after it
     std::uint64_t ticks = 0;  // over all files
     std::uint64_t bytes = 0;
+    std::uint64_t lost = 0;   // ticks that were given to a file that could not be written
     std::size_t waiting = 0;  // ticks that are not written yet
     double stalled = 0.0;     // s that the disk has been at one operation
   };
   LogStatus log_status() const;
 
   // [main, after the last commit] Writes all that is left, stops the thread and completes the file
-  // with `metadata`. False with `error` if the file is not complete.
+  // with `metadata`. False with `error` if the log is not complete.
   bool close(const LogMetadata& metadata = {}, std::string* error = nullptr);
 
  private:

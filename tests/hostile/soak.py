@@ -56,7 +56,7 @@ class Operator(threading.Thread):
         super().__init__(daemon=True)
         self.gaitd = gaitd
         self.random = random.Random(1)
-        self.steps = self.pushes = self.swaps = self.falls = 0
+        self.steps = self.pushes = self.swaps = self.falls = self.refused = 0
         self.done = False
         self.problem = None
 
@@ -68,6 +68,16 @@ class Operator(threading.Thread):
         except (OSError, RuntimeError) as error:
             if not self.done:
                 self.problem = f'the operator was not served: {error!r}'
+
+    def command(self, client, method, params):
+        """False if the robot cannot do that just now."""
+        answer = client.answer(method, params)
+        if 'error' not in answer:
+            return True
+        if answer['error']['code'] != -32000:
+            raise RuntimeError(f"{method}: {answer['error']['message']}")
+        self.refused += 1
+        return False
 
     def walk(self, client):
         status = client.ask('status')
@@ -81,38 +91,72 @@ class Operator(threading.Thread):
         if abs(status['pelvis']['x']) > 20.0 or abs(status['pelvis']['y']) > 20.0:
             client.ask('sim.reset')
             return
-        client.ask('mode', {'mode': self.random.choice(['walk-bent', 'walk-straight'])})
+        mode = self.random.choice(['walk-bent', 'walk-straight'])
         count = self.random.randint(6, 20)
-        client.ask('walk', {'steps': count, 'length': self.random.uniform(-0.1, 0.35),
-                            'turn': self.random.uniform(-0.1, 0.1)})
+        walk = {'steps': count, 'length': self.random.uniform(-0.1, 0.35),
+                'turn': self.random.uniform(-0.1, 0.1)}
+        if not (self.command(client, 'mode', {'mode': mode}) and self.command(client, 'walk', walk)):
+            return
         self.steps += count
         for _ in range(self.random.randint(0, 3)):
             time.sleep(self.random.uniform(0.5, 2.0))
             if self.random.random() < 0.5:
-                angle = self.random.choice([[1, 0], [-1, 0], [0, 1], [0, -1]])
-                client.ask('sim.push', {'link': 'utorso', 'duration': 0.1,
-                                        'force': [150.0 * angle[0], 100.0 * angle[1], 0.0]})
-                self.pushes += 1
+                x, y = self.random.choice([(1, 0), (-1, 0), (0, 1), (0, -1)])
+                push = {'link': 'utorso', 'duration': 0.1, 'force': [150.0 * x, 100.0 * y, 0.0]}
+                self.pushes += self.command(client, 'sim.push', push)
             else:
                 layer = self.random.choice(list(VARIANTS))
-                answer = client.answer('plugin.swap', {
+                self.swaps += self.command(client, 'plugin.swap', {
                     'layer': layer, 'to': self.random.choice(VARIANTS[layer])})
-                self.swaps += 'result' in answer
 
 
-def fill_and_empty(disk, done):
-    """Somebody else's files: nearly all of the disk, then nothing again."""
-    path = os.path.join(disk, 'others')
-    while not done.wait(60.0):
-        state = os.statvfs(disk)
-        free = state.f_bavail * state.f_frsize
-        if free > 1 << 30:
-            return  # not a disk of our own
-        with open(path, 'wb') as file:
-            file.write(b'\0' * max(0, free - (40 << 20)))
-        if done.wait(20.0):
-            return
+class Others(threading.Thread):
+    """Somebody else's files: they fill the disk to its end, then they are gone again."""
+
+    PAUSE, HOLD = 240.0, 20.0  # s
+    RECOVERY = 15.0  # s, in which the log has to go on when there is room again
+
+    def __init__(self, gaitd, disk):
+        super().__init__(daemon=True)
+        self.gaitd, self.disk = gaitd, disk
+        self.done = threading.Event()
+        self.fills = 0
+        self.busy = False  # from the first byte until the log goes on
+        self.problem = None
+
+    def run(self):
+        try:
+            with self.gaitd.client('-observe') as client:
+                while not self.done.wait(self.PAUSE):
+                    state = os.statvfs(self.disk)
+                    if state.f_blocks * state.f_frsize > 1 << 30:
+                        return  # not a disk of our own
+                    self.busy = True
+                    self.fill(client)
+                    self.busy = False
+        except (OSError, RuntimeError) as error:
+            if not self.done.is_set():
+                self.problem = f'the disk was not filled and emptied: {error!r}'
+
+    def fill(self, client):
+        path = os.path.join(self.disk, 'others')
+        end = time.monotonic() + self.HOLD
+        with open(path, 'wb', buffering=0) as file:
+            while time.monotonic() < end and not self.done.is_set():
+                try:
+                    file.write(b'\0' * (64 << 10))
+                except OSError:
+                    time.sleep(0.1)
+        if client.ask('status')['log']['open']:
+            self.problem = f'a disk that was full for {self.HOLD:.0f} s did not stop the log'
         os.unlink(path)
+        self.fills += 1
+        end = time.monotonic() + self.RECOVERY
+        while not client.ask('status')['log']['open'] and not self.done.is_set():
+            if time.monotonic() > end:
+                self.problem = f'no log {self.RECOVERY:.0f} s after the disk had room again'
+                return
+            time.sleep(0.5)
 
 
 def measure(process):
@@ -136,17 +180,17 @@ def run(hours, folder):
     disk = os.path.join(folder, 'disk')
     problems = []
     rows = []
-    done = threading.Event()
     with Gaitd(folder, '--clock', 'realtime', '--set', 'log.max_size=20', '--set', 'log.keep=3',
                '--log', os.path.join(disk, 'soak.mcap')) as gaitd:
         gaitd.wait('standing')
         operator = Operator(gaitd)
         askers = [Asker(gaitd, seed) for seed in range(CLIENTS)]
-        threads = [operator, *askers]
+        others = Others(gaitd, disk)
+        threads = [operator, *askers, others]
         for thread in threads:
             thread.start()
-        threading.Thread(target=fill_and_empty, args=(disk, done), daemon=True).start()
         begin = time.monotonic()
+        dropouts = fills = 0
         with gaitd.client('-observe') as watcher:
             while time.monotonic() - begin < 3600.0 * hours:
                 time.sleep(min(60.0, max(1.0, 3600.0 * hours - (time.monotonic() - begin))))
@@ -157,27 +201,34 @@ def run(hours, folder):
                        'ticks': status['tick'], 'overruns': status['overruns'],
                        'dropouts': status['log']['dropouts'], 'part': status['log']['part'],
                        'steps': operator.steps, 'pushes': operator.pushes, 'swaps': operator.swaps,
-                       'falls': operator.falls, 'answers': sum(a.answers for a in askers)}
+                       'falls': operator.falls, 'refused': operator.refused,
+                       'fills': others.fills, 'answers': sum(a.answers for a in askers)}
                 print(' '.join(f'{k}={v:.0f}' for k, v in row.items()), flush=True)
                 rows.append(row)
                 problems += [t.problem for t in threads if t.problem]
-                if status['log']['error']:
-                    problems.append('the log ended: ' + status['log']['error'])
+                if row['dropouts'] > dropouts and not others.busy and others.fills == fills:
+                    problems.append(f"{row['dropouts'] - dropouts} ticks were not logged")
+                if not status['log']['open'] and not others.busy:
+                    problems.append('there is no log: ' + status['log']['error'])
+                dropouts, fills = row['dropouts'], others.fills
                 if status['stale'] or problems:
                     break
-        done.set()
-        for thread in threads:
+        others.done.set()
+        for thread in threads[:-1]:
             thread.done = True
         for thread in threads:
             thread.join(60)
         code = gaitd.stop()
-        if code != 0:
+        # 1: ticks were lost, as is meant when the disk is full.
+        if code != (1 if others.fills else 0):
             problems.append(f'gaitd ended with {code}: {gaitd.said()}')
     gaitctl = os.path.join(os.environ['GAITD_BUILD'], 'bin', 'gaitctl')
-    for log in sorted(os.listdir(disk)):
-        if log.endswith('.mcap') and subprocess.run(
-                [gaitctl, 'log', 'info', os.path.join(disk, log)], stdout=subprocess.DEVNULL).returncode:
-            problems.append(f'{log} is not complete')
+    logs = [os.path.join(disk, name) for name in sorted(os.listdir(disk)) if name.endswith('.mcap')]
+    codes = [subprocess.run([gaitctl, 'log', 'info', log], stdout=subprocess.DEVNULL,
+                            stderr=subprocess.DEVNULL).returncode for log in logs]
+    cut_off = codes.count(4)  # by a full disk
+    if not logs or cut_off > others.fills or any(code not in (0, 4) for code in codes):
+        problems.append(f'logs that cannot be read: {dict(zip(logs, codes))}')
     warm = [row for row in rows if row['time'] > WARM_UP]
     print(f"{rows[-1]['time'] / 60:.0f} min, {rows[-1]['ticks']} ticks, longest answer "
           f"{1e3 * max(a.longest for a in askers):.0f} ms")
@@ -186,10 +237,8 @@ def run(hours, folder):
         print(f'{key}: {grown:+.1f} in an hour, at most {bound:.0f}')
         if len(warm) >= 10 and grown > bound:
             problems.append(f'{key} grows by {grown:.1f} in an hour')
-    print(f"overruns {rows[-1]['overruns']}, dropouts {rows[-1]['dropouts']}, "
-          f"falls {rows[-1]['falls']}")
-    if rows[-1]['dropouts']:
-        problems.append(f"{rows[-1]['dropouts']} ticks were not logged")
+    print(f"overruns {rows[-1]['overruns']}, dropouts {rows[-1]['dropouts']} with the disk full "
+          f"{others.fills} times, falls {rows[-1]['falls']}")
     sys.exit('\n'.join(problems) or 0)
 
 

@@ -3,6 +3,8 @@
 #include "daemon/telemetry/log_rotation.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 
@@ -33,7 +35,7 @@ class Rotation : public ::testing::Test {
       log_.writer().write_tick(tick, 0.001 * tick, sample_values(table_, tick), &sensors);
       if (tick % 100 != 99) continue;
       log_.writer().flush();
-      log_.rotate_if_full();
+      log_.next_file_if_due();
     }
     ASSERT_TRUE(log_.close({{"end", "stopped"}})) << log_.error();
   }
@@ -85,23 +87,88 @@ TEST_F(Rotation, WithoutALimitThereIsOneFile) {
   EXPECT_EQ(log_.file(), file("walk.mcap"));
 }
 
-TEST_F(Rotation, ANextFileThatCannotBeMadeEndsTheLogWithItsReason) {
+TEST_F(Rotation, ANextFileThatCannotBeMadeIsTriedAgain) {
   fs::create_directories(file("walk-2.mcap"));
   std::string error;
-  ASSERT_TRUE(log_.open(file("walk.mcap"), {}, {}, {.max_bytes = 1, .keep = 1}, &error)) << error;
-  log_.rotate_if_full();
+  const LogLimits limits{.max_bytes = 1, .keep = 1, .retry = 0.0, .room = 1};
+  ASSERT_TRUE(log_.open(file("walk.mcap"), {}, {}, limits, &error)) << error;
+  log_.next_file_if_due();
   EXPECT_NE(log_.error().find("walk-2.mcap"), std::string::npos) << log_.error();
+  EXPECT_FALSE(log_.writer().is_open());
   log_.writer().write_tick(1, 0.001, sample_values(table_, 1), nullptr);
-  log_.rotate_if_full();
-  EXPECT_EQ(log_.part(), 2);
+  for (int i = 0; i < 3; ++i) log_.next_file_if_due();
+  EXPECT_EQ(log_.part(), 1);
+  EXPECT_EQ(log_.ticks_lost(), 1u);
   EXPECT_TRUE(fs::exists(file("walk.mcap"))) << "nothing is deleted before the next one is there";
+  fs::remove_all(file("walk-2.mcap"));
+  log_.next_file_if_due();
+  EXPECT_EQ(log_.part(), 2);
+  EXPECT_TRUE(log_.writer().is_open());
+  EXPECT_FALSE(fs::exists(file("walk.mcap")));
+}
+
+// A limit on the size of files stands for the full disk.
+TEST_F(Rotation, GoesOnAfterAFullDiskAndTellsWhatIsLost) {
+  std::string error;
+  const LogLimits limits{.retry = 0.0, .room = 1};
+  ASSERT_TRUE(log_.open(file("walk.mcap"), {{"robot", "atlas"}}, {}, limits, &error)) << error;
+  const auto before = signal(SIGXFSZ, SIG_IGN);
+  rlimit old{};
+  getrlimit(RLIMIT_FSIZE, &old);
+  int tick = 0;
+  const auto write_ticks = [&](int count) {
+    for (int end = tick + count; tick < end; ++tick) {
+      log_.writer().write_tick(tick, 0.001 * tick, sample_values(table_, tick), nullptr);
+      if (tick % 100 == 99) log_.writer().flush();
+    }
+    log_.set_dropouts(0, 0);
+  };
+  write_ticks(500);
+  const rlimit full{fs::file_size(file("walk.mcap")) + 1000, old.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &full);
+  write_ticks(1500);
+  EXPECT_FALSE(log_.writer().is_open());
+  EXPECT_NE(log_.error().find("File too large"), std::string::npos) << log_.error();
+  const std::uint64_t kept = log_.ticks_written();
+  EXPECT_GE(kept, 500u);
+  EXPECT_EQ(log_.ticks_lost(), 2000u - kept);
+  setrlimit(RLIMIT_FSIZE, &old);
+  signal(SIGXFSZ, before);
+  for (int i = 0; i < 2; ++i) log_.next_file_if_due();
+  ASSERT_EQ(log_.part(), 2);
+  write_ticks(300);
+  EXPECT_NE(log_.error(), "") << "the failure is not forgotten";
+  ASSERT_TRUE(log_.close());
+  const auto first = LogReader::open(file("walk.mcap"), &error);
+  ASSERT_TRUE(first) << error;
+  EXPECT_FALSE(first->finished());
+  EXPECT_EQ(first->tick_count(), kept);
+  const auto second = LogReader::open(file("walk-2.mcap"), &error);
+  ASSERT_TRUE(second) << error;
+  EXPECT_TRUE(second->finished());
+  EXPECT_EQ(second->metadata_value("previous"), "walk.mcap");
+  EXPECT_EQ(second->metadata_value("robot"), "atlas");
+  EXPECT_EQ(second->tick_count(), 300u);
+  EXPECT_EQ(second->dropouts(), 2000u - kept);
+}
+
+TEST_F(Rotation, WaitsForRoomBeforeItGoesOn) {
+  std::string error;
+  const LogLimits limits{.retry = 0.0, .room = std::uint64_t{1} << 62};
+  ASSERT_TRUE(log_.open(file("walk.mcap"), {}, {}, limits, &error)) << error;
+  fs::remove(file("walk.mcap"));
+  log_.writer().flush();
+  EXPECT_FALSE(log_.writer().is_open());
+  for (int i = 0; i < 3; ++i) log_.next_file_if_due();
+  EXPECT_EQ(log_.part(), 1);
+  EXPECT_FALSE(fs::exists(file("walk-2.mcap")));
 }
 
 TEST_F(Rotation, DropoutsAreCountedInTheFileInWhichTheyHappened) {
   std::string error;
   ASSERT_TRUE(log_.open(file("walk.mcap"), {}, {}, {.max_bytes = 1, .keep = 0}, &error)) << error;
   log_.set_dropouts(5, 0);
-  log_.rotate_if_full();
+  log_.next_file_if_due();
   log_.set_dropouts(7, 0);
   ASSERT_TRUE(log_.close());
   EXPECT_EQ(LogReader::open(file("walk.mcap"), &error)->dropouts(), 5u);
