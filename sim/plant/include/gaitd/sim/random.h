@@ -17,6 +17,20 @@ enum class RandomPurpose : uint64_t {
   kEncoder = 4,
   kFootForce = 5,
   kTorque = 6,
+  // What differs from joint to joint, robot to robot and run to run, and noise of the classes.
+  kJointZero = 10,
+  kImuErrors = 11,
+  kFootErrors = 12,
+  kTiming = 13,
+  kImuWalk = 14,
+  kSpikes = 15,
+  kVibration = 16,
+  kFootDrift = 17,
+  kFriction = 20,
+  kElasticity = 21,
+  kTorqueErrors = 22,
+  kDriveTiming = 23,
+  kArmature = 24,
 };
 
 class RandomStream {
