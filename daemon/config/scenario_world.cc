@@ -13,6 +13,9 @@ constexpr std::size_t kMaxSensorFaults = 100;
 constexpr std::array<std::string_view, 5> kSensorFaultKinds = {"freeze", "nan", "spike", "dead",
                                                                "silent"};
 constexpr Bounds kFriction = {0.0, 10.0, ""};
+constexpr std::array<std::string_view, 2> kSensorWords = {"none", "nominal"};
+constexpr std::array<std::string_view, 5> kActuatorWords = {"ideal", "nominal", "hydraulic",
+                                                            "harmonic", "quasi_direct"};
 
 struct Figure {
   std::string_view name;
@@ -42,9 +45,23 @@ constexpr std::array<Figure, 5> kActuatorFigures = {{
     {"speed_derating", {0.0, 100.0, "times the velocity limit"}},
 }};
 
-// One of two words, or a map of figures.
+// The figures of a class: those that it has and their ranges only the simulator knows. It says what
+// is wrong with them before the run.
+nlohmann::json read_class(const NodePtr& node, MapReader map,
+                          std::span<const std::string_view> words) {
+  nlohmann::json result = nlohmann::json::object();
+  const auto word = map.choice("class", words);
+  result["class"] = std::string(words[word.value_or(0)]);
+  for (const Node::Entry& entry : node->entries) {
+    if (entry.key != "class") result[entry.key] = to_json(*entry.value);
+  }
+  return result;
+}
+
+// One of `words`, a map of figures, or a map with a class of `classes` and figures of it.
 nlohmann::json read_word_or_figures(MapReader* map, std::string_view key,
-                                    const std::array<std::string_view, 2>& words,
+                                    std::span<const std::string_view> words,
+                                    std::span<const std::string_view> classes,
                                     std::span<const Figure> figures) {
   const NodePtr node = map->node(key);
   if (!node) return std::string(words[0]);
@@ -53,6 +70,7 @@ nlohmann::json read_word_or_figures(MapReader* map, std::string_view key,
     return std::string(words[word.value_or(0)]);
   }
   MapReader values = map->map(key);
+  if (values.has("class")) return read_class(node, std::move(values), classes);
   nlohmann::json result = nlohmann::json::object();
   for (const Figure& figure : figures) {
     const auto value = values.number(figure.name, figure.bounds);
@@ -108,8 +126,9 @@ nlohmann::json read_terrain(MapReader map) {
 }
 
 nlohmann::json read_sensors(MapReader map) {
+  const std::span words(kSensorWords);
   nlohmann::json result = {
-      {"noise", read_word_or_figures(&map, "noise", {"none", "nominal"}, kSensorFigures)}};
+      {"noise", read_word_or_figures(&map, "noise", words, words, kSensorFigures)}};
   const std::vector<NodePtr> faults = map.list("faults", 0, kMaxSensorFaults);
   for (std::size_t i = 0; i < faults.size(); ++i) {
     MapReader fault(faults[i], map.path_of("faults") + "[" + std::to_string(i) + "]", map.issues());
@@ -126,8 +145,9 @@ nlohmann::json read_sensors(MapReader map) {
 }
 
 nlohmann::json read_actuators(MapReader map) {
+  const std::span words(kActuatorWords);
   nlohmann::json result = {
-      {"model", read_word_or_figures(&map, "model", {"ideal", "nominal"}, kActuatorFigures)}};
+      {"model", read_word_or_figures(&map, "model", words, words.subspan(2), kActuatorFigures)}};
   map.finish();
   return result;
 }

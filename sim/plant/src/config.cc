@@ -74,9 +74,8 @@ void read_sensor_faults(const json& list, const GaitdModel& model, std::vector<s
                         sensor + "\"");
     }
     const json kind = reader.has("kind") ? reader.at("kind") : json();
-    const auto* found =
-        std::find_if(std::begin(kSensorFaultKinds), std::end(kSensorFaultKinds),
-                     [&](const char* name) { return kind == name; });
+    const auto* found = std::find_if(std::begin(kSensorFaultKinds), std::end(kSensorFaultKinds),
+                                     [&](const char* name) { return kind == name; });
     if (found == std::end(kSensorFaultKinds)) {
       reader.error(reader.path("kind"), "freeze, nan, spike, dead or silent", kind);
     }
@@ -123,7 +122,8 @@ void read_sensors(const json& value, const GaitdModel& model, std::vector<std::s
   map.number("delay", kDelay, &figures->delay);
 }
 
-void read_actuators(const json& value, std::vector<std::string>* errors, ActuatorFigures* figures) {
+void read_actuators(const json& value, std::vector<std::string>* errors, Config* config) {
+  ActuatorFigures* const figures = &config->actuators;
   JsonReader reader(value, "actuators", errors);
   reader.allow({"model"});
   if (!reader.has("model")) return;
@@ -133,8 +133,18 @@ void read_actuators(const json& value, std::vector<std::string>* errors, Actuato
     *figures = ActuatorFigures::nominal();
     return;
   }
+  DriveFigures drives;
+  if (model.is_string() && find_drive_class(model.get<std::string>(), &drives)) {
+    config->drives = drives;
+    return;
+  }
   if (!model.is_object()) {
-    reader.error("actuators.model", "ideal, nominal or a map of figures", model);
+    reader.error("actuators.model",
+                 "ideal, nominal, hydraulic, harmonic, quasi_direct or a map of figures", model);
+    return;
+  }
+  if (model.contains("class")) {
+    config->drives = read_drive_figures(model, "actuators.model", errors);
     return;
   }
   JsonReader map(model, "actuators.model", errors);
@@ -218,7 +228,7 @@ void read_top(const json& root, const GaitdModel& model, double period,
   if (reader.has("sensors")) {
     read_sensors(reader.at("sensors"), model, errors, config);
   }
-  if (reader.has("actuators")) read_actuators(reader.at("actuators"), errors, &config->actuators);
+  if (reader.has("actuators")) read_actuators(reader.at("actuators"), errors, config);
   if (reader.has("model_error")) {
     read_model_error(reader.at("model_error"), model, errors, config);
   }

@@ -67,13 +67,13 @@ void Integrator::add_contacts(const DynamicsTerms& terms, const std::vector<Cont
 }
 
 void Integrator::solve(const DynamicsTerms& terms, const std::vector<Contact>& contacts,
-                       const Actuators& actuators) {
+                       const Drives& drives) {
   ++solves_;
   matrix_ = terms.mass_matrix();
   solution_ = constant_;
   for (int j = 0; j < damping_.size(); ++j) {
-    matrix_(6 + j, 6 + j) += h_ * (damping_[j] + actuators.slope(j) + stops_.slope(j));
-    solution_[6 + j] += h_ * (actuators.constant(j) + stops_.constant(j));
+    matrix_(6 + j, 6 + j) += h_ * (damping_[j] + drives.slope(j) + stops_.slope(j));
+    solution_[6 + j] += h_ * (drives.constant(j) + stops_.constant(j));
   }
   add_contacts(terms, contacts);
   const bool slides = std::any_of(contacts.begin(), contacts.end(), [](const Contact& contact) {
@@ -117,27 +117,27 @@ bool Integrator::update_contacts(const DynamicsTerms& terms, std::vector<Contact
 }
 
 bool Integrator::update_modes(const DynamicsTerms& terms, std::vector<Contact>* contacts,
-                              Actuators* actuators) {
+                              Drives* drives) {
   bool changed = update_contacts(terms, contacts);
   joint_rate_ = solution_.tail(damping_.size());
-  changed |= actuators->update_limits(joint_rate_);
+  changed |= drives->revise(joint_rate_);
   changed |= stops_.update(joint_rate_);
   return changed;
 }
 
 bool Integrator::step(const Multibody& multibody, const DynamicsTerms& terms,
                       const Eigen::VectorXd& external, std::vector<Contact>* contacts,
-                      Actuators* actuators, State* state) {
+                      Drives* drives, State* state) {
   multibody.compute_bias(&bias_);
   constant_.noalias() = terms.mass_matrix() * state->u;
   constant_ += h_ * (external - bias_);
   stops_.begin_step(h_, state->q);
   solves_ = 0;
   do {
-    solve(terms, *contacts, *actuators);
+    solve(terms, *contacts, *drives);
     if (!solution_.allFinite()) return false;
-  } while (update_modes(terms, contacts, actuators) && solves_ < kMaxSolves);
-  actuators->end_step(joint_rate_);
+  } while (update_modes(terms, contacts, drives) && solves_ < kMaxSolves);
+  drives->end_step(joint_rate_);
   integrate(h_, solution_, state);
   return true;
 }

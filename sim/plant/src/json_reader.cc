@@ -45,14 +45,11 @@ std::string JsonReader::path(const std::string& key) const {
   return path_.empty() ? key : path_ + "." + key;
 }
 
-void JsonReader::allow(std::initializer_list<const char*> keys) {
+void JsonReader::allow(const std::vector<std::string>& keys) {
   std::string known;
-  for (const char* key : keys) known += (known.empty() ? "" : ", ") + std::string(key);
+  for (const std::string& key : keys) known += (known.empty() ? "" : ", ") + key;
   for (const auto& [key, value] : object_->items()) {
-    const bool found = std::any_of(keys.begin(), keys.end(), [&name = key](const char* candidate) {
-      return name == candidate;
-    });
-    if (!found)
+    if (std::find(keys.begin(), keys.end(), key) == keys.end())
       errors_->push_back(path(key) + ": expected one of the keys " + known +
                          ", got unknown key \"" + key + "\"");
   }
@@ -74,6 +71,19 @@ void JsonReader::number(const char* key, const Range& range, std::optional<doubl
   double read = 0;
   number(key, range, &read);
   *value = read;
+}
+
+void JsonReader::draw(const char* key, const Range& range, Draw* value) {
+  if (!has(key)) return;
+  const json& given = at(key);
+  if (fits(given, range)) {
+    *value = given.get<double>();
+  } else if (given.is_array() && given.size() == 2 && fits(given[0], range) &&
+             fits(given[1], range) && given[0] <= given[1]) {
+    *value = Draw::uniform(given[0].get<double>(), given[1].get<double>());
+  } else {
+    error(path(key), "a number" + describe(range) + " or [lowest, highest]", given);
+  }
 }
 
 void JsonReader::vector(const char* key, const Range& range, Eigen::Vector3d* value) {

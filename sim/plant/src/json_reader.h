@@ -4,11 +4,12 @@
 #define GAITD_SIM_JSON_READER_H_
 
 #include <Eigen/Core>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "gaitd/sim/draw.h"
 
 namespace gaitd::sim {
 
@@ -25,7 +26,7 @@ class JsonReader {
   JsonReader(const nlohmann::json& value, std::string path, std::vector<std::string>* errors);
 
   // Every key outside `keys` is an error.
-  void allow(std::initializer_list<const char*> keys);
+  void allow(const std::vector<std::string>& keys);
 
   bool has(const char* key) const;
   const nlohmann::json& at(const char* key) const { return object_->at(key); }
@@ -35,6 +36,8 @@ class JsonReader {
   // Each leaves `value` as it is when the key is absent.
   void number(const char* key, const Range& range, double* value);
   void number(const char* key, const Range& range, std::optional<double>* value);
+  // A number, or [low, high] with low <= high: drawn uniformly between them.
+  void draw(const char* key, const Range& range, Draw* value);
   void vector(const char* key, const Range& range, Eigen::Vector3d* value);
 
   void error(const std::string& path, const std::string& expected, const nlohmann::json& got);

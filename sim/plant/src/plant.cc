@@ -19,7 +19,8 @@ GaitdModel simulated_model(const GaitdModel& model, const Config& config) {
     text.pop_back();
     throw std::invalid_argument(text);
   }
-  return apply_model_error(model, config.body_errors);
+  const GaitdModel other = apply_model_error(model, config.body_errors);
+  return config.drives ? with_armature(other, *config.drives, config.seed) : other;
 }
 
 constexpr double kDeepestStart = 0.02;  // m
@@ -43,12 +44,13 @@ Plant::Plant(const GaitdModel& model, const Config& config, double period)
       multibody_(model_),
       terms_(model_),
       contacts_(model_, Terrain(config.terrain, config.friction_scale)),
-      actuators_(model_, config.actuators, config.time_step, config.seed),
       integrator_(model_, config.time_step),
       sensors_(model_, config.sensors, config.time_step, steps_per_period_, config.seed),
       truth_(model_),
       external_(Eigen::VectorXd::Zero(6 + model.joint_count)) {
   start_ = make_start_state(model_, config, static_penetration(model_, contacts_), &multibody_);
+  terms_.update(multibody_);
+  drives_ = make_drives(model_, config, terms_.mass_matrix().diagonal().tail(model_.joint_count));
   reset();
   for (const Contact& contact : contacts_.contacts()) {
     if (contact.depth < kDeepestStart) continue;
@@ -67,7 +69,7 @@ void Plant::place(const State& state) {
   diverged_ = false;
   pushes_.clear();
   contacts_.reset();
-  actuators_.reset();
+  drives_->reset();
   truth_.reset();
   multibody_.set_state(state_);
   terms_.update(multibody_);
@@ -82,14 +84,14 @@ void Plant::place(const State& state) {
   }
   contacts_.finish(multibody_);
   truth_.update(contacts_);
-  sensors_.reset(state_, multibody_, actuators_.torque(), wrench);
+  sensors_.reset(state_, multibody_, drives_->measured_torque(), wrench);
 }
 
 double Plant::time() const { return static_cast<double>(tick_) * period_; }
 
 bool Plant::advance(const GaitdJointCommands& commands) {
   if (diverged_) return false;
-  actuators_.command(commands, step_);
+  drives_->command(commands, step_);
   for (int i = 0; i < steps_per_period_; ++i) {
     if (!step()) {
       diverged_ = true;
@@ -102,9 +104,11 @@ bool Plant::advance(const GaitdJointCommands& commands) {
 
 bool Plant::step() {
   contacts_.detect(multibody_);
-  actuators_.begin_step(step_, state_.q, state_.u.tail(model_.joint_count));
+  joint_rate_ = state_.u.tail(model_.joint_count);
+  drives_->begin_step(
+      step_, {state_.q, joint_rate_, sensors_.measured_position(), sensors_.measured_velocity()});
   add_disturbances();
-  if (!integrator_.step(multibody_, terms_, external_, &contacts_.contacts(), &actuators_,
+  if (!integrator_.step(multibody_, terms_, external_, &contacts_.contacts(), drives_.get(),
                         &state_)) {
     return false;
   }
@@ -116,7 +120,7 @@ bool Plant::step() {
   terms_.update(multibody_);
   contacts_.finish(multibody_);
   truth_.update(contacts_);
-  sensors_.sample(state_, multibody_, actuators_.torque(), wrench);
+  sensors_.sample(state_, multibody_, drives_->measured_torque(), wrench);
   ++step_;
   return true;
 }
@@ -167,7 +171,7 @@ double Plant::energy() const {
 void Plant::read(GaitdSensors* sensors) const { sensors_.read(tick_, time(), sensors); }
 
 void Plant::read(GaitdTruth* truth) const {
-  truth_.read(time(), state_, multibody_, actuators_.torque(), truth);
+  truth_.read(time(), state_, multibody_, drives_->torque(), truth);
 }
 
 const char* check_commands(const GaitdJointCommands& commands, int joint_count) {

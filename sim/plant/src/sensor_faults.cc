@@ -6,7 +6,7 @@
 namespace gaitd::sim {
 namespace {
 
-constexpr double kSpike = 1e3;  // rad, rad/s, m/s^2
+constexpr double kSpike = 1e3;       // rad, rad/s, m/s^2
 constexpr double kForceSpike = 1e6;  // N
 
 double damaged(double now, double held, double spike, SensorFault::Kind kind) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gaitd/abi/types.h"
+#include "gaitd/sim/drive_figures.h"
 #include "gaitd/sim/sensor_faults.h"
 
 namespace gaitd::sim {
@@ -45,7 +46,7 @@ struct SensorFigures {
   static SensorFigures nominal();
 };
 
-// Zero means ideal for every figure.
+// Of drives that have no faults of their own. Zero means ideal for every figure.
 struct ActuatorFigures {
   double command_delay = 0;     // s, rounded to whole plant steps
   double bandwidth = 0;         // Hz, first order; 0: at once
@@ -78,6 +79,7 @@ struct Config {
   SensorFigures sensors;
   std::vector<SensorFault> sensor_faults;
   ActuatorFigures actuators;
+  std::optional<DriveFigures> drives;  // real ones, in place of `actuators`
   std::vector<BodyError> body_errors;  // one per body
   double friction_scale = 1;           // of every friction coefficient of the terrain
 };

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "gaitd/abi/types.h"
-#include "gaitd/sim/actuators.h"
 #include "gaitd/sim/contact.h"
+#include "gaitd/sim/drives.h"
 #include "gaitd/sim/dynamics_terms.h"
 #include "gaitd/sim/joint_stops.h"
 #include "gaitd/sim/multibody.h"
@@ -30,19 +30,18 @@ class Integrator {
 
   // Advances `state` by one step. `multibody` and `terms` are those of `state`; `external` (6 + n)
   // is any further generalised force (N, N m). Leaves the forces of the step in `contacts` and
-  // `actuators`. False, with `state` as it was: the result is not finite.
+  // `drives`. False, with `state` as it was: the result is not finite.
   bool step(const Multibody& multibody, const DynamicsTerms& terms, const Eigen::VectorXd& external,
-            std::vector<Contact>* contacts, Actuators* actuators, State* state);
+            std::vector<Contact>* contacts, Drives* drives, State* state);
 
   // How often the last step solved its system: once, and once more for each change of modes.
   int solves() const { return solves_; }
 
  private:
   void solve(const DynamicsTerms& terms, const std::vector<Contact>& contacts,
-             const Actuators& actuators);
+             const Drives& drives);
   void add_contacts(const DynamicsTerms& terms, const std::vector<Contact>& contacts);
-  bool update_modes(const DynamicsTerms& terms, std::vector<Contact>* contacts,
-                    Actuators* actuators);
+  bool update_modes(const DynamicsTerms& terms, std::vector<Contact>* contacts, Drives* drives);
   bool update_contacts(const DynamicsTerms& terms, std::vector<Contact>* contacts) const;
 
   static constexpr int kMaxSolves = 5;

@@ -4,13 +4,14 @@
 #define GAITD_SIM_PLANT_H_
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "gaitd/abi/backend.h"
-#include "gaitd/sim/actuators.h"
 #include "gaitd/sim/config.h"
 #include "gaitd/sim/contact_model.h"
+#include "gaitd/sim/drives.h"
 #include "gaitd/sim/dynamics_terms.h"
 #include "gaitd/sim/integrator.h"
 #include "gaitd/sim/multibody.h"
@@ -73,7 +74,7 @@ class Plant {
   Multibody multibody_;
   DynamicsTerms terms_;
   ContactModel contacts_;
-  Actuators actuators_;
+  std::unique_ptr<Drives> drives_;
   Integrator integrator_;
   Sensors sensors_;
   Truth truth_;
@@ -81,6 +82,7 @@ class Plant {
   State state_;
   std::vector<Push> pushes_;
   Eigen::VectorXd external_;
+  Eigen::VectorXd joint_rate_;
   int64_t step_ = 0;
   int64_t tick_ = 0;
   bool diverged_ = false;

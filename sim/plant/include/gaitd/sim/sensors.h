@@ -44,6 +44,11 @@ class Sensors {
   void sample(const State& state, const Multibody& multibody, const Eigen::VectorXd& torque,
               const FootWrench (&wrench)[GAITD_MAX_FEET]);
 
+  // As the boards of the drives read them (n): the newest sample, without the way to the
+  // controller.
+  const Eigen::VectorXd& measured_position() const { return ring_[newest_].position; }  // rad
+  const Eigen::VectorXd& measured_velocity() const { return ring_[newest_].velocity; }  // rad/s
+
   // The sensors as they stand at control tick `tick`, `time` seconds after the start.
   void read(int64_t tick, double time, GaitdSensors* sensors) const;
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "gaitd/sim/actuators.h"
+#include "gaitd/sim/nominal_drives.h"
 
 namespace gaitd::sim {
 namespace {
@@ -34,31 +34,31 @@ GaitdJointCommands command(int32_t mode, double torque, double stiffness = 0, do
 class Drive {
  public:
   explicit Drive(const ActuatorFigures& figures, uint64_t seed = 1)
-      : actuators_(one_joint(), figures, kStep, seed) {}
+      : drives_(one_joint(), figures, kStep, seed) {}
 
-  void command(const GaitdJointCommands& commands) { actuators_.command(commands, step_); }
+  void command(const GaitdJointCommands& commands) { drives_.command(commands, step_); }
 
   // One plant step at the constant position and rate.
   double run(double q = 0, double u = 0) {
     const Eigen::VectorXd position = Eigen::VectorXd::Constant(1, q);
     const Eigen::VectorXd rate = Eigen::VectorXd::Constant(1, u);
-    actuators_.begin_step(step_++, position, rate);
-    actuators_.update_limits(rate);
-    actuators_.end_step(rate);
-    return actuators_.torque()[0];
+    drives_.begin_step(step_++, {position, rate, position, rate});
+    drives_.revise(rate);
+    drives_.end_step(rate);
+    return drives_.torque()[0];
   }
 
  private:
-  Actuators actuators_;
+  NominalDrives drives_;
   int64_t step_ = 0;
 };
 
-TEST(Actuators, NothingBeforeTheFirstCommand) {
+TEST(NominalDrives, NothingBeforeTheFirstCommand) {
   Drive drive({});
   EXPECT_EQ(drive.run(1, 1), 0);
 }
 
-TEST(Actuators, EveryModeDoesWhatItSays) {
+TEST(NominalDrives, EveryModeDoesWhatItSays) {
   Drive drive({});
   drive.command(command(GAITD_JOINT_MODE_OFF, 50, 100, 10));
   EXPECT_EQ(drive.run(1, 1), 0);
@@ -72,7 +72,7 @@ TEST(Actuators, EveryModeDoesWhatItSays) {
   EXPECT_DOUBLE_EQ(drive.run(0.1, 1), 5 + 100 * (0.2 - 0.1 - kStep) + 10 * (0.5 - 1));
 }
 
-TEST(Actuators, TorqueNeverExceedsTheLimit) {
+TEST(NominalDrives, TorqueNeverExceedsTheLimit) {
   Drive drive({});
   drive.command(command(GAITD_JOINT_MODE_TORQUE, 500));
   EXPECT_DOUBLE_EQ(drive.run(), kLimit);
@@ -80,7 +80,7 @@ TEST(Actuators, TorqueNeverExceedsTheLimit) {
   EXPECT_DOUBLE_EQ(drive.run(0, 5), -kLimit);
 }
 
-TEST(Actuators, CommandArrivesAfterItsDelay) {
+TEST(NominalDrives, CommandArrivesAfterItsDelay) {
   ActuatorFigures figures;
   figures.command_delay = 0.001;
   Drive drive(figures);
@@ -93,7 +93,7 @@ TEST(Actuators, CommandArrivesAfterItsDelay) {
   EXPECT_DOUBLE_EQ(drive.run(), 20);
 }
 
-TEST(Actuators, BandwidthIsThatOfAFirstOrderLag) {
+TEST(NominalDrives, BandwidthIsThatOfAFirstOrderLag) {
   ActuatorFigures figures;
   figures.bandwidth = 60;
   Drive drive(figures);
@@ -104,7 +104,7 @@ TEST(Actuators, BandwidthIsThatOfAFirstOrderLag) {
   }
 }
 
-TEST(Actuators, DrivingTorqueFallsToZeroAboveTheVelocityLimitAndBrakingDoesNot) {
+TEST(NominalDrives, DrivingTorqueFallsToZeroAboveTheVelocityLimitAndBrakingDoesNot) {
   ActuatorFigures figures;
   figures.speed_derating = 1.5;
   Drive drive(figures);
@@ -116,7 +116,7 @@ TEST(Actuators, DrivingTorqueFallsToZeroAboveTheVelocityLimitAndBrakingDoesNot) 
   EXPECT_DOUBLE_EQ(drive.run(0, -20), kLimit);
 }
 
-TEST(Actuators, CoulombFrictionOpposesTheMotionAndFadesAtRest) {
+TEST(NominalDrives, CoulombFrictionOpposesTheMotionAndFadesAtRest) {
   ActuatorFigures figures;
   figures.coulomb_friction = 0.01;
   Drive drive(figures);
@@ -125,7 +125,7 @@ TEST(Actuators, CoulombFrictionOpposesTheMotionAndFadesAtRest) {
   EXPECT_EQ(drive.run(0, 0), 0);
 }
 
-TEST(Actuators, TorqueNoiseHasItsFigureAndComesFromTheSeed) {
+TEST(NominalDrives, TorqueNoiseHasItsFigureAndComesFromTheSeed) {
   ActuatorFigures figures;
   figures.torque_noise = 0.005;
   Drive drive(figures, 3), same(figures, 3), other(figures, 4);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gaitd/sim/actuators.h"
+#include "gaitd/sim/nominal_drives.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,17 +12,18 @@ constexpr double kFrictionSpeed = 0.02;  // rad/s, below which Coulomb friction 
 
 }  // namespace
 
-Actuators::Actuators(const GaitdModel& model, const ActuatorFigures& figures, double time_step,
-                     uint64_t seed)
+NominalDrives::NominalDrives(const GaitdModel& model, const ActuatorFigures& figures,
+                             double time_step, uint64_t seed)
     : joint_count_(model.joint_count),
       figures_(figures),
       time_step_(time_step),
       seed_(seed),
-      delay_steps_(std::llround(figures.command_delay / time_step)),
       filter_gain_(1),
       drives_(static_cast<size_t>(model.joint_count)),
+      queue_(std::llround(figures.command_delay / time_step)),
       random_(seed, RandomPurpose::kTorque),
-      torque_(Eigen::VectorXd::Zero(model.joint_count)) {
+      torque_(Eigen::VectorXd::Zero(model.joint_count)),
+      deflection_(Eigen::VectorXd::Zero(model.joint_count)) {
   if (figures.bandwidth > 0) {
     filter_gain_ = -std::expm1(-2 * std::numbers::pi * figures.bandwidth * time_step);
   }
@@ -32,19 +33,14 @@ Actuators::Actuators(const GaitdModel& model, const ActuatorFigures& figures, do
   }
 }
 
-void Actuators::reset() {
+void NominalDrives::reset() {
   std::fill(drives_.begin(), drives_.end(), Drive{});
-  pending_.clear();
-  active_ = GaitdJointCommands{};
+  queue_.reset();
   random_ = RandomStream(seed_, RandomPurpose::kTorque);
   torque_.setZero();
 }
 
-void Actuators::command(const GaitdJointCommands& commands, int64_t step) {
-  pending_.push_back({step + delay_steps_, commands});
-}
-
-void Actuators::set_limits(size_t j, double rate) {
+void NominalDrives::set_limits(size_t j, double rate) {
   const double limit = effort_limit_[j];
   Drive& drive = drives_[j];
   drive.upper = limit;
@@ -57,16 +53,13 @@ void Actuators::set_limits(size_t j, double rate) {
   (rate > 0 ? drive.upper : drive.lower) = rate > 0 ? left : -left;
 }
 
-void Actuators::begin_step(int64_t step, const Eigen::VectorXd& q, const Eigen::VectorXd& u) {
-  size_t due = 0;
-  while (due < pending_.size() && pending_[due].step <= step) ++due;
-  if (due > 0) {
-    active_ = pending_[due - 1].commands;
-    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(due));
-  }
+void NominalDrives::begin_step(int64_t step, const JointMotion& motion) {
+  const GaitdJointCommands& active = queue_.at(step);
+  const Eigen::VectorXd& q = motion.position;
+  const Eigen::VectorXd& u = motion.rate;
   const double h = time_step_;
   for (int j = 0; j < joint_count_; ++j) {
-    const GaitdJointCommand& c = active_.joints[j];
+    const GaitdJointCommand& c = active.joints[j];
     const auto i = static_cast<size_t>(j);
     Drive& drive = drives_[i];
     double constant = 0, slope = 0;
@@ -89,7 +82,7 @@ void Actuators::begin_step(int64_t step, const Eigen::VectorXd& q, const Eigen::
   }
 }
 
-bool Actuators::update_limits(const Eigen::VectorXd& u) {
+bool NominalDrives::revise(const Eigen::VectorXd& u) {
   bool changed = false;
   for (int j = 0; j < joint_count_; ++j) {
     Drive& drive = drives_[static_cast<size_t>(j)];
@@ -104,7 +97,7 @@ bool Actuators::update_limits(const Eigen::VectorXd& u) {
   return changed;
 }
 
-void Actuators::end_step(const Eigen::VectorXd& u) {
+void NominalDrives::end_step(const Eigen::VectorXd& u) {
   for (int j = 0; j < joint_count_; ++j) {
     Drive& drive = drives_[static_cast<size_t>(j)];
     const double torque = std::clamp(drive.constant - drive.slope * u[j], drive.lower, drive.upper);
