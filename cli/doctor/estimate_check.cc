@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "cli/doctor/log_checks.h"
 #include "gaitd/dynamics/kinematics.h"
+#include "gaitd/sdk/imu_place.h"
 #include "gaitd/sdk/views.h"
 
 namespace gaitd::doctor {
@@ -88,15 +90,20 @@ Disagreement compare_imu(const LogCase& log, const GaitdModel& model) {
   Average up(log.period(), 4.0 * kAverage);
   auto cursor = log.log().sensors();
   GaitdSensors sensors{};
-  const GaitdFrame& imu = model.imus[0];
-  const Eigen::Matrix3d R_PI = sdk::quaternion(imu.orientation).toRotationMatrix();
+  std::array<double, GAITD_MAX_JOINTS> q{}, qd{};
   for (std::size_t i = 0; i < ticks && cursor.next(&sensors); ++i) {
-    if (sensors.imu_count == 0 || imu.body != 0) continue;
+    if (sensors.imu_count == 0) continue;
+    for (int j = 0; j < model.joint_count; ++j) {
+      q[static_cast<std::size_t>(j)] = sensors.joints[j].position;
+      qd[static_cast<std::size_t>(j)] = sensors.joints[j].velocity;
+    }
+    const sdk::ImuPlace place = sdk::imu_place(model, 0, q.data(), qd.data());
     const bool standing = log.run().phase()[i] == daemon::Phase::kStand;
     const GaitdImuSensor& measured = sensors.imus[0];
     const int side = (*force[0])[i] > (*force[1])[i] ? 0 : 1;
     if ((*force[side])[i] > kLoad * weight && (*toe)[i] == 0.0) {
-      const Eigen::Vector3d gyro = R_PI * Eigen::Map<const Eigen::Vector3d>(measured.angular_rate);
+      const Eigen::Vector3d gyro =
+          place.orientation * Eigen::Vector3d(sdk::view(measured.angular_rate)) - place.rate;
       Average& average = standing ? rate : walk_rate;
       average.add(gyro - leg_rate(sensors, side));
       d.rate_size[i] = average.value().norm();
@@ -110,7 +117,7 @@ Disagreement compare_imu(const LogCase& log, const GaitdModel& model) {
     const Eigen::Matrix3d R_WP = (Eigen::AngleAxisd((*pitch)[i], Eigen::Vector3d::UnitY()) *
                                   Eigen::AngleAxisd((*roll)[i], Eigen::Vector3d::UnitX()))
                                      .toRotationMatrix();
-    up.add(R_WP * R_PI * Eigen::Map<const Eigen::Vector3d>(measured.specific_force));
+    up.add(R_WP * (place.orientation * Eigen::Vector3d(sdk::view(measured.specific_force))));
     d.gravity_size[i] = std::atan2(up.value().head<2>().norm(), up.value().z());
     d.gravity[i] = up.settled() && d.gravity_size[i] > kTilt;
   }

@@ -254,6 +254,70 @@ struct Names {
 };
 TYPED_TEST_SUITE(StateEstimator, Estimators, Names);
 
+// A robot that is let go of just above the ground: its accelerometer shows nothing, then the
+// impact.
+TYPED_TEST(StateEstimator, WaitsForGravityBeforeItLevels) {
+  Bench<TypeParam> b(0.0, {});
+  b.tamper = [&] {
+    Vector3d force(0, 0, 0.01);
+    if (b.tick >= 5) force = {-30, 20, 60};
+    if (b.tick >= 8) return;
+    sdk::view(b.sensors->imus[0].specific_force) = force;
+    if (b.tick < 5) {
+      for (auto& foot : b.sensors->feet) sdk::view(foot.force).setZero();
+    }
+  };
+  b.check = [&] {
+    EXPECT_EQ(b.state.valid, b.tick >= 8 ? 1u : 0u) << b.tick;
+    EXPECT_LT(b.tilt_error(), 1e-6) << b.tick;
+  };
+  b.run_for(1.0);
+}
+
+// On a hoist the feet carry nothing.
+TYPED_TEST(StateEstimator, LevelsARobotThatHangs) {
+  Bench<TypeParam> b(0.0, {});
+  b.tamper = [&] {
+    for (auto& foot : b.sensors->feet) {
+      sdk::view(foot.force).setZero();
+      sdk::view(foot.moment).setZero();
+    }
+  };
+  b.run_for(0.2);
+  EXPECT_EQ(b.state.valid, 1u);
+  EXPECT_LT(b.tilt_error(), 1e-6);
+}
+
+TEST(ImuPlace, IsThatOfTheKinematics) {
+  GaitdModel model = atlas();
+  GaitdFrame& frame = model.imus[0];
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  dynamics::Kinematics kinematics(model);
+  for (int body = 0; body < model.body_count; ++body) {
+    frame.body = body;
+    sdk::view(frame.origin) = Vector3d(0.1, -0.2, 0.3);
+    sdk::store(sdk::exp_so3(Vector3d(0.3, 0.5, -0.2)), frame.orientation);
+    Eigen::VectorXd q(model.joint_count), qd(model.joint_count);
+    for (int j = 0; j < model.joint_count; ++j) {
+      q[j] = normal(random);
+      qd[j] = normal(random);
+    }
+    kinematics.update(Vector3d::Zero(), Quaterniond::Identity(), sdk::Vector6d::Zero(), q, qd);
+    const sdk::ImuPlace place = sdk::imu_place(model, 0, q.data(), qd.data());
+    const Quaterniond orientation =
+        Quaterniond(kinematics.R_WB(body)) * sdk::quaternion(frame.orientation);
+    EXPECT_LT(place.orientation.angularDistance(orientation), 1e-9);
+    const Vector3d origin = sdk::view(frame.origin);
+    EXPECT_LT((place.position - kinematics.frame_position(body, origin)).norm(), 1e-12);
+    const sdk::Vector6d twist = kinematics.frame_velocity(body, origin);
+    const Eigen::Matrix3d R = kinematics.R_WB(body);
+    EXPECT_LT((place.rate - kinematics.body_twist(body).head<3>()).norm(), 1e-9) << body;
+    const bool turned = (place.velocity - R * twist.tail<3>()).norm() < 1e-9;
+    EXPECT_TRUE(turned || (place.velocity - twist.tail<3>()).norm() < 1e-9) << body;
+  }
+}
+
 TYPED_TEST(StateEstimator, FindsARobotThatStandsStill) {
   Bench<TypeParam> b(0.0, {});
   const Errors e = errors_of(b, 3.0);

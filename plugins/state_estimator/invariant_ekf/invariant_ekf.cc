@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "gaitd/sdk/sensors.h"
 
@@ -47,8 +48,9 @@ InvariantEkf::InvariantEkf(const GaitdModel& model)
       kinematics_(model),
       filter_(model.gravity) {
   for (const GaitdLeg& leg : model_.legs) {
-    for (int i = 0; i < leg.joint_count; ++i) is_leg_joint_[leg.joints[i]] = true;
+    for (int i = 0; i < leg.joint_count; ++i) is_late_joint_[leg.joints[i]] = true;
   }
+  sdk::mark_joints_to_imus(model_, is_late_joint_);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdFoot& foot = model_.feet[side];
     double back = 0.0;
@@ -60,6 +62,7 @@ InvariantEkf::InvariantEkf(const GaitdModel& model)
 
 void InvariantEkf::reset() {
   initialised_ = false;
+  gravity_.reset();
   joints_seen_ = false;
   twist_begun_ = false;
   imu_ = 0;
@@ -78,14 +81,13 @@ void InvariantEkf::reset() {
   }
 }
 
-Eigen::Vector3d InvariantEkf::lever() const { return view(model_.imus[imu_].origin); }
-
 Eigen::Vector3d InvariantEkf::pelvis_position() const {
   return filter_.position - filter_.orientation * lever();
 }
 
 Eigen::Vector3d InvariantEkf::pelvis_velocity() const {
-  return filter_.velocity - filter_.orientation * (rate_ - filter_.gyro_bias).cross(lever());
+  return filter_.velocity -
+         filter_.orientation * ((rate_ - filter_.gyro_bias).cross(lever()) + place_.velocity);
 }
 
 void InvariantEkf::get_state(GaitdStateEstimatorState& s) const {
@@ -104,15 +106,16 @@ void InvariantEkf::get_state(GaitdStateEstimatorState& s) const {
 
 void InvariantEkf::set_state(const GaitdStateEstimatorState& s) {
   initialised_ = s.initialised != 0;
-  imu_ = 0;
   time_since_start_ = kJolt;
   filter_.reset();
   filter_.orientation = sdk::quaternion(s.pelvis_orientation);
   filter_.gyro_bias = view(s.gyro_bias);
   filter_.accelerometer_bias = view(s.accelerometer_bias);
-  filter_.position = view(s.pelvis_position) + filter_.orientation * lever();
-  filter_.velocity =
-      view(s.pelvis_velocity) + filter_.orientation * (rate_ - filter_.gyro_bias).cross(lever());
+  // At the pelvis origin, until the joints tell where the IMU is.
+  filter_.position = view(s.pelvis_position);
+  filter_.velocity = view(s.pelvis_velocity);
+  place_ = {};
+  at_pelvis_ = true;
   set_covariance(filter_.position, false);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     feet_[side].contact = s.contact[side];
@@ -140,9 +143,9 @@ bool InvariantEkf::read_joints(const GaitdStateEstimatorInput& in, GaitdRobotSta
       rate = {joint.velocity, joint.velocity};
     } else {
       // What a command makes of a leg is decided by the contacts: nothing is expected there.
-      const double expected = is_leg_joint_[i] ? 0.0 : in.commands->joints[i].acceleration;
+      const double expected = is_late_joint_[i] ? 0.0 : in.commands->joints[i].acceleration;
       const double measured = (joint.position - joint_[i]) / dt;
-      rate.update(measured, expected, shares[is_leg_joint_[i] ? 1 : 0], dt);
+      rate.update(measured, expected, shares[is_late_joint_[i] ? 1 : 0], dt);
       joint_[i] = joint.position;
     }
     out.joint_position[i] = joint_[i];
@@ -193,9 +196,13 @@ void InvariantEkf::read_forces(const GaitdStateEstimatorInput& in, GaitdRobotSta
 
 // What the operator says of the heading and the place, and what gravity says of the tilt.
 void InvariantEkf::initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints) {
-  choose_imu(sdk::first_usable_imu(model_, *in.sensors));
-  const Eigen::Quaterniond mount = sdk::quaternion(model_.imus[imu_].orientation);
-  const Eigen::Vector3d up = mount * view(in.sensors->imus[imu_].specific_force);
+  filter_.reset();
+  choose_imu(sdk::first_usable_imu(model_, *in.sensors), joints);
+  const Eigen::Vector3d force = view(in.sensors->imus[imu_].specific_force);
+  initialised_ = gravity_.shows(model_, *in.sensors, force, in.time.period);
+  // Upright, until gravity shows.
+  const Eigen::Vector3d up =
+      initialised_ ? Eigen::Vector3d(place_.orientation * force) : Eigen::Vector3d::UnitZ();
   const Eigen::Quaterniond level = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
   update_joint_kinematics(joints);
   const double left = sdk::yaw_of(level * sole_orientation(GAITD_LEFT));
@@ -211,7 +218,6 @@ void InvariantEkf::initialise(const GaitdStateEstimatorInput& in, const GaitdRob
     foot.time_above = p_[P::kTrustDelay];
     foot.time_trusted = p_[P::kRestDelay];
   }
-  initialised_ = true;
 }
 
 // The robot may have turned about `centre`, which is known. If gravity has levelled it, the error
@@ -242,21 +248,28 @@ void InvariantEkf::set_covariance(const Eigen::Vector3d& centre, bool levelled) 
   filter_.covariance.block<3, 9>(F::kAccelerometerBias, 0) = joint.transpose();
 }
 
-// Another IMU sits elsewhere on the pelvis.
-void InvariantEkf::choose_imu(int imu) {
-  if (imu < 0 || imu == imu_) return;
-  const Eigen::Vector3d shift = view(model_.imus[imu].origin) - lever();
+// The filter follows the point of the IMU. Another one sits elsewhere; the one in use may move with
+// the joints between it and the pelvis, which its own acceleration tells.
+void InvariantEkf::choose_imu(int imu, const GaitdRobotState& joints) {
+  const bool other = std::exchange(at_pelvis_, false) || (imu >= 0 && imu != imu_);
+  const sdk::ImuPlace before = place_;
+  if (imu >= 0) imu_ = imu;
+  place_ = sdk::imu_place(model_, imu_, joints.joint_position, joints.joint_velocity);
+  if (!other) return;
+  const Eigen::Vector3d shift = place_.position - before.position;
   filter_.position += filter_.orientation * shift;
-  filter_.velocity += filter_.orientation * (rate_ - filter_.gyro_bias).cross(shift);
-  imu_ = imu;
+  filter_.velocity += filter_.orientation * ((rate_ - filter_.gyro_bias).cross(shift) +
+                                             place_.velocity - before.velocity);
 }
 
-void InvariantEkf::predict(const GaitdStateEstimatorInput& in) {
+void InvariantEkf::predict(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints) {
   const int imu = sdk::first_usable_imu(model_, *in.sensors);
-  choose_imu(imu);
+  const Eigen::Quaterniond before = place_.orientation;
+  const bool same = imu == imu_ && !at_pelvis_;
+  choose_imu(imu, joints);
+  const Eigen::Quaterniond& mount = place_.orientation;
   if (imu >= 0) {  // else coast on the last values
-    const Eigen::Quaterniond mount = sdk::quaternion(model_.imus[imu].orientation);
-    rate_ = mount * view(in.sensors->imus[imu].angular_rate);
+    rate_ = mount * view(in.sensors->imus[imu].angular_rate) - place_.rate;
     specific_force_ = mount * view(in.sensors->imus[imu].specific_force);
   }
   RightInvariantFilter::Noise noise;
@@ -268,9 +281,13 @@ void InvariantEkf::predict(const GaitdStateEstimatorInput& in) {
   const double share = in.gait->phase == GAITD_PHASE_STAND ? p_[P::kStandingShare] : 1.0;
   noise.point_horizontal = share * p_[P::kHorizontalNoise];
   noise.point_vertical = share * p_[P::kVerticalNoise];
-  filter_.predict(rate_, specific_force_, in.time.period, noise);
+  Eigen::Vector3d turn = rate_;
+  if (same && !place_.fixed && in.time.period > 0.0) {
+    turn =
+        sdk::pelvis_turn(before, mount, view(in.sensors->imus[imu].angular_rate), in.time.period);
+  }
+  filter_.predict(turn, specific_force_, in.time.period, noise);
   if (imu >= 0 && in.sensors->imus[imu].has_orientation != 0) {
-    const Eigen::Quaterniond mount = sdk::quaternion(model_.imus[imu].orientation);
     filter_.correct_tilt(sdk::quaternion(in.sensors->imus[imu].orientation) * mount.conjugate(),
                          per_sample(p_[P::kTiltNoise], in.time.period));
   }
@@ -337,19 +354,21 @@ void InvariantEkf::observe_balance(const GaitdStateEstimatorInput& in,
 
 void InvariantEkf::write(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
   sdk::Vector6d twist;
-  twist << rate_ - filter_.gyro_bias, filter_.orientation.conjugate() * pelvis_velocity();
+  // The rates of joints between pelvis and IMU are late already.
+  twist << rate_ - filter_.gyro_bias + place_.rate,
+      filter_.orientation.conjugate() * pelvis_velocity();
   const double share = low_pass(p_[P::kLegPole], in.time.period);
   for (int k = 0; k < 6; ++k) {
     if (!twist_begun_) twist_[k] = {twist[k], twist[k]};
     twist_[k].update(twist[k], 0.0, share, in.time.period);
-    out.pelvis_twist[k] = twist_[k].second;
+    out.pelvis_twist[k] = twist_[k].second - (k < 3 ? place_.rate[k] : 0.0);
   }
   twist_begun_ = true;
   kinematics_.update(pelvis_position(), filter_.orientation, view(out.pelvis_twist),
                      sdk::head(out.joint_position, model_.joint_count),
                      sdk::head(out.joint_velocity, model_.joint_count));
   out.joint_count = model_.joint_count;
-  out.valid = 1;
+  out.valid = initialised_ ? 1 : 0;
   view(out.pelvis_position) = pelvis_position();
   sdk::store(filter_.orientation, out.pelvis_orientation);
   view(out.com) = kinematics_.com();
@@ -397,7 +416,7 @@ GaitdStatus InvariantEkf::process(const GaitdStateEstimatorInput& in, GaitdRobot
     initialise(in, out);
     time_since_start_ = 0.0;
   } else {
-    predict(in);
+    predict(in, out);
   }
   update_trust(in);
   correct(in, out);

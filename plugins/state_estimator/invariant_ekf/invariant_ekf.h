@@ -4,7 +4,9 @@
 #include <array>
 
 #include "gaitd/dynamics/kinematics.h"
+#include "gaitd/sdk/imu_place.h"
 #include "gaitd/sdk/layer.h"
+#include "gaitd/sdk/sensors.h"
 #include "gaitd/sdk/views.h"
 #include "right_invariant_filter.h"
 
@@ -111,8 +113,8 @@ class InvariantEkf {
   void read_forces(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
   void set_covariance(const Eigen::Vector3d& centre, bool levelled);
-  void choose_imu(int imu);
-  void predict(const GaitdStateEstimatorInput& in);
+  void choose_imu(int imu, const GaitdRobotState& joints);
+  void predict(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
   void update_trust(const GaitdStateEstimatorInput& in);
   void correct(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
   void observe_balance(const GaitdStateEstimatorInput& in, const GaitdRobotState& robot);
@@ -122,7 +124,7 @@ class InvariantEkf {
   void update_joint_kinematics(const GaitdRobotState& joints);
   Eigen::Vector3d sole_point(int side, const Eigen::Vector3d& in_sole) const;
   Eigen::Quaterniond sole_orientation(int side) const;
-  Eigen::Vector3d lever() const;  // m, of the IMU in the pelvis frame
+  const Eigen::Vector3d& lever() const { return place_.position; }
   Eigen::Vector3d pelvis_position() const;
   Eigen::Vector3d pelvis_velocity() const;
 
@@ -132,10 +134,14 @@ class InvariantEkf {
   dynamics::Kinematics kinematics_;
   RightInvariantFilter filter_;  // axes of the pelvis, origin of the IMU in use
   int imu_ = 0;
+  sdk::ImuPlace place_;  // of that IMU
 
-  bool initialised_ = false;
+  bool initialised_ = false;  // gravity has shown where up is
+  sdk::Gravity gravity_;
+  bool at_pelvis_ = false;         // the filter follows the pelvis origin: a state was handed over
   double time_since_start_ = 0.0;  // s
-  std::array<bool, GAITD_MAX_JOINTS> is_leg_joint_{};
+  // Of the legs, and between pelvis and IMU: nothing is expected of their commands.
+  std::array<bool, GAITD_MAX_JOINTS> is_late_joint_{};
   bool joints_seen_ = false;
   std::array<double, GAITD_MAX_JOINTS> joint_{};  // rad
   std::array<LaggedRate, GAITD_MAX_JOINTS> joint_rate_{};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gaitd/sdk/imu_place.h"
 #include "gaitd/sdk/sensors.h"
 
 namespace gaitd::plugins {
@@ -48,19 +49,26 @@ Eigen::Quaterniond level(const Eigen::Vector3d& specific_force) {
 KinematicInertial::KinematicInertial(const GaitdModel& model)
     : model_(model), weight_(model.total_mass * model.gravity), kinematics_(model) {
   for (const GaitdLeg& leg : model_.legs) {
-    for (int i = 0; i < leg.joint_count; ++i) leg_joint_[leg.joints[i]] = true;
+    for (int i = 0; i < leg.joint_count; ++i) late_joint_[leg.joints[i]] = true;
   }
+  sdk::mark_joints_to_imus(model_, late_joint_);
 }
 
 void KinematicInertial::reset() {
   initialised_ = false;
+  gravity_.reset();
   time_since_start_ = 0.0;
   time_quiet_ = 0.0;
   shaking_.setZero();
   time_still_ = 0.0;
   turned_.setZero();
   rate_.setZero();
-  last_rate_.setZero();
+  turn_.setZero();
+  imu_rate_.setZero();
+  about_.setZero();
+  about_change_.setZero();
+  about_slow_.setZero();
+  about_imu_ = -1;
   specific_force_.setZero();
   last_cop_.setZero();
   joints_seen_ = false;
@@ -122,13 +130,13 @@ void KinematicInertial::read_joints(const GaitdStateEstimatorInput& in, GaitdRob
     if (!usable(joint)) {
       // Keeps its last position; the host decides what the fault means.
       joint_rate_[i] = 0.0;
-    } else if (!joints_seen_ || p_[leg_joint_[i] ? P::kLegPole : P::kUpperBodyPole] <= 0.0) {
+    } else if (!joints_seen_ || p_[late_joint_[i] ? P::kLegPole : P::kUpperBodyPole] <= 0.0) {
       joint_[i] = joint.position;
       joint_rate_[i] = joint.velocity;
     } else {
       // Critically damped, both poles of the discrete observer at `decay`.
-      const double decay = decays[leg_joint_[i] ? 1 : 0];
-      const double expected = leg_joint_[i] ? 0.0 : in.commands->joints[i].acceleration;
+      const double decay = decays[late_joint_[i] ? 1 : 0];
+      const double expected = late_joint_[i] ? 0.0 : in.commands->joints[i].acceleration;
       joint_[i] += dt * (joint_rate_[i] + 0.5 * dt * expected);
       joint_rate_[i] += dt * expected;
       const double error = joint.position - joint_[i];
@@ -176,12 +184,15 @@ bool KinematicInertial::complete(const GaitdSensors& sensors) const {
 void KinematicInertial::initialise(const GaitdStateEstimatorInput& in,
                                    const GaitdRobotState& joints) {
   int index = 0;
+  orientation_.setIdentity();  // upright, until gravity shows
   if (const GaitdImuSensor* sensor = imu(*in.sensors, index)) {
-    const Eigen::Quaterniond mount = sdk::quaternion(model_.imus[index].orientation);
-    orientation_ = level(mount * view(sensor->specific_force));
+    const Eigen::Vector3d force = view(sensor->specific_force);
+    initialised_ = gravity_.shows(model_, *in.sensors, force, in.time.period);
+    const sdk::ImuPlace place =
+        sdk::imu_place(model_, index, joints.joint_position, joints.joint_velocity);
+    if (initialised_) orientation_ = level(place.orientation * force);
   }
   place(in, joints);
-  initialised_ = true;
 }
 
 // The heading and the place come from the operator: the middle of the feet.
@@ -199,26 +210,33 @@ void KinematicInertial::place(const GaitdStateEstimatorInput& in, const GaitdRob
   update_kinematics(joints);
 }
 
-void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in, double dt) {
+void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in,
+                                        const GaitdRobotState& joints, double dt) {
   int index = 0;
   const GaitdImuSensor* sensor = imu(*in.sensors, index);
   if (sensor == nullptr) {  // coast on the last rate
+    about_change_.setZero();
+    turn_ = rate_;
     orientation_ = (orientation_ * sdk::exp_so3(rate_ * dt)).normalized();
     return;
   }
-  const GaitdFrame& frame = model_.imus[index];
-  const Eigen::Quaterniond mount = sdk::quaternion(frame.orientation);
-  rate_ = mount * view(sensor->angular_rate) - gyro_bias_;
-  // Acceleration of the pelvis origin: the lever arm of the IMU taken out.
-  const Eigen::Vector3d lever = view(frame.origin);
-  const Eigen::Vector3d turning = lever.squaredNorm() > 0.0 && dt > 0.0
-                                      ? Eigen::Vector3d((rate_ - last_rate_) / dt)
-                                      : Eigen::Vector3d::Zero();
-  specific_force_ = mount * view(sensor->specific_force) - turning.cross(lever) -
-                    rate_.cross(rate_.cross(lever)) - balance_bias_;
-  last_rate_ = rate_;
-
-  orientation_ = (orientation_ * sdk::exp_so3(rate_ * dt)).normalized();
+  const sdk::ImuPlace place =
+      sdk::imu_place(model_, index, joints.joint_position, joints.joint_velocity);
+  const Eigen::Quaterniond& mount = place.orientation;
+  imu_rate_ = place.rate;
+  rate_ = mount * view(sensor->angular_rate) - gyro_bias_ - imu_rate_;
+  specific_force_ = mount * view(sensor->specific_force) - balance_bias_;
+  turn_ = rate_;
+  if (!place.fixed && about_imu_ == index && dt > 0.0) {
+    turn_ = sdk::pelvis_turn(last_mount_, mount, view(sensor->angular_rate), dt) - gyro_bias_;
+  }
+  orientation_ = (orientation_ * sdk::exp_so3(turn_ * dt)).normalized();
+  const Eigen::Vector3d about = orientation_ * (rate_.cross(place.position) + place.velocity);
+  about_change_ = about_imu_ == index ? Eigen::Vector3d(about - about_) : Eigen::Vector3d::Zero();
+  about_ = about;
+  about_slow_ += std::min(1.0, kShakingPole * dt) * (about - about_slow_);
+  last_mount_ = mount;
+  about_imu_ = index;
   Eigen::Vector3d tilt;
   double share = p_[P::kTiltRate] * dt;
   if (sensor->has_orientation != 0) {
@@ -288,7 +306,9 @@ void KinematicInertial::observe_bias(const GaitdStateEstimatorInput& in,
   if (total < kBalancedShare * weight_) return;  // in flight, or hanging
   const Eigen::Vector3d arm = kinematics_.com() - cop / total;
   const Eigen::Vector3d balanced = force.dot(arm) / arm.squaredNorm() / model_.total_mass * arm;
-  Eigen::Vector3d error = specific_force_ - orientation_.conjugate() * balanced;
+  // The difference of a noisy rate over one tick would be cut off below, and no longer average out.
+  const Eigen::Vector3d turning = kShakingPole * (about_ - about_slow_);
+  Eigen::Vector3d error = specific_force_ - orientation_.conjugate() * (balanced + turning);
   error.z() = 0.0;
   const bool starting = time_since_start_ < kAveragingTime;
   const bool standing = in.gait->phase == GAITD_PHASE_STAND;
@@ -347,7 +367,8 @@ void KinematicInertial::observe_gyro_bias(double dt) {
     return;
   }
   time_still_ += dt;
-  turned_ += dt * (orientation_.conjugate() * rate);
+  // What the attitude has turned by, which the rates of joints between pelvis and IMU are not in.
+  turned_ += dt * (orientation_.conjugate() * rate + (turn_ - rate_));
   if (time_still_ < kStillTime) return;
   const Eigen::Vector3d found = turned_ / time_still_;
   if (found.norm() < kLargestDrift) gyro_bias_ += p_[P::kStillShare] * found;
@@ -390,8 +411,10 @@ void KinematicInertial::update_anchors(const GaitdStateEstimatorInput& in, doubl
 void KinematicInertial::update_position(const GaitdStateEstimatorInput& in, double dt) {
   const Eigen::Vector3d acceleration = orientation_ * (specific_force_ - accelerometer_bias_) -
                                        model_.gravity * Eigen::Vector3d::UnitZ();
-  position_ += dt * velocity_W_ + 0.5 * dt * dt * acceleration;
-  velocity_W_ += dt * acceleration;
+  // That of the IMU; the pelvis moves with it less what the IMU does about the pelvis. The
+  // difference of that adds up again, so that the noise of the rates in it does not.
+  position_ += dt * velocity_W_ + 0.5 * dt * dt * acceleration - 0.5 * dt * about_change_;
+  velocity_W_ += dt * acceleration - about_change_;
 
   Eigen::Vector3d correction = Eigen::Vector3d::Zero();
   double total = 0.0;
@@ -427,7 +450,8 @@ void KinematicInertial::level_attitude(double dt, bool standing) {
 
 void KinematicInertial::update_lagged_twist(double dt) {
   sdk::Vector6d twist;
-  twist << rate_, orientation_.conjugate() * velocity_W_;
+  // The rates of joints between pelvis and IMU are late already.
+  twist << rate_ + imu_rate_, orientation_.conjugate() * velocity_W_;
   if (p_[P::kLegPole] <= 0.0 || time_since_start_ < kAveragingTime || !lag_begun_) {
     half_lagged_ = lagged_ = twist;
     lag_begun_ = true;
@@ -440,14 +464,16 @@ void KinematicInertial::update_lagged_twist(double dt) {
 
 void KinematicInertial::write(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
   update_lagged_twist(in.time.period);
-  kinematics_.update(position_, orientation_, lagged_,
+  sdk::Vector6d twist = lagged_;
+  twist.head<3>() -= imu_rate_;
+  kinematics_.update(position_, orientation_, twist,
                      sdk::head(out.joint_position, model_.joint_count),
                      sdk::head(out.joint_velocity, model_.joint_count));
   out.joint_count = model_.joint_count;
-  out.valid = 1;
+  out.valid = initialised_ ? 1 : 0;
   view(out.pelvis_position) = position_;
   sdk::store(orientation_, out.pelvis_orientation);
-  view(out.pelvis_twist) = lagged_;
+  view(out.pelvis_twist) = twist;
   view(out.com) = kinematics_.com();
   view(out.com_velocity) = kinematics_.com_velocity();
   view(out.icp) = kinematics_.com().head<2>() + kinematics_.com_velocity().head<2>() / in.omega;
@@ -472,7 +498,12 @@ GaitdStatus KinematicInertial::process(const GaitdStateEstimatorInput& in, Gaitd
   }
   read_joints(in, out);
   if (!initialised_) initialise(in, out);
-  update_attitude(in, dt);
+  if (!initialised_) {
+    read_feet(in, out);
+    write(in, out);
+    return GAITD_OK;
+  }
+  update_attitude(in, out, dt);
   update_kinematics(out);
   read_feet(in, out);
   time_quiet_ += dt;

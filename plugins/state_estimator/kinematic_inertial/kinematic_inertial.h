@@ -5,6 +5,7 @@
 
 #include "gaitd/dynamics/kinematics.h"
 #include "gaitd/sdk/layer.h"
+#include "gaitd/sdk/sensors.h"
 #include "gaitd/sdk/views.h"
 
 namespace gaitd::plugins {
@@ -112,7 +113,8 @@ class KinematicInertial {
   void read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
   void place(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
-  void update_attitude(const GaitdStateEstimatorInput& in, double dt);
+  void update_attitude(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints,
+                       double dt);
   void read_feet(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void observe_bias(const GaitdStateEstimatorInput& in, const GaitdRobotState& robot);
   void update_trust(const GaitdStateEstimatorInput& in, double dt);
@@ -131,25 +133,34 @@ class KinematicInertial {
   sdk::Parameters<P> p_{kParameters};
   dynamics::Kinematics kinematics_;
 
-  bool initialised_ = false;
+  bool initialised_ = false;  // gravity has shown where up is
+  sdk::Gravity gravity_;
   double time_since_start_ = 0.0;
   double time_quiet_ = 0.0;                            // s, for which the robot has been at rest
   Eigen::Vector3d shaking_ = Eigen::Vector3d::Zero();  // m/s^2, accelerometer beside the balance
   double time_still_ = 0.0;                            // s, of the window in which its feet
   Eigen::Vector3d turned_ = Eigen::Vector3d::Zero();   // turned by this, rad, pelvis frame
   bool joints_seen_ = false;
-  std::array<bool, GAITD_MAX_JOINTS> leg_joint_{};
+  // Of the legs, and between pelvis and IMU: what is built from their rates and the gyroscope's has
+  // to be equally late, so nothing is expected of their commands.
+  std::array<bool, GAITD_MAX_JOINTS> late_joint_{};
   std::array<double, GAITD_MAX_JOINTS> joint_{};                     // rad, observed
   std::array<double, GAITD_MAX_JOINTS> joint_rate_{};                // rad/s, observed
   Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();  // pelvis in W
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();               // pelvis, W
   Eigen::Vector3d velocity_W_ = Eigen::Vector3d::Zero();             // pelvis, W
   Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();                   // rad/s, pelvis frame
-  Eigen::Vector3d gyro_bias_ = Eigen::Vector3d::Zero();              // pelvis frame
-  Eigen::Vector3d accelerometer_bias_ = Eigen::Vector3d::Zero();     // pelvis frame
-  Eigen::Vector3d balance_bias_ = Eigen::Vector3d::Zero();           // likewise, by the balance
-  Eigen::Vector3d specific_force_ = Eigen::Vector3d::Zero();         // at the pelvis, its frame
-  Eigen::Vector3d last_rate_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d imu_rate_ = Eigen::Vector3d::Zero();   // rad/s, of the IMU against the pelvis
+  Eigen::Vector3d turn_ = Eigen::Vector3d::Zero();       // rad/s, by which the attitude turned
+  Eigen::Vector3d gyro_bias_ = Eigen::Vector3d::Zero();  // pelvis frame
+  Eigen::Vector3d accelerometer_bias_ = Eigen::Vector3d::Zero();  // pelvis frame
+  Eigen::Vector3d balance_bias_ = Eigen::Vector3d::Zero();        // likewise, by the balance
+  Eigen::Vector3d specific_force_ = Eigen::Vector3d::Zero();      // at the IMU, pelvis axes
+  Eigen::Vector3d about_ = Eigen::Vector3d::Zero();         // m/s, W: of the IMU about the pelvis
+  Eigen::Vector3d about_slow_ = Eigen::Vector3d::Zero();    // m/s, W: low-passed
+  Eigen::Vector3d about_change_ = Eigen::Vector3d::Zero();  // m/s, in this tick
+  Eigen::Quaterniond last_mount_ = Eigen::Quaterniond::Identity();  // IMU axes in the pelvis
+  int about_imu_ = -1;                                              // which one; -1: none yet
   // Pelvis twist as late as the observed rates of the leg joints: what is built from both, such as
   // the velocity of the CoM or of a foot, would otherwise see every quick turn of the pelvis twice.
   sdk::Vector6d half_lagged_ = sdk::Vector6d::Zero();

@@ -43,4 +43,30 @@ inline Vector6d sole_wrench(const GaitdFoot& foot, const GaitdFootForceSensor& s
   return wrench;
 }
 
+/// Does the specific force of an IMU (m/s^2) show where up is? A robot that falls, or is just being
+/// set down, shows something else: it has to be that of gravity, and the feet have to carry the
+/// robot, or it must have lasted, as on a hoist.
+class Gravity {
+ public:
+  void reset() { lasted_ = 0.0; }
+  /// Once in a tick of `period` seconds.
+  bool shows(const GaitdModel& model, const GaitdSensors& sensors,
+             const Eigen::Vector3d& specific_force, double period) {
+    const double error = specific_force.norm() - model.gravity;
+    lasted_ = std::abs(error) < kShare * model.gravity ? lasted_ + period : 0.0;
+    double load = 0.0;
+    for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+      const GaitdFootForceSensor& foot = sensors.feet[side];
+      if (usable(foot)) load += view(foot.force).norm();
+    }
+    const bool carried = load > 0.5 * model.total_mass * model.gravity;
+    return lasted_ > 0.0 && (carried || lasted_ > kHanging);
+  }
+
+ private:
+  static constexpr double kShare = 0.1;    // of gravity
+  static constexpr double kHanging = 0.1;  // s
+  double lasted_ = 0.0;
+};
+
 }  // namespace gaitd::sdk
