@@ -9,7 +9,7 @@ presets=("$@")
 export ASAN_OPTIONS=detect_stack_use_after_return=1:check_initialization_order=1
 export UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
 export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1
-walks=(stand flat-0.35 straight-0.35 turn push-straight-forward stairs-alternating)
+walks=(stop flat-0.35 straight-0.35 turn push-straight-forward stairs-alternating)
 failed=()
 
 # walk PRESET SCENARIO: in lockstep, and its log read again.
