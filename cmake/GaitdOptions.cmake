@@ -27,6 +27,10 @@ endif()
 add_compile_options(-Wall -Wextra -Wno-unused-parameter -march=${GAITD_MARCH})
 if(GAITD_SANITIZE)
   add_compile_options(-fsanitize=${GAITD_SANITIZE} -fno-omit-frame-pointer)
+  if(GAITD_SANITIZE MATCHES "undefined")
+    # What AddressSanitizer sees too; on Eigen's expressions they double the time to compile.
+    add_compile_options(-fno-sanitize=null,alignment,object-size,vptr)
+  endif()
   add_link_options(-fsanitize=${GAITD_SANITIZE})
 endif()
 

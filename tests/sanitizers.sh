@@ -8,7 +8,7 @@ presets=("$@")
 ((${#presets[@]})) || presets=(asan tsan)
 export ASAN_OPTIONS=detect_stack_use_after_return=1:check_initialization_order=1
 export UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
-export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1
+export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:suppressions=$PWD/tests/tsan_suppressions.txt
 walks=(stop flat-0.35 straight-0.35 turn push-straight-forward stairs-alternating)
 failed=()
 
