@@ -45,7 +45,7 @@ std::string JsonReader::path(const std::string& key) const {
   return path_.empty() ? key : path_ + "." + key;
 }
 
-void JsonReader::allow(std::initializer_list<const char*> keys) {
+void JsonReader::allow(const std::vector<const char*>& keys) {
   std::string known;
   for (const char* key : keys) known += (known.empty() ? "" : ", ") + std::string(key);
   for (const auto& [key, value] : object_->items()) {
@@ -76,15 +76,21 @@ void JsonReader::number(const char* key, const Range& range, std::optional<doubl
   *value = read;
 }
 
-void JsonReader::vector(const char* key, const Range& range, Eigen::Vector3d* value) {
-  if (!has(key)) return;
+bool JsonReader::numbers(const char* key, const Range& range, std::span<double> values) {
+  if (!has(key)) return false;
   const json& array = at(key);
-  if (!array.is_array() || array.size() != 3 ||
+  if (!array.is_array() || array.size() != values.size() ||
       !std::all_of(array.begin(), array.end(), [&](const json& v) { return fits(v, range); })) {
-    error(path(key), "three numbers" + describe(range), array);
-    return;
+    const char* count = values.size() == 2 ? "two" : "three";
+    error(path(key), std::string(count) + " numbers" + describe(range), array);
+    return false;
   }
-  for (size_t k = 0; k < 3; ++k) (*value)[static_cast<Eigen::Index>(k)] = array[k].get<double>();
+  for (size_t k = 0; k < values.size(); ++k) values[k] = array[k].get<double>();
+  return true;
+}
+
+void JsonReader::vector(const char* key, const Range& range, Eigen::Vector3d* value) {
+  numbers(key, range, {value->data(), 3});
 }
 
 void JsonReader::error(const std::string& path, const std::string& expected, const json& got) {

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ class JsonReader {
   JsonReader(const nlohmann::json& value, std::string path, std::vector<std::string>* errors);
 
   // Every key outside `keys` is an error.
-  void allow(std::initializer_list<const char*> keys);
+  void allow(std::initializer_list<const char*> keys) { allow(std::vector<const char*>(keys)); }
+  void allow(const std::vector<const char*>& keys);
 
   bool has(const char* key) const;
   const nlohmann::json& at(const char* key) const { return object_->at(key); }
@@ -35,6 +37,8 @@ class JsonReader {
   // Each leaves `value` as it is when the key is absent.
   void number(const char* key, const Range& range, double* value);
   void number(const char* key, const Range& range, std::optional<double>* value);
+  // True: `values` was there and is written.
+  bool numbers(const char* key, const Range& range, std::span<double> values);
   void vector(const char* key, const Range& range, Eigen::Vector3d* value);
 
   void error(const std::string& path, const std::string& expected, const nlohmann::json& got);

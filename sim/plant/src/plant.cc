@@ -46,6 +46,7 @@ Plant::Plant(const GaitdModel& model, const Config& config, double period)
       actuators_(model_, config.actuators, config.time_step, config.seed),
       integrator_(model_, config.time_step),
       sensors_(model_, config.sensors, config.time_step, steps_per_period_, config.seed),
+      drive_readings_{actuators_.torque(), Eigen::VectorXd::Zero(model.joint_count)},
       truth_(model_),
       external_(Eigen::VectorXd::Zero(6 + model.joint_count)) {
   start_ = make_start_state(model_, config, static_penetration(model_, contacts_), &multibody_);
@@ -82,7 +83,8 @@ void Plant::place(const State& state) {
   }
   contacts_.finish(multibody_);
   truth_.update(contacts_);
-  sensors_.reset(state_, multibody_, actuators_.torque(), wrench);
+  drive_readings_.torque = actuators_.torque();
+  sensors_.reset(state_, multibody_, drive_readings_, wrench);
 }
 
 double Plant::time() const { return static_cast<double>(tick_) * period_; }
@@ -116,7 +118,8 @@ bool Plant::step() {
   terms_.update(multibody_);
   contacts_.finish(multibody_);
   truth_.update(contacts_);
-  sensors_.sample(state_, multibody_, actuators_.torque(), wrench);
+  drive_readings_.torque = actuators_.torque();
+  sensors_.sample(state_, multibody_, drive_readings_, wrench);
   ++step_;
   return true;
 }

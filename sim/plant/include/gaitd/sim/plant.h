@@ -76,6 +76,7 @@ class Plant {
   Actuators actuators_;
   Integrator integrator_;
   Sensors sensors_;
+  DriveReadings drive_readings_;
   Truth truth_;
   State start_;
   State state_;
