@@ -16,7 +16,6 @@
 namespace gaitd::daemon {
 namespace {
 
-
 void read_parameters(MapReader map, SettingSource source, Settings* settings, Issues* issues) {
   for (const Node::Entry& entry : map.entries()) {
     const std::string path = map.path_of(entry.key);

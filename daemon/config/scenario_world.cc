@@ -9,11 +9,7 @@ namespace {
 
 constexpr double kDefaultFriction = 0.8;
 constexpr std::size_t kMaxBoxes = 1000;
-constexpr std::size_t kMaxSensorFaults = 100;
-constexpr std::array<std::string_view, 5> kSensorFaultKinds = {"freeze", "nan", "spike", "dead",
-                                                               "silent"};
 constexpr Bounds kFriction = {0.0, 10.0, ""};
-constexpr std::array<std::string_view, 2> kSensorWords = {"none", "nominal"};
 constexpr std::array<std::string_view, 5> kActuatorWords = {"ideal", "nominal", "hydraulic",
                                                             "harmonic", "quasi_direct"};
 
@@ -23,20 +19,6 @@ struct Figure {
 };
 
 // The names and bounds of the simulator.
-constexpr std::array<Figure, 11> kSensorFigures = {{
-    {"gyro_noise", {0.0, 10.0, "rad/s"}},
-    {"gyro_bias", {0.0, 10.0, "rad/s"}},
-    {"accelerometer_noise", {0.0, 100.0, "m/s^2"}},
-    {"accelerometer_bias", {0.0, 100.0, "m/s^2"}},
-    {"encoder_bits", {0.0, 48.0, ""}},
-    {"encoder_noise", {0.0, 1.0, "rad"}},
-    {"velocity_filter", {0.0, 1e5, "Hz"}},
-    {"force_noise", {0.0, 1e4, "N"}},
-    {"force_offset", {0.0, 1e4, "N"}},
-    {"moment_noise", {0.0, 1e4, "N m"}},
-    {"delay", {0.0, 0.1, "s"}},
-}};
-
 constexpr std::array<Figure, 5> kActuatorFigures = {{
     {"command_delay", {0.0, 0.1, "s"}},
     {"bandwidth", {0.0, 1e5, "Hz"}},
@@ -120,25 +102,6 @@ nlohmann::json read_terrain(MapReader map) {
   if (!map.has("ground_z") && !map.has("boxes")) {
     map.fail("", "ground_z or boxes", "neither",
              "add 'ground_z: 0.0': there is nothing to stand on");
-  }
-  map.finish();
-  return result;
-}
-
-nlohmann::json read_sensors(MapReader map) {
-  const std::span words(kSensorWords);
-  nlohmann::json result = {
-      {"noise", read_word_or_figures(&map, "noise", words, words, kSensorFigures)}};
-  const std::vector<NodePtr> faults = map.list("faults", 0, kMaxSensorFaults);
-  for (std::size_t i = 0; i < faults.size(); ++i) {
-    MapReader fault(faults[i], map.path_of("faults") + "[" + std::to_string(i) + "]", map.issues());
-    fault.require({"sensor", "kind", "from", "duration"});
-    result["faults"].push_back(
-        {{"sensor", fault.text("sensor").value_or("")},
-         {"kind", kSensorFaultKinds[fault.choice("kind", kSensorFaultKinds).value_or(0)]},
-         {"from", fault.number("from", {0.0, 1e5, "s"}).value_or(0.0)},
-         {"duration", fault.number("duration", {0.0, 1e5, "s"}).value_or(0.0)}});
-    fault.finish();
   }
   map.finish();
   return result;

@@ -38,9 +38,10 @@ TEST(Config, EverythingIsRead) {
   EXPECT_EQ(config.terrain.boxes[0].friction, 0.7);
   EXPECT_EQ(config.terrain.boxes[0].rpy.y(), 0.1);
   EXPECT_EQ(config.terrain.boxes[1].friction, 0.2);
-  EXPECT_EQ(config.sensors.gyro_noise, 0.1);
-  EXPECT_EQ(config.sensors.delay, 0.002);
-  EXPECT_EQ(config.sensors.force_noise, 0);
+  EXPECT_EQ(config.sensors.gyro_noise.low(), 0.1);
+  EXPECT_EQ(config.sensors.gyro_noise.high(), 0.1);
+  EXPECT_EQ(config.sensors.imu_delay.low(), 0.002);
+  EXPECT_TRUE(config.sensors.force_noise.zero());
   EXPECT_EQ(config.actuators.bandwidth, 60);
   EXPECT_EQ(config.body_errors[0].mass_scale, 1.1);
   EXPECT_EQ(config.body_errors[0].com_offset.z(), 0.1);
@@ -80,6 +81,42 @@ TEST(Config, EveryMistakeIsNamedAtOnce) {
     }
     EXPECT_TRUE(found) << start << " in\n" << all;
   }
+}
+
+TEST(Config, SensorsAreAClassOrFiguresOrBoth) {
+  std::vector<std::string> errors;
+  const auto sensors = [&](const std::string& noise) {
+    return parse_config(R"({"terrain": {"ground_z": 0}, "sensors": {"noise": )" + noise + "}}",
+                        test::block_model(), 0.001, &errors)
+        .sensors;
+  };
+  EXPECT_TRUE(sensors(R"("none")").imu_delay.zero());
+  EXPECT_EQ(sensors(R"("nominal")").force_noise.low(), 5);
+  EXPECT_EQ(sensors(R"("lab")").imu_filter.low(), 250);
+  EXPECT_TRUE(sensors(R"("rough")").arrival_stamps);
+  const SensorFigures mixed =
+      sensors(R"({"class": "rough", "delay": [0.001, 0.002], "imu_delay": 0.004, "spike_rate": 0,
+                  "stamp": "measurement"})");
+  EXPECT_EQ(mixed.joint_delay.low(), 0.001);
+  EXPECT_EQ(mixed.foot_delay.high(), 0.002);
+  EXPECT_EQ(mixed.imu_delay.high(), 0.004);
+  EXPECT_TRUE(mixed.spike_rate.zero());
+  EXPECT_FALSE(mixed.arrival_stamps);
+  EXPECT_EQ(mixed.force_jump.low(), 5);
+  EXPECT_TRUE(errors.empty()) << errors[0];
+
+  std::vector<std::string> paths;
+  for (const std::string& error : errors_of(R"({"terrain": {"ground_z": 0}, "sensors": {"noise": {
+      "class": "loud", "stamp": "never", "gyro_nois": 1, "gyro_noise": -1, "gyro_bias": [1],
+      "delay": [0.002, 0.001], "imu_delay": [0, 1], "lost_burst": 0, "joint_zero": "big"}}})")) {
+    EXPECT_NE(error.find(": expected "), error.npos) << error;
+    paths.push_back(error.substr(0, error.find(": ")));
+  }
+  EXPECT_EQ(paths,
+            (std::vector<std::string>{
+                "sensors.noise.gyro_nois", "sensors.noise.class", "sensors.noise.stamp",
+                "sensors.noise.delay", "sensors.noise.joint_zero", "sensors.noise.gyro_noise",
+                "sensors.noise.gyro_bias", "sensors.noise.imu_delay", "sensors.noise.lost_burst"}));
 }
 
 TEST(Config, TextThatIsNoJsonAndTerrainWithoutGroundAreRefused) {

@@ -59,7 +59,7 @@ TEST(RealDrives, WithoutFaultsDoAsTheyAreTold) {
   EXPECT_EQ(bench.run(1, 1), 0);
   bench.command(torque_of(30));
   EXPECT_EQ(bench.run(1, 1), 30);
-  EXPECT_EQ(bench.drives().deflection()[0], 0);
+  EXPECT_EQ(bench.drives().readings().deflection[0], 0);
   bench.command(torque_of(500));
   EXPECT_EQ(bench.run(), kLimit);
 }
@@ -84,7 +84,7 @@ TEST(RealDrives, BelieveTheirOwnSensor) {
   Bench bench(figures);
   bench.command(torque_of(50));
   EXPECT_DOUBLE_EQ(bench.run(), 1.1 * 50 - 2);
-  EXPECT_DOUBLE_EQ(bench.drives().measured_torque()[0], 50);
+  EXPECT_DOUBLE_EQ(bench.drives().readings().torque[0], 50);
 }
 
 TEST(RealDrives, BiasHasAnAbsoluteLimit) {
@@ -140,8 +140,8 @@ TEST(RealDrives, TheEncoderLeadsTheLinkByTheTorqueOverTheStiffness) {
   Bench bench(figures);
   bench.command(torque_of(80));
   const double torque = bench.run();
-  EXPECT_DOUBLE_EQ(bench.drives().deflection()[0], torque / 10000);
-  EXPECT_GT(bench.drives().deflection()[0], 0);
+  EXPECT_DOUBLE_EQ(bench.drives().readings().deflection[0], torque / 10000);
+  EXPECT_GT(bench.drives().readings().deflection[0], 0);
 }
 
 TEST(RealDrives, TheTorqueLoopTakesAwayTheFrictionInsideIt) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <vector>
 
@@ -163,7 +164,7 @@ TEST(Sensors, EncoderShowsWholeSteps) {
 TEST(Sensors, DelayIsExact) {
   const GaitdModel model = test::atlas_model();
   Config config = test::flat_config(model);
-  config.sensors.delay = 0.003;
+  config.sensors.set_delay(0.003);
   Plant late(model, config, 0.001);
   Plant exact(model, test::flat_config(model), 0.001);
   const GaitdJointCommands commands = test::hold_posture(model);
@@ -182,6 +183,156 @@ TEST(Sensors, DelayIsExact) {
     EXPECT_EQ(now.joints[5].info.stamp_ns, (i - 3) * 1000000);
     EXPECT_EQ(now.tick, i);
   }
+}
+
+Eigen::Vector3d center_of_mass(const GaitdModel& model, const Multibody& multibody) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < model.body_count; ++i) {
+    sum += model.bodies[i].mass * multibody.body(i).point(Eigen::Vector3d(model.bodies[i].com));
+  }
+  return sum / model.total_mass;
+}
+
+// The robot whose joints are at `q`, its left foot at rest in the origin.
+Eigen::Vector3d center_of_mass_over_foot(const GaitdModel& model, const Eigen::VectorXd& q) {
+  Multibody multibody(model);
+  State state;
+  state.q = q;
+  state.u = Eigen::VectorXd::Zero(6 + model.joint_count);
+  multibody.set_state(state);
+  const BodyMotion& foot = multibody.body(model.feet[GAITD_LEFT].body);
+  return foot.R_WB.transpose() * (center_of_mass(model, multibody) - foot.p_WB);
+}
+
+TEST(Sensors, AZeroErrorOfTheAnkleMovesTheEstimatedCenterOfMass) {
+  const GaitdModel model = test::atlas_model();
+  Config config = test::flat_config(model);
+  config.sensors.joint_zero = 0.5 * std::numbers::pi / 180;
+  const Plant plant(model, config, 0.001);
+  const int ankle = model.legs[GAITD_LEFT].ankle_pitch;
+  Eigen::VectorXd shown = plant.state().q;
+  shown[ankle] = sensors_of(plant).joints[ankle].position;
+  const double error =
+      (center_of_mass_over_foot(model, shown) - center_of_mass_over_foot(model, plant.state().q))
+          .norm();
+  EXPECT_NEAR(error, 0.009, 0.2 * 0.009);
+  GaitdTruth truth;
+  plant.read(&truth);
+  EXPECT_EQ(truth.joint_position[ankle], plant.state().q[ankle]);
+}
+
+std::vector<GaitdSensors> run_rough(Plant* plant, const GaitdModel& model) {
+  std::vector<GaitdSensors> readings;
+  const GaitdJointCommands commands = test::hold_posture(model);
+  for (int i = 0; i < 150; ++i) {
+    plant->advance(commands);
+    readings.push_back(sensors_of(*plant));
+  }
+  return readings;
+}
+
+TEST(Sensors, TheSameSeedShowsTheSameBitsAndAnotherOneOthers) {
+  const GaitdModel model = test::atlas_model();
+  Config config = test::flat_config(model);
+  config.sensors = SensorFigures::rough();
+  Plant plant(model, config, 0.001);
+  const auto first = run_rough(&plant, model);
+  plant.reset();
+  const auto again = run_rough(&plant, model);
+  Plant twin(model, config, 0.001);
+  const auto same = run_rough(&twin, model);
+  config.seed = 2;
+  Plant other(model, config, 0.001);
+  const auto different = run_rough(&other, model);
+  for (size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(std::memcmp(&first[i], &again[i], sizeof(GaitdSensors)), 0) << i;
+    EXPECT_EQ(std::memcmp(&first[i], &same[i], sizeof(GaitdSensors)), 0) << i;
+    EXPECT_NE(first[i].joints[0].position, different[i].joints[0].position);
+    EXPECT_NE(first[i].feet[0].force[2], different[i].feet[0].force[2]);
+  }
+}
+
+TEST(Sensors, AnotherSensorChangesNothingOfTheRest) {
+  GaitdModel model = test::atlas_model();
+  Config config = test::flat_config(model);
+  config.sensors = SensorFigures::rough();
+  Plant one(model, config, 0.001);
+  const auto alone = run_rough(&one, model);
+  model.imu_count = 2;
+  model.imus[1] = model.imus[0];
+  Plant two(model, config, 0.001);
+  const auto together = run_rough(&two, model);
+  for (size_t i = 0; i < alone.size(); ++i) {
+    const GaitdSensors &a = alone[i], &b = together[i];
+    EXPECT_EQ(std::memcmp(a.joints, b.joints, sizeof(a.joints)), 0);
+    EXPECT_EQ(std::memcmp(a.feet, b.feet, sizeof(a.feet)), 0);
+    EXPECT_EQ(std::memcmp(&a.imus[0], &b.imus[0], sizeof(a.imus[0])), 0);
+    // Its own errors, not those of the first.
+    EXPECT_NE(b.imus[0].angular_rate[0], b.imus[1].angular_rate[0]);
+  }
+}
+
+TEST(Sensors, EachKindIsAsLateAsItsOwnFigure) {
+  const GaitdModel model = test::atlas_model();
+  Config config = test::flat_config(model);
+  config.sensors.joint_delay = 0.002;
+  config.sensors.imu_delay = 0.003;
+  config.sensors.foot_delay = 0.0005;
+  Plant plant(model, config, 0.001);
+  plant.advance(test::hold_posture(model));
+  const GaitdSensors s = sensors_of(plant);
+  EXPECT_EQ(s.joints[4].info.age, 0.002);
+  EXPECT_EQ(s.imus[0].info.age, 0.003);
+  EXPECT_EQ(s.feet[1].info.age, 0.0005);
+}
+
+TEST(Sensors, TheBoardOfADriveSeesTheEncoderAtOnce) {
+  const GaitdModel model = test::atlas_model();
+  SensorFigures figures;
+  figures.set_delay(0.005);
+  figures.joint_zero = 0.01;
+  Sensors sensors(model, figures, 0.0005, 2, 1);
+  Multibody multibody(model);
+  const int n = model.joint_count;
+  State state;
+  state.q = Eigen::VectorXd::Zero(n);
+  state.u = Eigen::VectorXd::Zero(6 + n);
+  multibody.set_state(state);
+  const DriveReadings drives{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Constant(n, 0.002)};
+  const FootWrench wrench[GAITD_MAX_FEET];
+  sensors.reset(state, multibody, drives, wrench);
+  state.q.setConstant(0.3);
+  state.u.tail(n).setConstant(0.7);
+  sensors.sample(state, multibody, drives, wrench);
+  EXPECT_TRUE(sensors.measured_position().isApproxToConstant(0.312, 1e-12));
+  EXPECT_TRUE(sensors.measured_velocity().isApproxToConstant(0.7, 1e-12));
+  GaitdSensors shown;
+  sensors.read(0, 0, &shown);
+  EXPECT_NEAR(shown.joints[0].position, 0.012, 1e-12);
+}
+
+TEST(Sensors, StampingFeetShakeTheImu) {
+  const GaitdModel model = test::block_model();
+  Config config = test::block_config();
+  config.sensors.strike_vibration = 30;
+  Plant ringing(model, config, 0.001);
+  Plant silent(model, test::block_config(), 0.001);
+  double before = 0, after = 0;
+  for (Plant* plant : {&ringing, &silent}) plant->place(test::block_state(0, 0, 0.005));
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE(test::run(&ringing, 0.001) && test::run(&silent, 0.001));
+    const GaitdSensors a = sensors_of(ringing), b = sensors_of(silent);
+    double difference = 0;
+    for (int k = 0; k < 3; ++k) {
+      difference += std::pow(a.imus[0].specific_force[k] - b.imus[0].specific_force[k], 2);
+    }
+    double& largest = test::truth_of(silent).feet[0].force[2] > 0 || after > 0 ? after : before;
+    largest = std::max(largest, std::sqrt(difference));
+  }
+  EXPECT_EQ(before, 0);
+  // 0.31 m/s of two feet, each in a direction of its own.
+  EXPECT_GT(after, 2);
+  EXPECT_LT(after, 2 * 30 * 0.32);
 }
 
 }  // namespace

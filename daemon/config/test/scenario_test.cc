@@ -199,7 +199,7 @@ TEST(Scenario, ReportsEveryErrorAtOnce) {
         "test.yaml:6: terrain.friction: expected a number in 0..10, got -1",
         "test.yaml:6: terrain.boxes[0].size[0]: expected a number in 0.001..10000 m, got 0",
         "start.z: expected the height of the soles, as there is no terrain.ground_z",
-        "test.yaml:7: sensors.noise: expected one of none, nominal, got 'loud' (text)",
+        "test.yaml:7: sensors.noise: expected one of none, nominal, lab, rough, got 'loud'",
         "test.yaml:8: actuators.model.bandwith: unknown key; did you mean 'bandwidth'?",
         "test.yaml:9: commands[0].at: expected a number in 0..86400 s, got -1",
         "test.yaml:9: commands[0].walk.steps: expected a whole number in 1..1000, got 0",
@@ -351,6 +351,26 @@ TEST(Scenario, TheCommandLineReplacesKeysOfTheScenario) {
   settings.report_unknown(&issues);
   EXPECT_EQ(issues.error_count(), 1u) << issues.error_text();
   EXPECT_PART(issues.error_text(), "gait.swing_duration: unknown key");
+}
+
+TEST(Scenario, SensorsAreAClassOrFiguresOrBoth) {
+  const auto noise_of = [](const std::string& noise) {
+    Issues issues;
+    Settings settings;
+    const auto scenario = read(kHead + "terrain: {ground_z: 0}\nsensors: {noise: " + noise + "}\n",
+                               &issues, &settings);
+    return scenario ? scenario->sensors["noise"].dump() : issues.error_text();
+  };
+  EXPECT_EQ(noise_of("rough"), R"("rough")");
+  EXPECT_EQ(noise_of("{class: lab, stamp: arrival, joint_zero: [-0.02, 0.02], delay: 0.002}"),
+            R"({"class":"lab","delay":0.002,"joint_zero":[-0.02,0.02],"stamp":"arrival"})");
+  EXPECT_PART(noise_of("{class: loud}"), "sensors.noise.class: expected one of none, nominal, lab");
+  EXPECT_PART(noise_of("{stamp: never}"), "sensors.noise.stamp: expected one of measurement");
+  EXPECT_PART(noise_of("{gyro_nois: 1}"), "sensors.noise.gyro_nois: unknown key; did you mean");
+  EXPECT_PART(noise_of("{delay: [0.002, 0.001]}"), "sensors.noise.delay: expected the lower limit");
+  EXPECT_PART(noise_of("{delay: [0.002]}"), "sensors.noise.delay: expected a list of 2 numbers");
+  EXPECT_PART(noise_of("{delay: [0, 2]}"), "sensors.noise.delay[1]: expected a number in 0..0.1 s");
+  EXPECT_PART(noise_of("{encoder_bits: many}"), "sensors.noise.encoder_bits: expected a number");
 }
 
 TEST(Scenario, TheCommandLineReplacesKeysOfADisturbance) {

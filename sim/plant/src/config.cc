@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "json_reader.h"
+#include "read_sensor_figures.h"
 
 namespace gaitd::sim {
 namespace {
@@ -88,38 +89,14 @@ void read_sensor_faults(const json& list, const GaitdModel& model, std::vector<s
 
 void read_sensors(const json& value, const GaitdModel& model, std::vector<std::string>* errors,
                   Config* config) {
-  SensorFigures* const figures = &config->sensors;
   JsonReader reader(value, "sensors", errors);
   reader.allow({"noise", "faults"});
   if (reader.has("faults")) {
     read_sensor_faults(reader.at("faults"), model, errors, &config->sensor_faults);
   }
-  if (!reader.has("noise")) return;
-  const json& noise = reader.at("noise");
-  if (noise == "none") return;
-  if (noise == "nominal") {
-    *figures = SensorFigures::nominal();
-    return;
+  if (reader.has("noise")) {
+    read_sensor_figures(reader.at("noise"), "sensors.noise", errors, &config->sensors);
   }
-  if (!noise.is_object()) {
-    reader.error("sensors.noise", "none, nominal or a map of figures", noise);
-    return;
-  }
-  JsonReader map(noise, "sensors.noise", errors);
-  map.allow({"gyro_noise", "gyro_bias", "accelerometer_noise", "accelerometer_bias", "encoder_bits",
-             "encoder_noise", "velocity_filter", "force_noise", "force_offset", "moment_noise",
-             "delay"});
-  map.number("gyro_noise", kNotNegative, &figures->gyro_noise);
-  map.number("gyro_bias", kNotNegative, &figures->gyro_bias);
-  map.number("accelerometer_noise", kNotNegative, &figures->accelerometer_noise);
-  map.number("accelerometer_bias", kNotNegative, &figures->accelerometer_bias);
-  map.number("encoder_bits", {0, 48}, &figures->encoder_bits);
-  map.number("encoder_noise", kNotNegative, &figures->encoder_noise);
-  map.number("velocity_filter", kNotNegative, &figures->velocity_filter);
-  map.number("force_noise", kNotNegative, &figures->force_noise);
-  map.number("force_offset", kNotNegative, &figures->force_offset);
-  map.number("moment_noise", kNotNegative, &figures->moment_noise);
-  map.number("delay", kDelay, &figures->delay);
 }
 
 void read_actuators(const json& value, std::vector<std::string>* errors, Config* config) {
@@ -235,22 +212,6 @@ void read_top(const json& root, const GaitdModel& model, double period,
 }
 
 }  // namespace
-
-SensorFigures SensorFigures::nominal() {
-  SensorFigures f;
-  f.gyro_noise = 0.005;
-  f.gyro_bias = 0.002;
-  f.accelerometer_noise = 0.05;
-  f.accelerometer_bias = 0.05;
-  f.encoder_bits = 20;
-  f.encoder_noise = 1e-4;
-  f.velocity_filter = 100;
-  f.force_noise = 5;
-  f.force_offset = 15;
-  f.moment_noise = 0.5;
-  f.delay = 0.001;
-  return f;
-}
 
 ActuatorFigures ActuatorFigures::nominal() {
   ActuatorFigures f;

@@ -23,7 +23,7 @@ NominalDrives::NominalDrives(const GaitdModel& model, const ActuatorFigures& fig
       queue_(std::llround(figures.command_delay / time_step)),
       random_(seed, RandomPurpose::kTorque),
       torque_(Eigen::VectorXd::Zero(model.joint_count)),
-      deflection_(Eigen::VectorXd::Zero(model.joint_count)) {
+      readings_{torque_, torque_} {
   if (figures.bandwidth > 0) {
     filter_gain_ = -std::expm1(-2 * std::numbers::pi * figures.bandwidth * time_step);
   }
@@ -38,6 +38,7 @@ void NominalDrives::reset() {
   queue_.reset();
   random_ = RandomStream(seed_, RandomPurpose::kTorque);
   torque_.setZero();
+  readings_.torque.setZero();
 }
 
 void NominalDrives::set_limits(size_t j, double rate) {
@@ -104,6 +105,7 @@ void NominalDrives::end_step(const Eigen::VectorXd& u) {
     drive.filtered = torque - drive.noise;
     torque_[j] = torque - drive.friction * u[j];
   }
+  readings_.torque = torque_;
 }
 
 }  // namespace gaitd::sim

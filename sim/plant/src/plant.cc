@@ -84,7 +84,7 @@ void Plant::place(const State& state) {
   }
   contacts_.finish(multibody_);
   truth_.update(contacts_);
-  sensors_.reset(state_, multibody_, drives_->measured_torque(), wrench);
+  sensors_.reset(state_, multibody_, drives_->readings(), wrench);
 }
 
 double Plant::time() const { return static_cast<double>(tick_) * period_; }
@@ -120,7 +120,7 @@ bool Plant::step() {
   terms_.update(multibody_);
   contacts_.finish(multibody_);
   truth_.update(contacts_);
-  sensors_.sample(state_, multibody_, drives_->measured_torque(), wrench);
+  sensors_.sample(state_, multibody_, drives_->readings(), wrench);
   ++step_;
   return true;
 }

@@ -17,8 +17,8 @@ uint64_t mix(uint64_t x) {
 
 }  // namespace
 
-RandomStream::RandomStream(uint64_t seed, RandomPurpose purpose)
-    : engine_(mix(mix(seed) + static_cast<uint64_t>(purpose))) {}
+RandomStream::RandomStream(uint64_t seed, RandomPurpose purpose, uint64_t index)
+    : engine_(mix(mix(seed) + static_cast<uint64_t>(purpose) + (index << 8))) {}
 
 double RandomStream::uniform() { return (static_cast<double>(engine_() >> 11) + 1.0) * 0x1.0p-53; }
 

@@ -16,8 +16,7 @@ RealDrives::RealDrives(const GaitdModel& model, const DriveFigures& figures,
       queue_(0),
       random_(seed, RandomPurpose::kTorque),
       torque_(Eigen::VectorXd::Zero(model.joint_count)),
-      measured_torque_(torque_),
-      deflection_(torque_) {
+      readings_{torque_, torque_} {
   const DrawnDrives drawn = draw_drives(model, figures, seed);
   queue_ = CommandQueue(std::llround(drawn.command_delay / time_step));
   for (int j = 0; j < model.joint_count; ++j) {
@@ -36,8 +35,8 @@ void RealDrives::reset() {
   queue_.reset();
   random_ = RandomStream(seed_, RandomPurpose::kTorque);
   torque_.setZero();
-  measured_torque_.setZero();
-  deflection_.setZero();
+  readings_.torque.setZero();
+  readings_.deflection.setZero();
 }
 
 // N m, with the gains on what the encoder of the drive shows.
@@ -113,8 +112,8 @@ void RealDrives::end_step(const Eigen::VectorXd& u) {
     const double friction = drive.friction.end_step(u[j]);
     drive.through = drive.torque - drive.own.velocity_coupling * u[j];
     torque_[j] = drive.through - friction;
-    measured_torque_[j] = (drive.torque - drive.own.bias) / (1 + drive.own.scale_error);
-    deflection_[j] = drive.own.stiffness > 0 ? torque_[j] / drive.own.stiffness : 0.0;
+    readings_.torque[j] = (drive.torque - drive.own.bias) / (1 + drive.own.scale_error);
+    readings_.deflection[j] = drive.own.stiffness > 0 ? torque_[j] / drive.own.stiffness : 0.0;
   }
 }
 

@@ -12,6 +12,7 @@
 #include "gaitd/abi/types.h"
 #include "gaitd/sim/drive_figures.h"
 #include "gaitd/sim/sensor_faults.h"
+#include "gaitd/sim/sensor_figures.h"
 
 namespace gaitd::sim {
 
@@ -26,24 +27,6 @@ struct TerrainConfig {
   double friction = 0.8;           // of the ground, and of boxes that name none
   std::optional<double> ground_z;  // m; none: no ground
   std::vector<BoxConfig> boxes;
-};
-
-// Zero means ideal for every figure. A "bias" or "offset" is drawn once per run and axis from a
-// normal distribution whose standard deviation is the figure; the others are drawn every plant
-// step.
-struct SensorFigures {
-  double gyro_noise = 0;           // rad/s, sigma
-  double gyro_bias = 0;            // rad/s
-  double accelerometer_noise = 0;  // m/s^2, sigma
-  double accelerometer_bias = 0;   // m/s^2
-  double encoder_bits = 0;         // per turn (per metre for a prismatic joint); 0: no quantisation
-  double encoder_noise = 0;        // rad, sigma
-  double velocity_filter = 0;      // Hz, of the difference of positions; 0: the exact velocity
-  double force_noise = 0;          // N, sigma
-  double force_offset = 0;         // N
-  double moment_noise = 0;         // N m, sigma
-  double delay = 0;                // s, rounded to whole plant steps
-  static SensorFigures nominal();
 };
 
 // Of drives that have no faults of their own. Zero means ideal for every figure.

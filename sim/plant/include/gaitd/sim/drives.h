@@ -10,6 +10,7 @@
 
 #include "gaitd/abi/types.h"
 #include "gaitd/sim/config.h"
+#include "gaitd/sim/drive_readings.h"
 
 namespace gaitd::sim {
 
@@ -45,10 +46,8 @@ class Drives {
 
   // N m, at the joints, all friction included; of the last step.
   virtual const Eigen::VectorXd& torque() const = 0;
-  // N m, as the drives themselves measure it.
-  virtual const Eigen::VectorXd& measured_torque() const = 0;
-  // rad, by which the encoder is ahead of the link.
-  virtual const Eigen::VectorXd& deflection() const = 0;
+  // What the sensors get of them, of the last step.
+  virtual const DriveReadings& readings() const = 0;
 };
 
 // The commands on their way to the drives.

@@ -30,8 +30,7 @@ class NominalDrives : public Drives {
   bool revise(const Eigen::VectorXd& u) override;
   void end_step(const Eigen::VectorXd& u) override;
   const Eigen::VectorXd& torque() const override { return torque_; }
-  const Eigen::VectorXd& measured_torque() const override { return torque_; }
-  const Eigen::VectorXd& deflection() const override { return deflection_; }
+  const DriveReadings& readings() const override { return readings_; }
 
  private:
   struct Drive {
@@ -58,7 +57,7 @@ class NominalDrives : public Drives {
   CommandQueue queue_;
   RandomStream random_;
   Eigen::VectorXd torque_;
-  Eigen::VectorXd deflection_;  // none
+  DriveReadings readings_;
 };
 
 }  // namespace gaitd::sim

@@ -26,6 +26,7 @@ enum class RandomPurpose : uint64_t {
   kSpikes = 15,
   kVibration = 16,
   kFootDrift = 17,
+  kEncoderErrors = 18,
   kFriction = 20,
   kElasticity = 21,
   kTorqueErrors = 22,
@@ -35,7 +36,8 @@ enum class RandomPurpose : uint64_t {
 
 class RandomStream {
  public:
-  RandomStream(uint64_t seed, RandomPurpose purpose);
+  // `index`: of the sensor or joint, where each has a stream of its own.
+  RandomStream(uint64_t seed, RandomPurpose purpose, uint64_t index = 0);
 
   double uniform();  // in (0, 1]
   double normal();   // mean 0, standard deviation 1

@@ -40,8 +40,7 @@ class RealDrives : public Drives {
   bool revise(const Eigen::VectorXd& u) override;
   void end_step(const Eigen::VectorXd& u) override;
   const Eigen::VectorXd& torque() const override { return torque_; }
-  const Eigen::VectorXd& measured_torque() const override { return measured_torque_; }
-  const Eigen::VectorXd& deflection() const override { return deflection_; }
+  const DriveReadings& readings() const override { return readings_; }
 
  private:
   struct Drive {
@@ -66,8 +65,7 @@ class RealDrives : public Drives {
   RandomStream random_;
   bool revised_ = false;
   Eigen::VectorXd torque_;
-  Eigen::VectorXd measured_torque_;
-  Eigen::VectorXd deflection_;
+  DriveReadings readings_;
 };
 
 }  // namespace gaitd::sim
