@@ -27,6 +27,7 @@ constexpr int kWakeUps = 300;
 constexpr auto kPeriod = std::chrono::milliseconds(1);
 constexpr double kLate = 0.3;  // ms
 constexpr int kArpCan = 280;   // ARPHRD_CAN
+constexpr char kIdleDevice[] = "/dev/cpu_dma_latency";
 
 std::string first_line(const fs::path& file) {
   std::ifstream in(file);
@@ -74,8 +75,8 @@ Findings check_limits() {
               : format("this user may lock only %.0f MB of memory",
                        static_cast<double>(memory.rlim_cur) / (1 << 20)),
        enough ? "" : "LimitMEMLOCK=infinity in the service, or 'memlock unlimited' in limits.d"});
-  const bool sleeps = access("/dev/cpu_dma_latency", F_OK) == 0;
-  if (sleeps && access("/dev/cpu_dma_latency", W_OK) != 0) {
+  const bool sleeps = access(kIdleDevice, F_OK) == 0;
+  if (sleeps && access(kIdleDevice, W_OK) != 0) {
     findings.push_back({"idle", Severity::kWarning,
                         "this user cannot keep idle processors awake: each wake-up may come tens "
                         "of microseconds late",

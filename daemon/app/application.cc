@@ -43,6 +43,16 @@ nlohmann::json settings_json(const Settings& settings) {
   return all;
 }
 
+void tell_of_log(const Telemetry::LogStatus& now, const Telemetry::LogStatus& before) {
+  if (before.open && !now.open) {
+    spdlog::error("{}; the log stops here until there is room, the robot goes on", now.error);
+  } else if (now.part != before.part && before.open) {
+    spdlog::info("log: full, goes on in {}", now.file);
+  } else if (now.part != before.part) {
+    spdlog::info("log: goes on in {}; {} ticks are lost", now.file, now.lost);
+  }
+}
+
 }  // namespace
 
 Application::Application(const Options& options)
@@ -485,16 +495,6 @@ bool Application::report_overruns(std::uint64_t* told) const {
                report.late.tick, late_name(report.late.what), report.late.time, report.late.budget);
   *told = report.overruns;
   return true;
-}
-
-void tell_of_log(const Telemetry::LogStatus& now, const Telemetry::LogStatus& before) {
-  if (before.open && !now.open) {
-    spdlog::error("{}; the log stops here until there is room, the robot goes on", now.error);
-  } else if (now.part != before.part && before.open) {
-    spdlog::info("log: full, goes on in {}", now.file);
-  } else if (now.part != before.part) {
-    spdlog::info("log: goes on in {}; {} ticks are lost", now.file, now.lost);
-  }
 }
 
 // Says on the terminal what other threads cannot: faults, when they come and go, and where the log

@@ -10,17 +10,14 @@ namespace gaitd::daemon {
 /// processor that has to be woken first costs a periodic thread tens of microseconds each time.
 class CpuLatency {
  public:
-  static constexpr double kMaxSeconds = 2000.0;  ///< what the kernel calls no constraint
-  static constexpr const char* kDevice = "/dev/cpu_dma_latency";
-
   CpuLatency() = default;
   ~CpuLatency();
   CpuLatency(const CpuLatency&) = delete;
   CpuLatency& operator=(const CpuLatency&) = delete;
 
-  /// `seconds`: 0..kMaxSeconds; 0 lets idle processors spin. False with `error`, with what to do
+  /// Once. `seconds`: 0..2000; 0 lets idle processors spin. False with `error`, with what to do
   /// about it. A kernel without idle states has no such device: true, and held() stays false.
-  bool hold(double seconds, std::string* error, const char* device = kDevice);
+  bool hold(double seconds, std::string* error);
   bool held() const { return file_ >= 0; }
 
  private:

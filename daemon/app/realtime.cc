@@ -47,7 +47,7 @@ void lock_memory(const RealtimeConfig& config, RealtimeReport* report) {
 }
 
 void stay_awake(const RealtimeConfig& config, CpuLatency* latency, RealtimeReport* report) {
-  if (config.cpu_latency >= CpuLatency::kMaxSeconds) return;
+  if (config.cpu_latency >= RealtimeConfig::kAnyCpuLatency) return;
   std::string error;
   if (!latency->hold(config.cpu_latency, &error)) {
     report->degraded.push_back(error);

@@ -80,7 +80,8 @@ void read_realtime(SettingReader* reader, Issues* issues, RealtimeConfig* realti
     }
   }
   reader->boolean("realtime.lock_memory", &realtime->lock_memory);
-  reader->number("realtime.cpu_latency", {0.0, 2000.0, "s"}, &realtime->cpu_latency);
+  reader->number("realtime.cpu_latency", {0.0, RealtimeConfig::kAnyCpuLatency, "s"},
+                 &realtime->cpu_latency);
   reader->boolean("realtime.require", &realtime->require);
   realtime->overrun =
       static_cast<OverrunPolicy>(reader->choice("realtime.overrun", kOverrunPolicies, 0));

@@ -29,7 +29,8 @@ struct RealtimeConfig {
   int priority = 80;          // SCHED_FIFO, 1..99
   std::vector<int> affinity;  // processors; empty: any
   bool lock_memory = true;
-  double cpu_latency = 0.0;  // s that an idle processor may take to wake up, 0..2000: no bound
+  static constexpr double kAnyCpuLatency = 2000.0;  // s, what the kernel calls no constraint
+  double cpu_latency = 0.0;  // s that an idle processor may take to wake up, 0..kAnyCpuLatency
   bool require = false;      // --require-rt: refuse to run degraded
   OverrunPolicy overrun = OverrunPolicy::kSkip;
   double overrun_run = 0.01;  // s

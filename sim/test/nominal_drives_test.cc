@@ -3,54 +3,21 @@
 
 #include <cmath>
 #include <numbers>
-#include <vector>
 
+#include "drive_bench.h"
 #include "gaitd/sim/nominal_drives.h"
 
 namespace gaitd::sim {
 namespace {
 
-constexpr double kStep = 0.0005;
-constexpr double kLimit = 100;
+using test::command;
+using test::kLimit;
+using test::kStep;
 
-GaitdModel one_joint() {
-  GaitdModel model{};
-  model.joint_count = 1;
-  model.joints[0].effort_limit = kLimit;
-  model.joints[0].velocity_limit = 10;
-  return model;
-}
-
-GaitdJointCommands command(int32_t mode, double torque, double stiffness = 0, double damping = 0) {
-  GaitdJointCommands commands{};
-  commands.joint_count = 1;
-  commands.joints[0].mode = mode;
-  commands.joints[0].torque = torque;
-  commands.joints[0].stiffness = stiffness;
-  commands.joints[0].damping = damping;
-  return commands;
-}
-
-class Drive {
+class Drive : public test::DriveBench<NominalDrives> {
  public:
   explicit Drive(const ActuatorFigures& figures, uint64_t seed = 1)
-      : drives_(one_joint(), figures, kStep, seed) {}
-
-  void command(const GaitdJointCommands& commands) { drives_.command(commands, step_); }
-
-  // One plant step at the constant position and rate.
-  double run(double q = 0, double u = 0) {
-    const Eigen::VectorXd position = Eigen::VectorXd::Constant(1, q);
-    const Eigen::VectorXd rate = Eigen::VectorXd::Constant(1, u);
-    drives_.begin_step(step_++, {position, rate, position, rate});
-    drives_.revise(rate);
-    drives_.end_step(rate);
-    return drives_.torque()[0];
-  }
-
- private:
-  NominalDrives drives_;
-  int64_t step_ = 0;
+      : DriveBench(test::one_joint(), figures, kStep, seed) {}
 };
 
 TEST(NominalDrives, NothingBeforeTheFirstCommand) {

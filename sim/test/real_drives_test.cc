@@ -7,51 +7,22 @@
 #include <numbers>
 #include <set>
 
+#include "drive_bench.h"
+
 namespace gaitd::sim {
 namespace {
 
-constexpr double kStep = 5e-4;
-constexpr double kLimit = 100;
-
-GaitdModel one_joint() {
-  GaitdModel model{};
-  model.joint_count = 1;
-  model.joints[0].effort_limit = kLimit;
-  model.joints[0].velocity_limit = 10;
-  return model;
-}
+using test::kLimit;
+using test::kStep;
 
 GaitdJointCommands torque_of(double torque) {
-  GaitdJointCommands commands{};
-  commands.joint_count = 1;
-  commands.joints[0].mode = GAITD_JOINT_MODE_TORQUE;
-  commands.joints[0].torque = torque;
-  return commands;
+  return test::command(GAITD_JOINT_MODE_TORQUE, torque);
 }
 
-// One drive at a joint that somebody else moves.
-class Bench {
+class Bench : public test::DriveBench<RealDrives> {
  public:
   explicit Bench(const DriveFigures& figures, uint64_t seed = 1)
-      : drives_(one_joint(), figures, Eigen::VectorXd::Ones(1), kStep, seed) {}
-
-  void command(const GaitdJointCommands& commands) { drives_.command(commands, step_); }
-  // One plant step at these figures; the torque at the joint, N m.
-  double run(double q = 0, double u = 0, double shown_q = 0, double shown_u = 0) {
-    const Eigen::VectorXd position = Eigen::VectorXd::Constant(1, q);
-    const Eigen::VectorXd rate = Eigen::VectorXd::Constant(1, u);
-    const Eigen::VectorXd encoder = Eigen::VectorXd::Constant(1, shown_q);
-    const Eigen::VectorXd speed = Eigen::VectorXd::Constant(1, shown_u);
-    drives_.begin_step(step_++, {position, rate, encoder, speed});
-    drives_.revise(rate);
-    drives_.end_step(rate);
-    return drives_.torque()[0];
-  }
-  const RealDrives& drives() const { return drives_; }
-
- private:
-  RealDrives drives_;
-  int64_t step_ = 0;
+      : DriveBench(test::one_joint(), figures, Eigen::VectorXd::Ones(1), kStep, seed) {}
 };
 
 TEST(RealDrives, WithoutFaultsDoAsTheyAreTold) {

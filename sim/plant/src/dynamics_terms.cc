@@ -3,23 +3,9 @@
 
 #include <Eigen/Geometry>
 
+#include "rigid_body.h"
+
 namespace gaitd::sim {
-namespace {
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
-Eigen::Matrix3d central_inertia(const GaitdBody& body) {
-  const double* i = body.inertia;
-  Eigen::Matrix3d m;
-  m << i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5];
-  return m;
-}
-
-}  // namespace
 
 DynamicsTerms::DynamicsTerms(const GaitdModel& model) : joint_count_(model.joint_count) {
   const auto bodies = static_cast<size_t>(model.body_count);

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rigid_body.h"
+#include "vector_noise.h"
+
 namespace gaitd::sim {
 namespace {
 
@@ -12,28 +15,6 @@ constexpr double kUnloaded = 5;         // N
 constexpr double kStruck = 50;          // N
 constexpr double kDriftTime = 300;      // s, in which the drift reaches its figure
 constexpr double kCrosstalkArm = 0.05;  // m, of the moments that count as much as a force
-
-Eigen::Matrix3d rotation(const GaitdFrame& frame) {
-  return Eigen::Quaterniond(frame.orientation).toRotationMatrix();
-}
-
-Eigen::Matrix3d inertia_of(const GaitdBody& body) {
-  const double* i = body.inertia;
-  Eigen::Matrix3d inertia;
-  inertia << i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5];
-  return inertia;
-}
-
-Eigen::Vector3d normal_vector(RandomStream* stream, double sigma) {
-  Eigen::Vector3d v;
-  for (int k = 0; k < 3; ++k) v[k] = stream->normal();
-  return sigma * v;
-}
-
-Eigen::Vector3d noise(RandomStream* stream, double sigma) {
-  if (sigma == 0) return Eigen::Vector3d::Zero();
-  return normal_vector(stream, sigma);
-}
 
 }  // namespace
 
@@ -103,7 +84,7 @@ void FootSensors::draw_errors(int side) {
   foot.distortion = draw_distortion(&stream, crosstalk, pair, scale);
   foot.offset.moment = noise(&stream, moment_offset);
   jumps_[index] = RandomStream(seed_, RandomPurpose::kFootDrift, index);
-  foot.drift = normal_vector(&jumps_[index], drift / kDriftTime);
+  foot.drift = (drift / kDriftTime) * normal_vector(&jumps_[index]);
   // The stream of the biases gives those of the first IMU first.
   RandomStream biases(seed_, RandomPurpose::kBias);
   for (int k = 0; k < 6 + 3 * side; ++k) biases.normal();
@@ -126,7 +107,7 @@ FootWrench FootSensors::own_wrench(int side, const Multibody& multibody) {
   const Eigen::Vector3d com = motion.point(Eigen::Vector3d(body.com));
   const Eigen::Vector3d velocity = motion.velocity(com);
   const Eigen::Vector3d momentum =
-      motion.R_WB * (inertia_of(body) * (motion.R_WB.transpose() * motion.w_W));
+      motion.R_WB * (central_inertia(body) * (motion.R_WB.transpose() * motion.w_W));
   const Eigen::Vector3d gravity(0, 0, -model_.gravity);
   const double share = foot.inertia_share;
   const Eigen::Vector3d force =
@@ -157,7 +138,7 @@ void FootSensors::update_strike(int side, const Multibody& multibody, double for
     foot.strike = foot.approach;
     RandomStream& stream = jumps_[static_cast<size_t>(side)];
     const bool jumps = stream.uniform() <= foot.jump_share;
-    const Eigen::Vector3d direction = normal_vector(&stream, 1).normalized();
+    const Eigen::Vector3d direction = normal_vector(&stream).normalized();
     if (jumps) foot.offset.force += foot.jump * direction;
   }
 }

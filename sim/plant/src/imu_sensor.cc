@@ -6,25 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "rigid_body.h"
+#include "vector_noise.h"
+
 namespace gaitd::sim {
 namespace {
 
 constexpr double kRingTime = 0.02;  // s, in which a vibration falls to 1/e
-
-Eigen::Matrix3d rotation(const GaitdFrame& frame) {
-  return Eigen::Quaterniond(frame.orientation).toRotationMatrix();
-}
-
-Eigen::Vector3d normal_vector(RandomStream* stream) {
-  Eigen::Vector3d v;
-  for (int k = 0; k < 3; ++k) v[k] = stream->normal();
-  return v;
-}
-
-Eigen::Vector3d noise(RandomStream* stream, double sigma) {
-  if (sigma == 0) return Eigen::Vector3d::Zero();
-  return sigma * normal_vector(stream);
-}
 
 // What a scale error of each axis and a small rotation make of a measured vector.
 Eigen::Matrix3d draw_distortion(RandomStream* stream, double scale,

@@ -4,14 +4,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "rigid_body.h"
+
 namespace gaitd::sim {
 namespace {
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
 
 void integrate(double h, const Eigen::VectorXd& u, State* state) {
   state->u = u;
