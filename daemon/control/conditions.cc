@@ -136,7 +136,8 @@ constexpr std::array<Condition, 17> kConditions = {{
      "`gaitctl joint list`",
      0, 0},
     {"no estimate", not_estimated, kRequestArm,
-     "not armed: the state estimator gives no estimate; `gaitctl status` and the log say why",
+     "not armed: the state estimator gives no estimate yet; it needs every sensor and a robot "
+     "that stands or hangs still for a moment; then arm again",
      kOnItsFeet, kFaultEstimator},
     {"tilted", tilted, kRequestArm, kNotUpright, kOnItsFeet, kFaultTilt | kFaultFall},
     {"low", low, kRequestArm, kNotUpright, kOnItsFeet, kFaultFall},

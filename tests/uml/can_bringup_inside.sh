@@ -51,7 +51,7 @@ stall_time=6
 start_robot killed "${hoist[@]}" --fault lose:l_leg_kny=7 --fault duplicate:r_leg_kny
 start_gaitd --set safety.ready_duration=60
 wait_healthy
-gaitctl --json arm >/dev/null 2>&1 &
+arm_robot &
 wait_state readying 120
 pause 2
 wait_status 60 '*"duplicate":[1-9]*"healthy":true*"missing":[1-9]*"state":"readying"*'
@@ -64,7 +64,7 @@ refused "arm:"
 gaitctl reset >/dev/null
 ask_status
 [[ $status == *'"state":"disarmed"'* ]] || fail "after reset: $status"
-gaitctl --json arm >/dev/null 2>&1 &
+arm_robot &
 wait_state readying 120
 
 # gaitd dies with torque on the motors: they switch off by themselves, after their TIMEOUT.

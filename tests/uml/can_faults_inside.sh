@@ -14,7 +14,7 @@ condition() {
   start_robot "condition$((++conditions))" "$@"
   start_gaitd --set safety.ready_duration=60 --set log.enabled=true --log "$scratch/$fault.mcap"
   wait_healthy
-  gaitctl --json arm >/dev/null 2>&1 &
+  arm_robot &
   wait_state fault 300
   # An interface comes up again: its motors are switched off first, and stay off.
   [[ $* != *:*_leg=0.5* ]] || wait_status 300 '*"healthy":true*"state":"fault"*'

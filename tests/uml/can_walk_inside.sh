@@ -22,7 +22,7 @@ walk() {
   start_gaitd "${gaitd_options[@]}"
   [[ $status == *'"state":"disarmed"'* ]] || fail "a robot comes up disarmed: $status"
   wait_healthy
-  gaitctl arm >/dev/null
+  arm_robot || fail "not armed"
   wait_state standing 600
   gaitctl mode walk-straight >/dev/null
   gaitctl walk --steps 6 --length 0.25 --swing 0.6 --transfer 0.25 >/dev/null

@@ -46,6 +46,10 @@ class Manager:
         return max(b - a for a, b in zip(inside, inside[1:]))
 
 
+class Refused(Exception):
+    pass
+
+
 class Gaitd:
     def __init__(self, disk, manager, clock, *arguments):
         self.path = '/run/frozen.sock'
@@ -68,8 +72,19 @@ class Gaitd:
         self.connection.sendall(json.dumps(request).encode() + b'\n')
         answer = json.loads(self.file.readline())
         if 'error' in answer:
-            sys.exit(f"{method}: {answer['error']['message']}")
+            raise Refused(f"{method}: {answer['error']['message']}")
         return answer['result']
+
+    def arm(self, seconds=60):
+        """Again while a robot that has just come up has not been estimated yet."""
+        end = time.monotonic() + seconds
+        while True:
+            try:
+                return self.ask('arm')
+            except Refused as refusal:
+                if 'no estimate yet' not in str(refusal) or time.monotonic() > end:
+                    raise
+            time.sleep(0.1)
 
     def wait(self, state, seconds=300):
         end = time.monotonic() + seconds
@@ -143,7 +158,7 @@ def stop(disk, report, robot):
         if health and health['healthy']:
             break
         time.sleep(0.1)
-    gaitd.ask('arm')
+    gaitd.arm()
     gaitd.wait('readying')
     freeze(disk, True)
     begin = time.monotonic()

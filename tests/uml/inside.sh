@@ -4,7 +4,7 @@ set -euo pipefail
 
 fail() {
   printf 'FAILED: %s\n' "$*"
-  for file in "$scratch"/gaitd.txt "$scratch"/robot.txt; do
+  for file in "$scratch"/gaitd.txt "$scratch"/robot.txt "$scratch"/arm.txt; do
     [[ -f $file ]] && tail -n 15 "$file" | sed "s|^|  $(basename "$file" .txt): |"
   done
   exit 1
@@ -95,6 +95,17 @@ wait_healthy() { wait_status 120 '*"healthy":true*'; }
 ask_status() {
   status=$(gaitctl --json status) || fail "gaitd does not answer"
   status=${status//[[:space:]]/}
+}
+
+# arm_robot: `gaitctl arm`, again while a robot that has just come up has not been estimated yet.
+arm_robot() {
+  local answer end=$((SECONDS + 60))
+  until answer=$(gaitctl --json arm 2>&1); do
+    echo "$answer" >"$scratch/arm.txt"
+    [[ $answer == *"no estimate yet"* ]] && ((SECONDS < end)) || return 1
+    pause 0.1
+  done
+  rm -f "$scratch/arm.txt"
 }
 
 # refused TEXT: arming is refused, for this reason.

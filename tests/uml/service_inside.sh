@@ -8,7 +8,7 @@ say() { echo "$SECONDS s: $1"; }
 # Motors that switched themselves off need a while until their errors are cleared.
 arm() {
   wait_status 120 '*"healthy":true*'
-  gaitctl --json arm >/result/arm.txt 2>&1 &
+  arm_robot &
   wait_state readying 120
 }
 say "systemd is up after $(cut -d. -f1 /proc/uptime) s"
