@@ -107,6 +107,7 @@ void Application::read_configuration(Issues* all) {
                         suggestion(config_.robot, paths_.robots()));
   } else {
     robot_ = load_robot(robot_file->string(), config_.profile, &settings_, &issues);
+    if (robot_) load_calibration(config_.calibration, &*robot_, place_of("calibration"), &issues);
     const NodePtr wiring = settings_.find("can");
     if (robot_ && config_.backend == "socketcan") {
       robot_->can =
@@ -191,8 +192,8 @@ bool Application::load_layers(const LayerRequests& requests) {
     }
   }
   const GaitdStart start = scenario_ ? scenario_->start : GaitdStart{};
-  pipeline_ = std::make_unique<Pipeline>(robot_->model, std::move(layers_), start, &parameters_,
-                                         config_.period);
+  pipeline_ = std::make_unique<Pipeline>(robot_->model, robot_->calibration, std::move(layers_),
+                                         start, &parameters_, config_.period);
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     auto& known = known_variants_[layer];
     if (std::find(known.begin(), known.end(), layer_variants_[layer]) == known.end()) {

@@ -62,6 +62,9 @@ void add_replay_metadata(const Robot& robot, json start, LogMetadata* metadata) 
   (*metadata)["replay"] = start.dump();
   (*metadata)["robot_yaml"] = content(robot.file);
   (*metadata)["robot_urdf"] = content(robot.urdf);
+  if (!robot.calibration_file.empty()) {
+    (*metadata)["robot_calibration"] = content(robot.calibration_file);
+  }
 }
 
 namespace {

@@ -137,6 +137,7 @@ DaemonConfig read_daemon_config(Settings* settings, Issues* issues) {
   const int backend = reader.choice("backend", kBackends, 0);
   config.backend = kBackends[backend];
   reader.text("robot", false, &config.robot);
+  reader.text("calibration", true, &config.calibration);
   config.clock = reader.choice("clock", kClocks, GAITD_CLOCK_REALTIME);
   reader.number("period", {0.0002, 0.02, "s"}, &config.period);
 

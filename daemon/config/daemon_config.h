@@ -51,6 +51,7 @@ struct LogConfig {
 struct DaemonConfig {
   std::string backend = "simbody";
   std::string robot = "atlas";  // a name or the path of a robot.yaml
+  std::string calibration;      // a name, the path of a file, or "" for none: load_calibration
   int clock = GAITD_CLOCK_REALTIME;
   double period = 0.001;  // s
   Profile profile = Profile::kSimulation;

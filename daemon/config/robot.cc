@@ -160,6 +160,32 @@ std::optional<Robot> load_robot(const std::string& file, Profile profile, Settin
   return found.ok() ? robot : std::nullopt;
 }
 
+void load_calibration(const std::string& name, Robot* robot, const Location& where,
+                      Issues* issues) {
+  if (name.empty()) return;
+  const auto folder = std::filesystem::path(robot->file).parent_path() / "calibration";
+  const bool is_path = name.find('/') != std::string::npos || name.ends_with(".yaml");
+  robot->calibration_file = is_path ? name : (folder / (name + ".yaml")).string();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(robot->calibration_file, error)) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+    }
+    std::sort(names.begin(), names.end());
+    issues->add(where, "calibration", "a calibration of this robot, or the path of one", name,
+                suggestion(name, names));
+    return;
+  }
+  Issues found;
+  const NodePtr document = load_yaml_file(robot->calibration_file, &found);
+  if (document) {
+    const auto calibration = read_calibration(document, robot->model, &found);
+    if (calibration) robot->calibration = *calibration;
+  }
+  issues->append(found);
+}
+
 NodePtr load_wiring(const NodePtr& value, const std::string& folder, Issues* issues) {
   if (!value || value->kind != NodeKind::kScalar) return value;
   return load_yaml_file((std::filesystem::path(folder) / value->text).lexically_normal().string(),

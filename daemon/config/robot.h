@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/config/calibration.h"
 #include "daemon/config/issues.h"
 #include "daemon/config/settings.h"
 #include "gaitd/abi/types.h"
@@ -40,7 +41,9 @@ struct Robot {
   std::string urdf;  // path of the URDF file
   GaitdModel model{};
   ImpedanceProfile impedance;  // of the chosen profile
-  NodePtr can;                 // wiring of the motors, see load_wiring(); null without
+  Calibration calibration;     // none unless load_calibration() was called
+  std::string calibration_file;
+  NodePtr can;  // wiring of the motors, see load_wiring(); null without
 };
 
 // Reads robots/<name>/robot.yaml and the URDF it names, fills the model, and puts the parameters of
@@ -56,6 +59,10 @@ using UrdfLoader = std::function<dynamics::UrdfResult(const std::string& path,
                                                       const dynamics::UrdfOptions& options)>;
 std::optional<Robot> read_robot(const NodePtr& document, const std::string& file, Profile profile,
                                 const UrdfLoader& load, Settings* settings, Issues* issues);
+
+// Reads a calibration into `robot`: the path of a file, or the NAME of calibration/NAME.yaml beside
+// robot.yaml; "" for none. `where`: of the setting, for the errors.
+void load_calibration(const std::string& name, Robot* robot, const Location& where, Issues* issues);
 
 // The wiring of a robot, for the backend to check: a map, or the name of a file that holds it,
 // relative to `folder`. Null and an issue when it cannot be read. Only who drives motors needs it.

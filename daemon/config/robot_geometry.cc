@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/config/robot_geometry.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 
+#include "daemon/config/joint_names.h"
 #include "daemon/config/names.h"
 
 namespace gaitd::daemon {
@@ -244,17 +243,8 @@ void RobotGeometry::read_posture(MapReader* root) {
 }
 
 std::vector<int> RobotGeometry::joints_like(const Node::Entry& entry, std::string_view path) {
-  std::vector<int> result;
-  for (std::size_t i = 0; i < joint_names_.size(); ++i) {
-    if (fnmatch(entry.key.c_str(), joint_names_[i].c_str(), 0) == 0) {
-      result.push_back(static_cast<int>(i));
-    }
-  }
-  if (result.empty() && urdf_->ok()) {
-    issues_->add(entry.where, path, "a joint of the URDF or a glob (l_leg_*)", entry.key,
-                 suggestion(entry.key, joint_names_));
-  }
-  return result;
+  if (!urdf_->ok()) return {};
+  return daemon::joints_like(entry, path, joint_names_, issues_);
 }
 
 void RobotGeometry::read_joint_values(MapReader map, const Bounds& bounds, double* values) {

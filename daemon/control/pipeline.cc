@@ -23,8 +23,9 @@ CommandReply refused(const Command& command, std::int64_t tick, const char* why)
 
 }  // namespace
 
-Pipeline::Pipeline(const GaitdModel& model, LayerChain::Layers layers, const GaitdStart& start,
-                   LiveParameters* parameters, double period)
+Pipeline::Pipeline(const GaitdModel& model, const Calibration& calibration,
+                   LayerChain::Layers layers, const GaitdStart& start, LiveParameters* parameters,
+                   double period)
     : model_(model),
       start_(start),
       period_(period),
@@ -33,7 +34,8 @@ Pipeline::Pipeline(const GaitdModel& model, LayerChain::Layers layers, const Gai
       gait_(model),
       objectives_(model),
       safety_(model),
-      monitor_(model) {
+      monitor_(model),
+      compensation_(model, calibration) {
   layers_.rules().period = period;
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     layers_.in_use(layer).table = parameters_->table_in_use(layer);
@@ -159,6 +161,7 @@ void Pipeline::reset() {
   layers_.reset();
   safety_.reset();
   monitor_.reset();
+  compensation_.reset();
   const auto variants = data_.variants;
   data_ = TickData{};
   data_.variants = variants;
@@ -178,6 +181,7 @@ void Pipeline::run(std::int64_t tick) {
   TickData& d = data_;
   d.time = {tick, static_cast<double>(tick) * period_, period_};
   monitor_.check(period_, safety_.parameters(), d);
+  compensation_.sensors(period_, d);
   const bool estimated = layers_.estimate(start_, d);
   safety_.check(d, estimated);
   if (safety_.update(period_, d, gait_.walking())) begin_control();
@@ -185,6 +189,7 @@ void Pipeline::run(std::int64_t tick) {
   const bool ok = controlled && control(period_);
   if (!controlled) layers_.give_up_swaps("the robot is not under control any more");
   safety_.write(period_, ok, d);
+  compensation_.commands(d);
 }
 
 bool Pipeline::control(double dt) {

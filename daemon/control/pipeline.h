@@ -2,6 +2,7 @@
 #pragma once
 
 #include "daemon/command/command.h"
+#include "daemon/control/compensation.h"
 #include "daemon/control/layer_chain.h"
 #include "daemon/control/safety.h"
 #include "daemon/control/sensor_monitor.h"
@@ -18,8 +19,8 @@ class Pipeline {
  public:
   // `start`: where the middle of the feet stands at the beginning (W). Takes the values of the
   // daemon's own parameters; the layers have got theirs when they were loaded.
-  Pipeline(const GaitdModel& model, LayerChain::Layers layers, const GaitdStart& start,
-           LiveParameters* parameters, double period);
+  Pipeline(const GaitdModel& model, const Calibration& calibration, LayerChain::Layers layers,
+           const GaitdStart& start, LiveParameters* parameters, double period);
 
   // Between ticks.
   CommandReply execute(const Command& command);
@@ -60,6 +61,7 @@ class Pipeline {
   walking::ObjectiveBuilder objectives_;
   Safety safety_;
   SensorMonitor monitor_;
+  Compensation compensation_;
   TickData data_;
 };
 

@@ -118,7 +118,7 @@ void SensorMonitor::note(const Suspect& suspect) {
 
 void SensorMonitor::check(double dt, const Limits& p, TickData& d) {
   suspect_ = {};
-  const GaitdSensors before = d.sensors;
+  const GaitdSensors before = passed_;
   d.sensors = d.readings;
   Evidence evidence = gather(d);
   check_joints(dt, p, evidence.controlled, before, d);
@@ -128,6 +128,7 @@ void SensorMonitor::check(double dt, const Limits& p, TickData& d) {
   }
   check_feet(dt, p, evidence, before, d);
   last_ = d.readings;
+  passed_ = d.sensors;
 }
 
 SensorMonitor::Evidence SensorMonitor::gather(const TickData& d) const {

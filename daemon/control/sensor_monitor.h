@@ -71,7 +71,8 @@ class SensorMonitor {
 
   GaitdModel model_;
   JointMask balance_;
-  GaitdSensors last_{};  // raw, of the tick before
+  GaitdSensors last_{};    // raw, of the tick before
+  GaitdSensors passed_{};  // what was passed on then
   std::array<History, GAITD_MAX_JOINTS> joints_{};
   std::array<History, GAITD_MAX_IMUS> imus_{};
   std::array<History, GAITD_MAX_FEET> feet_{};

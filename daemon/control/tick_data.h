@@ -53,8 +53,9 @@ struct TickTimes {
 // Everything one tick reads and writes, stage by stage, in the order of the pipeline.
 struct TickData {
   GaitdLayerTime time{};
-  GaitdSensors readings{};   // as the backend gave them
-  GaitdSensors sensors{};    // without those that cannot be true: what the layers get
+  GaitdSensors readings{};  // as the backend gave them
+  // Without those that cannot be true, and what the calibration says taken off: what layers get.
+  GaitdSensors sensors{};
   JointMask dropped = 0;     // joints that the robot goes on without: SensorMonitor
   std::uint32_t health = 0;  // GAITD_HEALTH_* that the backend reports
   GaitdRobotState robot{};
@@ -64,7 +65,7 @@ struct TickData {
   GaitdToeOff toe_off{};
   GaitdObjectives objectives{};
   GaitdWholeBodyControllerOutput wbc{};
-  GaitdJointCommands commands{};  // after safety: what the backend gets
+  GaitdJointCommands commands{};  // after safety and calibration: what the backend gets
   SafetyState safety = SafetyState::kDisarmed;
   std::uint32_t faults = 0;
   std::array<walking::LegConfiguration::Reference, GAITD_MAX_FEET> legs{};

@@ -202,8 +202,9 @@ std::unique_ptr<RecordedRobot> RecordedRobot::load(const LogReader& log,
     for (int i = 0; i < 3; ++i) start.position[i] = place[i].get<double>();
     start.yaw = place[3].get<double>();
   }
-  r->pipeline_ = std::make_unique<Pipeline>(r->robot_.model, std::move(layers), start,
-                                            &r->parameters_, replay.value("period", 0.001));
+  r->pipeline_ =
+      std::make_unique<Pipeline>(r->robot_.model, r->robot_.calibration, std::move(layers), start,
+                                 &r->parameters_, replay.value("period", 0.001));
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     LayerInstance& instance = r->pipeline_->layers().in_use(layer);
     instance.variant = r->variant_word(layer, instance.layer->descriptor().id);

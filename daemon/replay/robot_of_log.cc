@@ -27,6 +27,13 @@ std::optional<Robot> robot_of_log(const LogReader& log, Settings* settings, std:
       replay.value("hardware", false) ? Profile::kHardware : Profile::kSimulation;
   auto robot = read_robot(parse_yaml(*yaml, file, &issues), file, profile, load,
                           settings != nullptr ? settings : &unused, &issues);
+  const auto text = log.metadata_value("robot_calibration");
+  if (robot && text) {
+    const auto calibration =
+        read_calibration(parse_yaml(*text, file, &issues), robot->model, &issues);
+    if (calibration) robot->calibration = *calibration;
+    if (!calibration) robot.reset();
+  }
   if (!robot) *error = "its robot cannot be read: " + issues.error_text();
   return robot;
 }

@@ -41,6 +41,7 @@ TEST(CommandText, IsAnObjectWithItsOwnNameForEveryCommand) {
     auto command = std::make_unique<Command>();
     command->type = static_cast<CommandType>(type);
     command->request = 17;
+    command->swap_layer = GAITD_LAYER_TOE_OFF;
     const nlohmann::json json = parsed(*command, reply_of(nullptr));
     ASSERT_TRUE(json.is_object()) << type;
     EXPECT_TRUE(names.insert(json.value("command", "")).second) << type;

@@ -54,8 +54,8 @@ class PipelineBench {
     for (const DaemonScope& scope : daemon_scopes()) {
       parameters.add(scope.owner, scope.name, "", scope.table, defaults(scope.table));
     }
-    pipeline = std::make_unique<Pipeline>(atlas(), std::move(layers), GaitdStart{}, &parameters,
-                                          kPipelinePeriod);
+    pipeline = std::make_unique<Pipeline>(atlas(), Calibration{}, std::move(layers), GaitdStart{},
+                                          &parameters, kPipelinePeriod);
   }
   // The readings of tick `number`. Nothing that is measured repeats itself.
   void read(std::int64_t number, GaitdSensors& sensors) {

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/compensation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "gaitd/sdk/views.h"
+
+namespace gaitd::daemon {
+namespace {
+
+// As the teams of Atlas did it: torque over stiffness, the torque filtered, the angle bounded, so
+// that one bad torque sensor does not move a joint (see docs/decisions/compensation.md).
+constexpr double kTorqueBandwidth = 20.0;  // Hz
+constexpr double kLargestBend = 0.1;       // rad
+
+}  // namespace
+
+Compensation::Compensation(const GaitdModel& model, const Calibration& calibration)
+    : model_(model), calibration_(calibration) {
+  for (int i = 0; i < model.joint_count; ++i) {
+    const JointCalibration& joint = calibration.joints[i];
+    used_ = used_ || joint.zero != 0.0 || joint.stiffness > 0.0;
+  }
+  for (const FootCalibration& foot : calibration.feet) {
+    used_ = used_ || foot.mass > 0.0 || foot.force != std::array<double, 3>{} ||
+            foot.moment != std::array<double, 3>{};
+  }
+}
+
+// rad, of the encoder against the link.
+double Compensation::bend(int joint, double torque) const {
+  const double stiffness = calibration_.joints[joint].stiffness;
+  if (stiffness <= 0.0) return 0.0;
+  return std::clamp(torque / stiffness, -kLargestBend, kLargestBend);
+}
+
+void Compensation::joint(double gain, double dt, int index, GaitdJointSensor& sensor) {
+  const JointCalibration& own = calibration_.joints[index];
+  const double before = bend(index, torque_[index]);
+  torque_[index] += (known_ ? gain : 1.0) * (sensor.torque - torque_[index]);
+  const double now = bend(index, torque_[index]);
+  sensor.position -= own.zero + now;
+  if (known_) sensor.velocity -= (now - before) / dt;
+}
+
+void Compensation::foot(int side, const GaitdRobotState& robot,
+                        GaitdFootForceSensor& sensor) const {
+  const FootCalibration& own = calibration_.feet[side];
+  const GaitdFoot& foot = model_.feet[side];
+  // Level until the estimator knows more: a robot that stands, or hangs with its legs down.
+  Eigen::Quaterniond body = Eigen::Quaterniond::Identity();
+  if (robot.valid != 0) {
+    body = sdk::quaternion(robot.feet[side].orientation) *
+           sdk::quaternion(foot.sole.orientation).conjugate();
+  }
+  const Eigen::Quaterniond turn = sdk::quaternion(foot.force_sensor.orientation).conjugate();
+  const Eigen::Vector3d weight_body =
+      body.conjugate() * Eigen::Vector3d(0, 0, -own.mass * model_.gravity);
+  const Eigen::Vector3d arm = Eigen::Vector3d(own.com.data()) - sdk::view(foot.force_sensor.origin);
+  sdk::view(sensor.force) -= turn * weight_body + Eigen::Vector3d(own.force.data());
+  sdk::view(sensor.moment) -= turn * arm.cross(weight_body) + Eigen::Vector3d(own.moment.data());
+}
+
+void Compensation::sensors(double dt, TickData& d) {
+  if (!used_) return;
+  const double gain = -std::expm1(-2.0 * std::numbers::pi * kTorqueBandwidth * dt);
+  for (int i = 0; i < model_.joint_count; ++i) joint(gain, dt, i, d.sensors.joints[i]);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) foot(side, d.robot, d.sensors.feet[side]);
+  known_ = true;
+}
+
+void Compensation::commands(TickData& d) const {
+  if (!used_) return;
+  for (int i = 0; i < model_.joint_count; ++i) {
+    GaitdJointCommand& command = d.commands.joints[i];
+    command.position += calibration_.joints[i].zero + bend(i, command.torque);
+  }
+}
+
+}  // namespace gaitd::daemon
