@@ -38,16 +38,16 @@ fs::path source_tree(const fs::path& program) {
   return {};
 }
 
-bool is_path(std::string_view name) {
-  return name.find('/') != std::string_view::npos || name.ends_with(".yaml");
-}
-
 std::optional<fs::path> existing(const fs::path& path) {
   if (!is_file(path)) return std::nullopt;
   return path;
 }
 
 }  // namespace
+
+bool is_path(std::string_view name) {
+  return name.find('/') != std::string_view::npos || name.ends_with(".yaml");
+}
 
 Paths Paths::detect() {
   std::error_code error;

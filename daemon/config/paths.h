@@ -9,6 +9,9 @@
 
 namespace gaitd::daemon {
 
+// A name with a slash or ending in .yaml is taken as a path.
+bool is_path(std::string_view name);
+
 // Where the programs find what belongs to them: in the folders of GAITD_PATH (separated by ':'),
 // then beside the installed program (<exe>/../lib/gaitd, <exe>/../share/gaitd), then, for a program
 // in a build tree, in the source tree that it was built from: the file gaitd-source-tree at the top
@@ -20,8 +23,7 @@ class Paths {
   // `program` is the path of the executable, `search_path` the value of GAITD_PATH.
   Paths(const std::filesystem::path& program, std::string_view search_path);
 
-  // Each returns nothing when there is no such file. A name with a slash or ending in .yaml
-  // is taken as a path and not searched for.
+  // Each returns nothing when there is no such file. What is_path() is not searched for.
   std::optional<std::filesystem::path> robot(std::string_view name_or_file) const;
   std::optional<std::filesystem::path> scenario(std::string_view name_or_file) const;
   std::optional<std::filesystem::path> config() const;

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "daemon/config/leg_kinematics.h"
+#include "daemon/config/paths.h"
 #include "daemon/config/robot_geometry.h"
 #include "daemon/config/yaml_reader.h"
 #include "gaitd/dynamics/model_check.h"
@@ -164,8 +165,7 @@ void load_calibration(const std::string& name, Robot* robot, const Location& whe
                       Issues* issues) {
   if (name.empty()) return;
   const auto folder = std::filesystem::path(robot->file).parent_path() / "calibration";
-  const bool is_path = name.find('/') != std::string::npos || name.ends_with(".yaml");
-  robot->calibration_file = is_path ? name : (folder / (name + ".yaml")).string();
+  robot->calibration_file = is_path(name) ? name : (folder / (name + ".yaml")).string();
   std::error_code error;
   if (!std::filesystem::is_regular_file(robot->calibration_file, error)) {
     std::vector<std::string> names;

@@ -118,7 +118,7 @@ void SensorMonitor::note(const Suspect& suspect) {
 
 void SensorMonitor::check(double dt, const Limits& p, TickData& d) {
   suspect_ = {};
-  const GaitdSensors before = passed_;
+  const GaitdSensors& before = passed_;
   d.sensors = d.readings;
   Evidence evidence = gather(d);
   check_joints(dt, p, evidence.controlled, before, d);

@@ -18,7 +18,6 @@ wait_for() {
   local end=$((SECONDS + $2))
   until eval "$1"; do
     ((SECONDS < end)) || fail "after $2 s not: $1
-$(cat /result/arm.txt 2>&1)
 $(gaitctl status 2>&1)
 $(systemctl status gaitd --no-pager 2>&1 | tail -n 20)"
     sleep 0.2
