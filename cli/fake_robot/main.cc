@@ -10,6 +10,7 @@
 #include "daemon/config/paths.h"
 #include "daemon/config/robot.h"
 #include "gaitd/sim/config.h"
+#include "simbody_physics.h"
 
 namespace {
 
@@ -78,7 +79,9 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, stop);
   gaitd::cli::FakeRobot fake(
       robot->model, std::move(wiring),
-      std::make_unique<gaitd::sim::Plant>(robot->model, config, options.period), options);
+      std::make_unique<gaitd::sim::Plant>(robot->model, config, options.period,
+                                          gaitd::sim::SimbodyPhysics::make),
+      options);
   if (!fake.start(&error)) return fail(error);
   std::printf("ready\n");
   std::fflush(stdout);

@@ -98,6 +98,7 @@ void Application::read_configuration(Issues* all) {
     }
   }
   config_ = read_daemon_config(&settings_, &issues);
+  read_backend(&issues);
   if (scenario_ && options_.robot.empty()) config_.robot = scenario_->robot;
   if (options_.require_rt) config_.realtime.require = true;
   const auto robot_file = paths_.robot(config_.robot);
@@ -106,10 +107,10 @@ void Application::read_configuration(Issues* all) {
                     "no robot '" + config_.robot + "'; give a robot.yaml or a name; " +
                         suggestion(config_.robot, paths_.robots()));
   } else {
-    robot_ = load_robot(robot_file->string(), config_.profile, &settings_, &issues);
+    robot_ = load_robot(robot_file->string(), profile(), &settings_, &issues);
     if (robot_) load_calibration(config_.calibration, &*robot_, place_of("calibration"), &issues);
     const NodePtr wiring = settings_.find("can");
-    if (robot_ && config_.backend == "socketcan") {
+    if (robot_ && !simulation_ && (wiring || robot_->can)) {
       robot_->can =
           load_wiring(wiring ? wiring : robot_->can, robot_file->parent_path().string(), &issues);
     }
@@ -171,13 +172,10 @@ Application::LayerRequests Application::choose_layers(Issues* all) {
   if (scenario_ && robot_) {
     player_ = std::make_unique<ScenarioPlayer>(*scenario_, robot_->model, parameters_, &issues);
   }
-  std::string error;
-  Refusal refusal;
-  const auto backend = directory_.find(GAITD_LAYER_BACKEND, config_.backend, &error);
-  if (!backend || !read_plugin_file(*backend, GAITD_LAYER_BACKEND, &refusal)) {
-    issues.add_text(place_of("backend"), "backend", backend ? refusal.text() : error);
-  }
-  for (const char* scope : {"sim", "socketcan"}) settings_.subtree(scope);  // the backend checks it
+  // What a backend gets it checks itself; the sections of others are of no interest here.
+  settings_.subtree("sim");
+  settings_.subtree(backend_id_);
+  for (const std::string& id : directory_.variants(GAITD_LAYER_BACKEND)) settings_.subtree(id);
   settings_.report_unknown(&issues);
   return requests;
 }
@@ -215,22 +213,40 @@ bool Application::load_layers(const LayerRequests& requests) {
   return true;
 }
 
+// What the descriptor of the backend says, without loading it.
+void Application::read_backend(Issues* issues) {
+  std::string error;
+  Refusal refusal;
+  const auto path = directory_.find(GAITD_LAYER_BACKEND, config_.backend, &error);
+  const auto file = path ? read_plugin_file(*path, GAITD_LAYER_BACKEND, &refusal) : std::nullopt;
+  if (!file) {
+    issues->add_text(place_of("backend"), "backend", path ? refusal.text() : error);
+    return;
+  }
+  backend_id_ = file->descriptor.id;
+  simulation_ = (file->descriptor.capabilities & GAITD_CAPABILITY_SIMULATION) != 0;
+}
+
+Profile Application::profile() const {
+  return config_.profile.value_or(simulation_ ? Profile::kSimulation : Profile::kHardware);
+}
+
+// The section of the configuration that is the backend's: a simulation can be put in place of
+// another, a robot cannot.
+std::string Application::backend_scope() const { return simulation_ ? "sim" : backend_id_; }
+
 // What the backend checks itself: the world of a simulation, the wiring of a robot.
 nlohmann::json Application::backend_config() {
-  const auto overlay = [this](const char* scope, nlohmann::json* config) {
-    const NodePtr more = settings_.subtree(scope);
-    const nlohmann::json values = more != nullptr ? to_json(*more) : nlohmann::json();
-    if (values.is_object()) config->update(values);
-  };
   nlohmann::json config = nlohmann::json::object();
-  if (config_.backend == "socketcan") {
-    if (robot_->can) config["can"] = to_json(*robot_->can);
-    overlay("socketcan", &config);
-    return config;
+  if (simulation_) {
+    if (scenario_) config = scenario_->simulator_config();
+    if (!scenario_) config["terrain"] = {{"ground_z", 0.0}};
+  } else if (robot_->can) {
+    config["can"] = to_json(*robot_->can);
   }
-  if (scenario_) config = scenario_->simulator_config();
-  if (!scenario_ && config_.backend == "simbody") config["terrain"] = {{"ground_z", 0.0}};
-  overlay("sim", &config);
+  const NodePtr more = settings_.subtree(backend_scope());
+  const nlohmann::json values = more != nullptr ? to_json(*more) : nlohmann::json();
+  if (values.is_object()) config.update(values);
   return config;
 }
 
@@ -254,7 +270,10 @@ bool Application::load_backend() {
   }
   const GaitdBackendInstance& b = backend_->instance();
   GaitdTruth truth{};
-  truth_ = b.vtable->truth != nullptr && b.vtable->truth(b.self, &truth) == GAITD_OK;
+  if (simulation_ && b.vtable->truth(b.self, &truth) != GAITD_OK) {
+    spdlog::error("backend {}: says that it is a simulation, but gives no truth", backend_id_);
+    return false;
+  }
   return true;
 }
 
@@ -275,7 +294,7 @@ LogMetadata Application::metadata() const {
   m["settings"] = settings_json(settings_).dump();
   m["period"] = std::to_string(config_.period);
   m["clock"] = config_.clock == GAITD_CLOCK_LOCKSTEP ? "lockstep" : "realtime";
-  m["backend"] = config_.backend;
+  m["backend"] = backend_id_;
   m["version"] = GAITD_VERSION;
   m["build"] = GAITD_BUILD;
   nlohmann::json plugins;
@@ -287,16 +306,16 @@ LogMetadata Application::metadata() const {
                                                {"hash", library.hash()}};
   }
   m["plugins"] = plugins.dump();
-  m["truth"] = truth_ ? "true" : "false";
+  m["truth"] = simulation_ ? "true" : "false";
   const GaitdStart start = scenario_ ? scenario_->start : GaitdStart{};
   const auto& at = start.position;
   add_replay_metadata(*robot_,
                       {{"start", {at[0], at[1], at[2], start.yaw}},
                        {"mode", scenario_ ? scenario_->mode : -1},
-                       {"arm", truth_},
-                       {"simulation", truth_},
+                       {"arm", simulation_},
+                       {"simulation", simulation_},
                        {"period", config_.period},
-                       {"hardware", config_.profile == Profile::kHardware}},
+                       {"hardware", profile() == Profile::kHardware}},
                       &m);
   if (scenario_) {
     m["scenario"] = scenario_->name;
@@ -314,7 +333,7 @@ bool Application::start_telemetry() {
     return input_text(input.command, input.parameter_owner, input.parameter_place);
   };
   telemetry_ = std::make_unique<Telemetry>(
-      make_signal_table(robot_->model, known_variants_, truth_), options);
+      make_signal_table(robot_->model, known_variants_, simulation_), options);
   if (config_.log.enabled) {
     log_file_ = default_log_file();
     McapOptions mcap;
@@ -371,7 +390,7 @@ nlohmann::json Application::joints() const {
 nlohmann::json Application::status() const {
   nlohmann::json s = status_of(*telemetry_);
   s["robot"] = robot_->name;
-  s["backend"] = config_.backend;
+  s["backend"] = backend_id_;
   s["clock"] = config_.clock == GAITD_CLOCK_LOCKSTEP ? "lockstep" : "realtime";
   s["version"] = GAITD_VERSION;
   s["scenario"] = scenario_ ? nlohmann::json(scenario_->name) : nlohmann::json(nullptr);
@@ -413,7 +432,7 @@ void Application::prepare_swaps() {
   folders.insert(folders.end(), config_.plugin_folders.begin(), config_.plugin_folders.end());
   // Who starts a simulation for himself may run there what he wants; a service loads what its
   // administrator has allowed.
-  const bool any_file = truth_ && std::getenv("NOTIFY_SOCKET") == nullptr;
+  const bool any_file = simulation_ && std::getenv("NOTIFY_SOCKET") == nullptr;
   SwapService::Parts parts{.model = &robot_->model,
                            .directory = &directory_,
                            .folders = LibraryFolders(folders),
@@ -429,7 +448,7 @@ void Application::prepare_swaps() {
   std::copy(layer_variants_.begin(), layer_variants_.end(), parts.in_use.begin());
   swaps_ = std::make_unique<SwapService>(std::move(parts));
   SwapRules& rules = pipeline_->layers().rules();
-  rules.simulation = truth_;
+  rules.simulation = simulation_;
   rules.wall_time_acts = config_.clock == GAITD_CLOCK_REALTIME;
   swaps_->port().publish(pipeline_->swap_right());  // until the control thread does
   swaps_->start();
@@ -558,7 +577,7 @@ int Application::run() {
   LoopOptions options;
   options.clock = config_.clock;
   options.period = config_.period;
-  options.arm = truth_;  // a robot comes up disarmed, a simulated one ready to use
+  options.arm = simulation_;  // a robot comes up disarmed, a simulated one ready to use
   options.overrun = config_.realtime.overrun;
   options.overrun_run = config_.realtime.overrun_run;
   loop_ = std::make_unique<ControlLoop>(options, robot_->model, pipeline_.get(), backend,

@@ -58,9 +58,12 @@ class Application {
   using LayerRequests = std::vector<LoadedLayer::Request>;
 
   void read_configuration(Issues* issues);
+  void read_backend(Issues* issues);
+  Profile profile() const;
   LayerRequests choose_layers(Issues* issues);
   bool load_layers(const LayerRequests& requests);
   nlohmann::json backend_config();
+  std::string backend_scope() const;
   bool load_backend();
   bool start_telemetry();
   void prepare_swaps();
@@ -92,7 +95,8 @@ class Application {
   std::vector<std::string> layer_variants_;  // in use
   LayerVariants known_variants_;             // installed, and "other"
   std::unique_ptr<LoadedBackend> backend_;
-  bool truth_ = false;
+  std::string backend_id_;
+  bool simulation_ = false;
   std::string log_file_;
   std::unique_ptr<Telemetry> telemetry_;
   EstopFlag estop_;

@@ -13,9 +13,10 @@ void add_options(CLI::App* app, Options* options, usage::ValueSources* values) {
   app->add_option("--config", options->config, "Configuration file (default: gaitd.yaml found)")
       ->type_name("FILE");
   const auto* backend = app->add_option("--backend", options->backend,
-                                        "Simulation or robot: simbody, socketcan, mock")
-                            ->type_name("NAME");
-  (*values)[backend] = [] { return std::vector<std::string>{"simbody", "socketcan", "mock"}; };
+                                        "Simulation or robot: simbody, mujoco, socketcan, "
+                                        "or the path of a plugin")
+                            ->type_name("NAME|FILE");
+  (*values)[backend] = [] { return std::vector<std::string>{"simbody", "mujoco", "socketcan"}; };
   const auto* robot =
       app->add_option("--robot", options->robot, "Name of a robot or path of a robot.yaml")
           ->type_name("NAME|FILE");

@@ -11,7 +11,6 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr std::array<std::string_view, 3> kBackends = {"simbody", "socketcan", "mock"};
 constexpr std::array<std::string_view, 2> kClocks = {"realtime", "lockstep"};
 constexpr std::array<std::string_view, 3> kProfiles = {"simulation", "hardware", "auto"};
 constexpr std::array<std::string_view, 3> kOverrunPolicies = {"skip", "catch_up", "stop"};
@@ -134,16 +133,14 @@ bool load_config_file(const std::string& file, Settings* settings, Issues* issue
 DaemonConfig read_daemon_config(Settings* settings, Issues* issues) {
   DaemonConfig config;
   SettingReader reader(settings, issues);
-  const int backend = reader.choice("backend", kBackends, 0);
-  config.backend = kBackends[backend];
+  reader.text("backend", false, &config.backend);
   reader.text("robot", false, &config.robot);
   reader.text("calibration", true, &config.calibration);
   config.clock = reader.choice("clock", kClocks, GAITD_CLOCK_REALTIME);
   reader.number("period", {0.0002, 0.02, "s"}, &config.period);
 
-  int profile = reader.choice("profile", kProfiles, 2);
-  if (profile == 2) profile = config.backend == "socketcan" ? 1 : 0;
-  config.profile = static_cast<Profile>(profile);
+  const int profile = reader.choice("profile", kProfiles, 2);
+  if (profile < 2) config.profile = static_cast<Profile>(profile);
 
   for (std::size_t layer = 0; layer < kLayerNames.size(); ++layer) {
     reader.text(std::string(kLayerNames[layer]) + ".variant", false, &config.variants[layer]);

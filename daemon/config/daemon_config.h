@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,8 +54,8 @@ struct DaemonConfig {
   std::string robot = "atlas";  // a name or the path of a robot.yaml
   std::string calibration;      // a name, the path of a file, or "" for none: load_calibration
   int clock = GAITD_CLOCK_REALTIME;
-  double period = 0.001;  // s
-  Profile profile = Profile::kSimulation;
+  double period = 0.001;           // s
+  std::optional<Profile> profile;  // none: that of the backend
   std::array<std::string, GAITD_LAYER_COUNT> variants = {"kinematic_inertial", "heel_to_toe",
                                                          "icp_qp", "icp_criteria", "nullspace_qp"};
   RealtimeConfig realtime;

@@ -100,9 +100,12 @@ void check_names(const GaitdPluginDescriptor& d, Refusal* refusal) {
     refusal->add("worst_case_us", std::to_string(d.worst_case_us), "a finite time > 0 µs",
                  "declare the worst case of process()");
   }
-  if (d.capabilities != 0) {
-    refusal->add("capabilities", std::to_string(d.capabilities), "0, since none is defined",
-                 "leave the capabilities at 0, or use a gaitd that knows them");
+  const std::uint32_t known = d.layer == GAITD_LAYER_BACKEND ? GAITD_CAPABILITY_SIMULATION : 0;
+  if ((d.capabilities & ~known) != 0) {
+    refusal->add(
+        "capabilities", std::to_string(d.capabilities),
+        known != 0 ? "0 or GAITD_CAPABILITY_SIMULATION (1)" : "0, since this layer has none",
+        "leave out what is not defined, or use a gaitd that knows it");
   }
 }
 

@@ -39,6 +39,8 @@ class PluginDirectory {
   /// Whether find() takes it for a path: it has a '/' or ends in ".so".
   static bool is_path(const std::string& variant);
 
+  /// Names of the variants that there are, sorted; nothing is read.
+  std::vector<std::string> variants(int layer) const;
   /// Every variant of every layer, by layer, then name; the refused ones with their reasons. Reads
   /// only the files that have changed since they were read last.
   std::vector<PluginEntry> list() const;
@@ -49,7 +51,6 @@ class PluginDirectory {
  private:
   struct Known;
 
-  std::vector<std::string> variants(int layer) const;
   PluginEntry describe(const std::filesystem::path& path, int layer,
                        const std::string& variant) const;
 

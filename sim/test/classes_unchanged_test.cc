@@ -8,9 +8,12 @@
 
 #include "atlas_model.h"
 #include "gaitd/sim/plant.h"
+#include "simbody_plant.h"
 
 namespace gaitd::sim {
 namespace {
+
+using test::SimbodyPlant;
 
 // Of the release build on x86-64 with GCC 12, before there were other classes.
 constexpr uint64_t kTruth = 0xd9f48bf25bc9abf6ULL;
@@ -72,7 +75,7 @@ Recording record(const SensorFigures& figures, const ActuatorFigures& actuators 
   config.sensors = figures;
   config.actuators = actuators;
   config.seed = 7;
-  Plant plant(model, config, 0.001);
+  SimbodyPlant plant(model, config, 0.001);
   const GaitdJointCommands commands = test::hold_posture(model);
   Hash readings, positions;
   for (int i = 0; i < 2000; ++i) {

@@ -6,9 +6,12 @@
 
 #include "block_model.h"
 #include "gaitd/sim/plant.h"
+#include "simbody_plant.h"
 
 namespace gaitd::sim {
 namespace {
+
+using test::SimbodyPlant;
 
 using test::block_config;
 using test::block_model;
@@ -29,12 +32,12 @@ GaitdDisturbance push(double fx, double fy, double fz, double duration) {
   return d;
 }
 
-double tilt(const Plant& plant) {
-  return std::acos(std::min(1.0, plant.multibody().body(0).R_WB(2, 2)));
+double tilt(const SimbodyPlant& plant) {
+  return std::acos(std::min(1.0, plant.simbody().multibody().body(0).R_WB(2, 2)));
 }
 
 TEST(Contact, DroppedBlockComesToRestWithinAMillimetreAndDoesNotCreep) {
-  Plant plant(block_model(), block_config(), 0.001);
+  SimbodyPlant plant(block_model(), block_config(), 0.001);
   plant.place(block_state(0, 0, 0.05));
   ASSERT_TRUE(run(&plant, 2.0));
   const GaitdTruth before = truth_of(plant);
@@ -49,26 +52,26 @@ TEST(Contact, DroppedBlockComesToRestWithinAMillimetreAndDoesNotCreep) {
 }
 
 TEST(Contact, DropReturnsNoEnergy) {
-  Plant plant(block_model(), block_config(), 0.001);
+  SimbodyPlant plant(block_model(), block_config(), 0.001);
   State state = block_state(0, 0, 0.05);
   state.R_WB = Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 0).normalized());
   state.p_WB.z() += 0.1;
   plant.place(state);
   // In contact the springs of the ground hold some of it, so it is compared in flight.
-  double last = plant.energy(), worst = 0;
+  double last = plant.simbody().energy(), worst = 0;
   for (int i = 0; i < 2000; ++i) {
     ASSERT_TRUE(run(&plant, 0.001));
-    worst = std::max(worst, plant.energy() - last);
-    if (plant.contacts().contacts().empty()) last = plant.energy();
+    worst = std::max(worst, plant.simbody().energy() - last);
+    if (plant.simbody().contacts().contacts().empty()) last = plant.simbody().energy();
   }
   EXPECT_LT(worst, 0.05);
-  EXPECT_LT(plant.energy(), kWeight * kBlockHeight + 0.1);
+  EXPECT_LT(plant.simbody().energy(), kWeight * kBlockHeight + 0.1);
 }
 
 TEST(Contact, FrictionHoldsBelowItsLimitAndSlidesAbove) {
   Config config = block_config();
   config.terrain.friction = 0.4;  // so low that it does not tip over
-  Plant plant(block_model(), config, 0.001);
+  SimbodyPlant plant(block_model(), config, 0.001);
   ASSERT_TRUE(run(&plant, 0.5));
   const double x0 = truth_of(plant).pelvis_position[0];
   GaitdDisturbance hold = push(0.38 * kWeight, 0, 0, 2.0);
@@ -96,7 +99,7 @@ TEST(Contact, FrictionHoldsBelowItsLimitAndSlidesAbove) {
 TEST(Contact, LongSlideLosesSpeedAtTheRateOfFriction) {
   Config config = block_config();
   config.terrain.friction = 0.2;
-  Plant plant(block_model(), config, 0.001);
+  SimbodyPlant plant(block_model(), config, 0.001);
   State state = block_state(0, 0, -1e-4);
   state.u[3] = 2.0;
   plant.place(state);
@@ -120,7 +123,7 @@ TEST(Contact, TiltedBoxHoldsAboveItsFrictionAngleAndNotBelow) {
     box.center = turn * Eigen::Vector3d(0, 0, -0.1);
     box.friction = friction;
     config.terrain.boxes.push_back(box);
-    Plant plant(block_model(), config, 0.001);
+    SimbodyPlant plant(block_model(), config, 0.001);
     State state = block_state(0, 0, 0);
     state.p_WB = turn * Eigen::Vector3d(0, 0, kBlockHeight - 1e-4);
     state.R_WB = turn;
@@ -147,7 +150,7 @@ TEST(Contact, NarrowPlankBetweenTheSamplePointsHoldsTheFoot) {
   plank.center = Eigen::Vector3d(0, 0, 0.05);
   plank.size = Eigen::Vector3d(0.06, 1.0, 0.1);
   config.terrain.boxes.push_back(plank);
-  Plant plant(block_model(), config, 0.001);
+  SimbodyPlant plant(block_model(), config, 0.001);
   plant.place(block_state(0.0, 0, 0.1));
   ASSERT_TRUE(run(&plant, 1.0));
   const GaitdTruth truth = truth_of(plant);
@@ -165,7 +168,7 @@ TEST(Contact, FootHalfOverABoxEdgeIsHeldAndTipsOnlyWithItsWeightBeyond) {
     box.center = Eigen::Vector3d(edge - 0.5, 0, 0.05);
     box.size = Eigen::Vector3d(1.0, 2.0, 0.1);
     config.terrain.boxes.push_back(box);
-    Plant plant(block_model(), config, 0.001);
+    SimbodyPlant plant(block_model(), config, 0.001);
     plant.place(block_state(0, 0, 0.1));
     ASSERT_TRUE(run(&plant, 1.0));
     const GaitdTruth truth = truth_of(plant);
@@ -189,7 +192,7 @@ TEST(Contact, SmallStoneUnderTheSoleCarries) {
   config.terrain.boxes.push_back(stone);
   stone.center.y() = -0.1;
   config.terrain.boxes.push_back(stone);
-  Plant plant(block_model(), config, 0.001);
+  SimbodyPlant plant(block_model(), config, 0.001);
   plant.place(block_state(0, 0, 0.04));
   ASSERT_TRUE(run(&plant, 1.0));
   EXPECT_NEAR(truth_of(plant).pelvis_position[2], 0.04 + kBlockHeight, 1e-3);
@@ -204,7 +207,7 @@ TEST(Contact, ToeAgainstARiserIsStoppedBySideForceAtAnySpeed) {
     riser.size = Eigen::Vector3d(1.0, 2.0, 0.2);  // its face is at x = 0.2
     config.terrain.boxes.push_back(riser);
     config.terrain.friction = 0.05;
-    Plant plant(block_model(), config, 0.001);
+    SimbodyPlant plant(block_model(), config, 0.001);
     State state = block_state(0, 0, 0.001);
     state.u[3] = speed;
     plant.place(state);
@@ -215,7 +218,7 @@ TEST(Contact, ToeAgainstARiserIsStoppedBySideForceAtAnySpeed) {
       worst = std::max({worst, truth.feet[0].side_force, truth.feet[1].side_force});
       deepest = std::max(deepest, truth.feet[0].penetration);
       const Eigen::Vector3d toe(test::kBlockLength, 0.1, -kBlockHeight);
-      const Eigen::Vector3d at = plant.multibody().body(0).point(toe);
+      const Eigen::Vector3d at = plant.simbody().multibody().body(0).point(toe);
       if (at.z() < 0.19) through = std::max(through, at.x() - 0.2);
     }
     EXPECT_GT(worst, 100) << speed;
@@ -236,7 +239,7 @@ TEST(Contact, ToeJustBelowTheEdgeOfAStepIsHeldBack) {
   riser.center = Eigen::Vector3d(0.7, 0, -0.0985);
   riser.size = Eigen::Vector3d(1.0, 2.0, 0.2);  // top 1.5 mm above the ground
   config.terrain.boxes.push_back(riser);
-  Plant plant(block_model(), config, 0.001);
+  SimbodyPlant plant(block_model(), config, 0.001);
   State state = block_state(0, 0, -1e-4);
   state.u[3] = 0.3;
   plant.place(state);
@@ -261,7 +264,7 @@ TEST(Contact, SeamBetweenFlushBoxesIsNoObstacle) {
     box.friction = 0.1;
     config.terrain.boxes.push_back(box);
   }
-  Plant plant(block_model(), config, 0.001);
+  SimbodyPlant plant(block_model(), config, 0.001);
   State state = block_state(-0.3, 0, -2e-4);
   state.u[3] = 1.2;
   plant.place(state);
@@ -276,12 +279,12 @@ TEST(Contact, SeamBetweenFlushBoxesIsNoObstacle) {
 
 TEST(Contact, SameHeightBoxInTheGroundChangesNothing) {
   Config config = block_config();
-  Plant plain(block_model(), config, 0.001);
+  SimbodyPlant plain(block_model(), config, 0.001);
   BoxConfig box;
   box.center = Eigen::Vector3d(0.3, 0, -0.1);
   box.size = Eigen::Vector3d(0.6, 2, 0.2);
   config.terrain.boxes.push_back(box);
-  Plant flush(block_model(), config, 0.001);
+  SimbodyPlant flush(block_model(), config, 0.001);
   ASSERT_TRUE(run(&plain, 0.5) && run(&flush, 0.5));
   EXPECT_NEAR(truth_of(plain).pelvis_position[2], truth_of(flush).pelvis_position[2], 2e-4);
   EXPECT_LT(tilt(flush), 1e-3);
@@ -289,7 +292,7 @@ TEST(Contact, SameHeightBoxInTheGroundChangesNothing) {
 
 TEST(Contact, PushChangesMomentumByItsImpulse) {
   Config config = block_config();
-  Plant plant(block_model(), config, 0.001);
+  SimbodyPlant plant(block_model(), config, 0.001);
   plant.place(block_state(0, 0, 2.0));
   // Two at once, one ending within a plant step.
   ASSERT_TRUE(plant.disturb(push(100, 0, 0, 0.1)));
@@ -307,7 +310,7 @@ TEST(Contact, PushChangesMomentumByItsImpulse) {
 }
 
 TEST(Contact, RotationAboutTheToeIsNoSlip) {
-  Plant plant(block_model(), block_config(), 0.001);
+  SimbodyPlant plant(block_model(), block_config(), 0.001);
   ASSERT_TRUE(run(&plant, 0.3));
   const double standing = truth_of(plant).feet[0].slip;
   // Tips it about its front edges and lets it fall back.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "atlas_model.h"
+#include "multibody.h"
 
 namespace gaitd::sim {
 namespace {
@@ -26,12 +27,12 @@ class FootSensorsTest : public testing::Test {
   }
   FootSensors sensors(const SensorFigures& figures, uint64_t seed = 1) {
     FootSensors feet(model_, figures, kStep, seed);
-    feet.reset(multibody_, contact_);
+    feet.reset(multibody_.bodies(), contact_);
     return feet;
   }
   FootWrench reading(const SensorFigures& figures, uint64_t seed = 1) {
     FootSensors feet = sensors(figures, seed);
-    feet.sample(multibody_, contact_);
+    feet.sample(multibody_.bodies(), contact_);
     return feet.newest(GAITD_LEFT);
   }
   const GaitdBody& foot() const { return model_.bodies[model_.feet[GAITD_LEFT].body]; }
@@ -93,7 +94,7 @@ TEST_F(FootSensorsTest, ASwingingFootShowsItsAcceleration) {
   const Vector3d acceleration(30, 0, 4);
   state_.u.segment<3>(3) += acceleration * kStep;
   multibody_.set_state(state_);
-  feet.sample(multibody_, contact_);
+  feet.sample(multibody_.bodies(), contact_);
   const Vector3d gravity(0, 0, -model_.gravity);
   EXPECT_LT((feet.newest(GAITD_LEFT).force - foot().mass * (gravity - acceleration)).norm(), 1e-9);
 }
@@ -112,11 +113,11 @@ TEST_F(FootSensorsTest, TheMomentIsTheRateOfAngularMomentumAboutTheSensor) {
   const Vector3d before = momentum(origin);
   const double h = 1e-5;
   FootSensors exact(model_, figures, h, 1);
-  exact.reset(multibody_, contact_);
+  exact.reset(multibody_.bodies(), contact_);
   state_.R_WB = Eigen::AngleAxisd(w.norm() * h, w.normalized()) * state_.R_WB;
   state_.u.head<3>() += turning * h;
   multibody_.set_state(state_);
-  exact.sample(multibody_, contact_);
+  exact.sample(multibody_.bodies(), contact_);
   const Vector3d com = motion.point(Vector3d(foot().com));
   const Vector3d weight(0, 0, -foot().mass * model_.gravity);
   const Vector3d expected = (com - origin).cross(weight) - (momentum(origin) - before) / h;
@@ -133,7 +134,7 @@ TEST_F(FootSensorsTest, NoiseAndOffsetsHaveTheirFigures) {
   double force = 0, moment = 0;
   const int kSamples = 4000;
   for (int i = 0; i < kSamples; ++i) {
-    feet.sample(multibody_, contact_);
+    feet.sample(multibody_.bodies(), contact_);
     force += feet.newest(GAITD_RIGHT).force.squaredNorm() / (3 * kSamples);
     moment += feet.newest(GAITD_RIGHT).moment.squaredNorm() / (3 * kSamples);
   }
@@ -158,9 +159,9 @@ TEST_F(FootSensorsTest, DriftGrowsToItsFigureInFiveMinutes) {
   double sum = 0;
   for (uint64_t seed = 0; seed < 300; ++seed) {
     FootSensors feet = sensors(figures, seed);
-    feet.sample(multibody_, contact_);
+    feet.sample(multibody_.bodies(), contact_);
     const Vector3d early = feet.newest(GAITD_LEFT).force;
-    for (int i = 0; i < 200; ++i) feet.sample(multibody_, contact_);
+    for (int i = 0; i < 200; ++i) feet.sample(multibody_.bodies(), contact_);
     sum += (feet.newest(GAITD_LEFT).force - early).squaredNorm() / 900;
   }
   EXPECT_NEAR(std::sqrt(sum), 20 * 200 * kStep / 300, 0.1 * 20 * 200 * kStep / 300);
@@ -173,7 +174,7 @@ TEST_F(FootSensorsTest, AStrikeIsALoadAfterNone) {
     state_.u[5] = speed;
     multibody_.set_state(state_);
     contact_[GAITD_LEFT].force.z() = force;
-    feet.sample(multibody_, contact_);
+    feet.sample(multibody_.bodies(), contact_);
     EXPECT_EQ(feet.strike(GAITD_RIGHT), 0);
     return feet.strike(GAITD_LEFT);
   };
@@ -199,7 +200,7 @@ TEST_F(FootSensorsTest, SomeStrikesMakeTheOffsetJump) {
   for (int i = 0; i < kStrikes; ++i) {
     for (const double force : {0.0, 100.0, 0.0}) {
       contact_[GAITD_LEFT].force.z() = force;
-      feet.sample(multibody_, contact_);
+      feet.sample(multibody_.bodies(), contact_);
     }
     const double change = (feet.newest(GAITD_LEFT).force - last).norm();
     last = feet.newest(GAITD_LEFT).force;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "block_model.h"
+#include "multibody.h"
 
 namespace gaitd::sim {
 namespace {
@@ -28,12 +29,12 @@ class ImuSensorTest : public testing::Test {
   }
   ImuSensor sensor(const SensorFigures& figures, uint64_t seed = 1, double time_step = kStep) {
     ImuSensor imu(model_, 0, figures, time_step, 2, seed);
-    imu.reset(multibody_);
+    imu.reset(multibody_.bodies());
     return imu;
   }
   ImuReading reading(const SensorFigures& figures, uint64_t seed = 1) {
     ImuSensor imu = sensor(figures, seed);
-    imu.sample(multibody_);
+    imu.sample(multibody_.bodies());
     return imu.newest();
   }
 
@@ -87,8 +88,8 @@ TEST_F(ImuSensorTest, ReadingsHaveTheFiguresAlsoBehindTheFilter) {
   Vector3d last = Vector3d::Zero();
   const int kReadings = 10000;
   for (int i = 0; i < kReadings; ++i) {
-    imu.sample(multibody_);
-    imu.sample(multibody_);  // two samples in a period of 1 ms
+    imu.sample(multibody_.bodies());
+    imu.sample(multibody_.bodies());  // two samples in a period of 1 ms
     const Vector3d error = imu.newest().specific_force - Vector3d(0, 0, model_.gravity);
     rate += imu.newest().angular_rate.squaredNorm() / (3 * kReadings);
     force += error.squaredNorm() / (3 * kReadings);
@@ -121,7 +122,7 @@ TEST_F(ImuSensorTest, AllanDeviationShowsDensityAndWalk) {
   ImuSensor imu = sensor(figures, 5, kPeriod);
   std::vector<double> axes[3];
   for (int i = 0; i < 2000000; ++i) {
-    imu.sample(multibody_);
+    imu.sample(multibody_.bodies());
     for (int k = 0; k < 3; ++k) axes[k].push_back(imu.newest().angular_rate[k]);
   }
   for (const double time : {1.0, 100.0}) {
@@ -162,12 +163,12 @@ TEST_F(ImuSensorTest, SpecificForceBeyondThatOfStandingTurnsTheGyro) {
   for (uint64_t seed = 0; seed < 300; ++seed) {
     move(Vector3d::Zero());
     ImuSensor imu = sensor(figures, seed);
-    imu.sample(multibody_);
+    imu.sample(multibody_.bodies());
     EXPECT_EQ(imu.newest().angular_rate, Vector3d::Zero());
     State state = test::block_state(0, 0, 1);
     state.u[3] = 10 * 2 * kStep;  // 10 m/s^2 over the period
     multibody_.set_state(state);
-    imu.sample(multibody_);
+    imu.sample(multibody_.bodies());
     sum += imu.newest().angular_rate.squaredNorm() / 900;
   }
   EXPECT_NEAR(std::sqrt(sum), 2e-3, 2e-4);
@@ -180,11 +181,11 @@ TEST_F(ImuSensorTest, AStrikeRingsAndDiesAway) {
   figures.strike_frequency = 50;
   ImuSensor imu = sensor(figures);
   const Vector3d still(0, 0, model_.gravity);
-  imu.sample(multibody_);
+  imu.sample(multibody_.bodies());
   EXPECT_EQ(imu.newest().angular_rate, Vector3d::Zero());
   imu.strike(0.1);
   for (int i = 1; i <= 400; ++i) {
-    imu.sample(multibody_);
+    imu.sample(multibody_.bodies());
     const double t = i * kStep;
     const double expected = std::exp(-t / 0.02) * std::sin(2 * std::numbers::pi * 50 * t);
     EXPECT_NEAR((imu.newest().specific_force - still).norm(), 3 * std::abs(expected), 1e-9);
@@ -200,7 +201,7 @@ TEST_F(ImuSensorTest, AStrikeRingsAndDiesAway) {
     double& largest = filter > 0 ? filtered : peak;
     for (int i = 0; i < 100; ++i) {
       if (i == 0 || i == 40) twice.strike(0.1);  // one period of 20 ms apart
-      twice.sample(multibody_);
+      twice.sample(multibody_.bodies());
       if (i >= 40) {
         largest = std::max(largest, (twice.newest().specific_force - still).norm());
       }

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "atlas_model.h"
-#include "gaitd/sim/dynamics_terms.h"
-#include "gaitd/sim/multibody.h"
+#include "dynamics_terms.h"
 #include "gaitd/sim/random.h"
+#include "multibody.h"
 
 namespace gaitd::sim {
 namespace {

@@ -9,9 +9,12 @@
 #include "atlas_model.h"
 #include "block_model.h"
 #include "gaitd/sim/plant.h"
+#include "simbody_plant.h"
 
 namespace gaitd::sim {
 namespace {
+
+using test::SimbodyPlant;
 
 struct Statistics {
   double mean = 0;
@@ -34,7 +37,7 @@ GaitdSensors sensors_of(const Plant& plant) {
 
 TEST(Sensors, AtRestTheAccelerometerReadsGravityUpwardsAndTheWrenchesTheWeight) {
   const GaitdModel model = test::atlas_model();
-  Plant plant(model, test::flat_config(model), 0.001);
+  SimbodyPlant plant(model, test::flat_config(model), 0.001);
   const GaitdJointCommands commands = test::hold_posture(model);
   GaitdSensors s = sensors_of(plant);
   EXPECT_NEAR(s.imus[0].specific_force[2], model.gravity, 1e-9);
@@ -70,7 +73,7 @@ TEST(Sensors, ImuOnASpinningBodyFeelsItsOwnPlace) {
   GaitdModel model = test::block_model();
   model.imus[0].origin[0] = 0.3;
   Config config = test::block_config();
-  Plant plant(model, config, 0.001);
+  SimbodyPlant plant(model, config, 0.001);
   State state = test::block_state(0, 0, 5);
   state.u[2] = 4.0;  // about its axis of symmetry, in free fall
   plant.place(state);
@@ -83,7 +86,7 @@ TEST(Sensors, ImuOnASpinningBodyFeelsItsOwnPlace) {
 }
 
 TEST(Sensors, IntegratedSpecificForceIsTheVelocityAlsoThroughAnImpact) {
-  Plant plant(test::block_model(), test::block_config(), 0.001);
+  SimbodyPlant plant(test::block_model(), test::block_config(), 0.001);
   plant.place(test::block_state(0, 0, 0.05));
   double v = 0;
   for (int i = 0; i < 300; ++i) {
@@ -100,8 +103,8 @@ TEST(Sensors, NoiseAndBiasesHaveTheirFigures) {
   const int kSamples = 4000;
   std::vector<double> gyro, acc, position, velocity, force, moment;
   Config ideal = test::flat_config(model);
-  Plant noisy(model, config, 0.001);
-  Plant exact(model, ideal, 0.001);
+  SimbodyPlant noisy(model, config, 0.001);
+  SimbodyPlant exact(model, ideal, 0.001);
   const GaitdJointCommands commands = test::hold_posture(model);
   GaitdSensors late = sensors_of(exact);
   for (int i = 0; i < kSamples; ++i) {
@@ -141,7 +144,7 @@ TEST(Sensors, BiasesSpreadOverSeedsWithTheirFigure) {
     Config config = test::block_config();
     config.seed = seed;
     config.sensors.gyro_bias = 0.002;
-    const Plant plant(model, config, 0.001);
+    const SimbodyPlant plant(model, config, 0.001);
     for (const double x : sensors_of(plant).imus[0].angular_rate) bias.push_back(x);
   }
   EXPECT_NEAR(statistics(bias).sigma, 0.002, 0.0002);
@@ -152,7 +155,7 @@ TEST(Sensors, EncoderShowsWholeSteps) {
   const GaitdModel model = test::atlas_model();
   Config config = test::flat_config(model);
   config.sensors.encoder_bits = 12;
-  Plant plant(model, config, 0.001);
+  SimbodyPlant plant(model, config, 0.001);
   plant.advance(test::hold_posture(model));
   const double step = 2 * std::numbers::pi / 4096;
   for (int j = 0; j < model.joint_count; ++j) {
@@ -165,8 +168,8 @@ TEST(Sensors, DelayIsExact) {
   const GaitdModel model = test::atlas_model();
   Config config = test::flat_config(model);
   config.sensors.set_delay(0.003);
-  Plant late(model, config, 0.001);
-  Plant exact(model, test::flat_config(model), 0.001);
+  SimbodyPlant late(model, config, 0.001);
+  SimbodyPlant exact(model, test::flat_config(model), 0.001);
   const GaitdJointCommands commands = test::hold_posture(model);
   std::vector<GaitdSensors> past(1, sensors_of(exact));
   for (int i = 1; i <= 50; ++i) {
@@ -208,7 +211,7 @@ TEST(Sensors, AZeroErrorOfTheAnkleMovesTheEstimatedCenterOfMass) {
   const GaitdModel model = test::atlas_model();
   Config config = test::flat_config(model);
   config.sensors.joint_zero = 0.5 * std::numbers::pi / 180;
-  const Plant plant(model, config, 0.001);
+  const SimbodyPlant plant(model, config, 0.001);
   const int ankle = model.legs[GAITD_LEFT].ankle_pitch;
   Eigen::VectorXd shown = plant.state().q;
   shown[ankle] = sensors_of(plant).joints[ankle].position;
@@ -235,14 +238,14 @@ TEST(Sensors, TheSameSeedShowsTheSameBitsAndAnotherOneOthers) {
   const GaitdModel model = test::atlas_model();
   Config config = test::flat_config(model);
   config.sensors = SensorFigures::rough();
-  Plant plant(model, config, 0.001);
+  SimbodyPlant plant(model, config, 0.001);
   const auto first = run_rough(&plant, model);
   plant.reset();
   const auto again = run_rough(&plant, model);
-  Plant twin(model, config, 0.001);
+  SimbodyPlant twin(model, config, 0.001);
   const auto same = run_rough(&twin, model);
   config.seed = 2;
-  Plant other(model, config, 0.001);
+  SimbodyPlant other(model, config, 0.001);
   const auto different = run_rough(&other, model);
   for (size_t i = 0; i < first.size(); ++i) {
     EXPECT_EQ(std::memcmp(&first[i], &again[i], sizeof(GaitdSensors)), 0) << i;
@@ -256,11 +259,11 @@ TEST(Sensors, AnotherSensorChangesNothingOfTheRest) {
   GaitdModel model = test::atlas_model();
   Config config = test::flat_config(model);
   config.sensors = SensorFigures::rough();
-  Plant one(model, config, 0.001);
+  SimbodyPlant one(model, config, 0.001);
   const auto alone = run_rough(&one, model);
   model.imu_count = 2;
   model.imus[1] = model.imus[0];
-  Plant two(model, config, 0.001);
+  SimbodyPlant two(model, config, 0.001);
   const auto together = run_rough(&two, model);
   for (size_t i = 0; i < alone.size(); ++i) {
     const GaitdSensors &a = alone[i], &b = together[i];
@@ -278,7 +281,7 @@ TEST(Sensors, EachKindIsAsLateAsItsOwnFigure) {
   config.sensors.joint_delay = 0.002;
   config.sensors.imu_delay = 0.003;
   config.sensors.foot_delay = 0.0005;
-  Plant plant(model, config, 0.001);
+  SimbodyPlant plant(model, config, 0.001);
   plant.advance(test::hold_posture(model));
   const GaitdSensors s = sensors_of(plant);
   EXPECT_EQ(s.joints[4].info.age, 0.002);
@@ -300,10 +303,10 @@ TEST(Sensors, TheBoardOfADriveSeesTheEncoderAtOnce) {
   multibody.set_state(state);
   const DriveReadings drives{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Constant(n, 0.002)};
   const FootWrench wrench[GAITD_MAX_FEET];
-  sensors.reset(state, multibody, drives, wrench);
+  sensors.reset(state, multibody.bodies(), drives, wrench);
   state.q.setConstant(0.3);
   state.u.tail(n).setConstant(0.7);
-  sensors.sample(state, multibody, drives, wrench);
+  sensors.sample(state, multibody.bodies(), drives, wrench);
   EXPECT_TRUE(sensors.measured_position().isApproxToConstant(0.312, 1e-12));
   EXPECT_TRUE(sensors.measured_velocity().isApproxToConstant(0.7, 1e-12));
   GaitdSensors shown;
@@ -315,8 +318,8 @@ TEST(Sensors, StampingFeetShakeTheImu) {
   const GaitdModel model = test::block_model();
   Config config = test::block_config();
   config.sensors.strike_vibration = 30;
-  Plant ringing(model, config, 0.001);
-  Plant silent(model, test::block_config(), 0.001);
+  SimbodyPlant ringing(model, config, 0.001);
+  SimbodyPlant silent(model, test::block_config(), 0.001);
   double before = 0, after = 0;
   for (Plant* plant : {&ringing, &silent}) plant->place(test::block_state(0, 0, 0.005));
   for (int i = 0; i < 100; ++i) {

@@ -12,9 +12,12 @@
 
 #include "atlas_model.h"
 #include "gaitd/sim/plant.h"
+#include "simbody_plant.h"
 
 namespace gaitd::sim {
 namespace {
+
+using test::SimbodyPlant;
 
 double cpu_seconds() {
   timespec t;
@@ -30,7 +33,7 @@ GaitdTruth truth_of(const Plant& plant) {
 
 TEST(Standing, AtlasHeldByStiffJointsStandsFiveSecondsWithoutDrift) {
   const GaitdModel model = test::atlas_model();
-  Plant plant(model, test::flat_config(model), 0.001);
+  SimbodyPlant plant(model, test::flat_config(model), 0.001);
   const GaitdJointCommands commands = test::hold_posture(model);
   for (int i = 0; i < 5000; ++i) ASSERT_TRUE(plant.advance(commands));
   const GaitdTruth before = truth_of(plant);
@@ -58,7 +61,7 @@ TEST(Standing, StartIsAtThePlaceOfTheConfigurationOnItsSoles) {
   Config config = test::flat_config(model);
   config.terrain.ground_z = 0.4;
   config.start = {1.0, -2.0, 0.7, std::nullopt};
-  Plant plant(model, config, 0.001);
+  SimbodyPlant plant(model, config, 0.001);
   GaitdTruth truth = truth_of(plant);
   const double* l = truth.feet[0].position;
   const double* r = truth.feet[1].position;
@@ -76,7 +79,7 @@ TEST(Standing, StartInsideTheTerrainIsRefused) {
   Config config = test::flat_config(model);
   config.start.z = -0.05;
   try {
-    Plant plant(model, config, 0.001);
+    SimbodyPlant plant(model, config, 0.001);
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
     EXPECT_EQ(std::string(error.what()).rfind("start: expected ", 0), 0u) << error.what();
@@ -85,7 +88,7 @@ TEST(Standing, StartInsideTheTerrainIsRefused) {
 
 TEST(Standing, FiveCentimetreDropIsSurvivedAndSettles) {
   const GaitdModel model = test::atlas_model();
-  Plant plant(model, test::flat_config(model), 0.001);
+  SimbodyPlant plant(model, test::flat_config(model), 0.001);
   State state = plant.state();
   state.p_WB.z() += 0.05;
   plant.place(state);
@@ -106,9 +109,9 @@ TEST(Standing, FiveCentimetreDropIsSurvivedAndSettles) {
 }
 
 // J, in the springs of contacts (as of the beginning of the last step) and stops.
-double elastic_energy(const Plant& plant) {
+double elastic_energy(const SimbodyPlant& plant) {
   double energy = 0;
-  for (const Contact& c : plant.contacts().contacts()) {
+  for (const Contact& c : plant.simbody().contacts().contacts()) {
     energy += 0.5 * c.law.stiffness * (c.depth * c.depth + c.deflection.squaredNorm());
   }
   for (int j = 0; j < plant.model().joint_count; ++j) {
@@ -122,7 +125,7 @@ double elastic_energy(const Plant& plant) {
 
 TEST(Falling, LimpRobotLosesEnergyStaysWithinItsStopsAndLiesOnTheGround) {
   const GaitdModel model = test::atlas_model();
-  Plant plant(model, test::flat_config(model), 0.001);
+  SimbodyPlant plant(model, test::flat_config(model), 0.001);
   const GaitdJointCommands commands = test::limp(model);
   GaitdDisturbance push{};
   push.force[0] = 100;
@@ -130,7 +133,7 @@ TEST(Falling, LimpRobotLosesEnergyStaysWithinItsStopsAndLiesOnTheGround) {
   push.body = model.chest_body;
   ASSERT_TRUE(plant.disturb(push));
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(plant.advance(commands));
-  const auto total = [&] { return plant.energy() + elastic_energy(plant); };
+  const auto total = [&] { return plant.simbody().energy() + elastic_energy(plant); };
   const double initial = total();
   double lowest = initial, overshoot = 0, gain = 0;
   const double start = cpu_seconds();
@@ -156,14 +159,14 @@ TEST(Falling, LimpRobotLosesEnergyStaysWithinItsStopsAndLiesOnTheGround) {
   EXPECT_GT(truth.com[2], 0.05);
   EXPECT_LT(std::hypot(truth.com_velocity[0], truth.com_velocity[1], truth.com_velocity[2]), 0.1);
   for (int i = 0; i < model.body_count; ++i) {
-    EXPECT_GT(plant.multibody().body(i).p_WB.z(), -0.15) << model.bodies[i].name;
+    EXPECT_GT(plant.simbody().multibody().body(i).p_WB.z(), -0.15) << model.bodies[i].name;
   }
 }
 
 TEST(JointStop, HoldsTheFullTorqueOfItsDrive) {
   const GaitdModel model = test::atlas_model();
   Config config = test::flat_config(model);
-  Plant plant(model, config, 0.001);
+  SimbodyPlant plant(model, config, 0.001);
   GaitdJointCommands commands = test::hold_posture(model);
   const int elbow = test::joint_index(model, "l_arm_ely");
   commands.joints[elbow].stiffness = 0;
@@ -186,8 +189,8 @@ TEST(ModelError, SimulatedRobotDiffersAsTold) {
   const int chest = model.chest_body;
   config.body_errors[static_cast<size_t>(chest)].mass_scale = 1.1;
   config.body_errors[static_cast<size_t>(chest)].com_offset.x() = 0.05;
-  Plant plain(model, test::flat_config(model), 0.001);
-  Plant wrong(model, config, 0.001);
+  SimbodyPlant plain(model, test::flat_config(model), 0.001);
+  SimbodyPlant wrong(model, config, 0.001);
   const double extra = 0.1 * model.bodies[chest].mass;
   EXPECT_NEAR(wrong.model().total_mass, model.total_mass + extra, 1e-9);
   EXPECT_NEAR(wrong.model().bodies[chest].inertia[0], 1.1 * model.bodies[chest].inertia[0], 1e-9);
@@ -205,7 +208,7 @@ std::vector<char> eventful_run() {
   box.center = Eigen::Vector3d(0.2, 0, -0.09);
   box.size = Eigen::Vector3d(0.3, 1, 0.2);
   config.terrain.boxes.push_back(box);
-  Plant plant(model, config, 0.001);
+  SimbodyPlant plant(model, config, 0.001);
   GaitdDisturbance push{};
   push.force[0] = 600;
   push.duration = 0.1;
@@ -242,7 +245,7 @@ TEST(Determinism, ResetStartsTheSameRunAgain) {
   Config config = test::flat_config(model);
   config.sensors = SensorFigures::nominal();
   config.actuators = ActuatorFigures::nominal();
-  Plant plant(model, config, 0.001);
+  SimbodyPlant plant(model, config, 0.001);
   const GaitdJointCommands commands = test::hold_posture(model);
   GaitdSensors first, second;
   for (int i = 0; i < 200; ++i) plant.advance(commands);
@@ -258,7 +261,7 @@ TEST(Stability, HighGainsOnLightLinksAtAnyStepStayCalm) {
   for (const double step : {0.00025, 0.0005, 0.001}) {
     Config config = test::flat_config(model);
     config.time_step = step;
-    Plant plant(model, config, 0.001);
+    SimbodyPlant plant(model, config, 0.001);
     const GaitdJointCommands commands = test::hold_posture(model, 500);
     for (int i = 0; i < 1000; ++i) ASSERT_TRUE(plant.advance(commands));
     EXPECT_LT(plant.state().u.cwiseAbs().maxCoeff(), 1e-2) << step;

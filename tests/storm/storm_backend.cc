@@ -127,7 +127,7 @@ __attribute__((used)) const GaitdPluginDescriptor gaitd_plugin = {
     sizeof(GaitdPluginDescriptor),
     GAITD_LAYER_BACKEND,
     1,
-    0,
+    GAITD_CAPABILITY_SIMULATION,
     "simbody",
     "0.1.0",
     "storm",

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rigid_body.h"
+#include "gaitd/sim/rigid_body.h"
 #include "vector_noise.h"
 
 namespace gaitd::sim {
@@ -18,17 +18,16 @@ constexpr double kCrosstalkArm = 0.05;  // m, of the moments that count as much 
 
 }  // namespace
 
-FootWrench sum_foot_wrench(const GaitdModel& model, int side, const Multibody& multibody,
-                           const std::vector<Contact>& contacts) {
+FootWrench sum_foot_wrench(const GaitdModel& model, int side, const BodyMotion& sensor,
+                           std::span<const Touch> touches) {
   const GaitdFrame& frame = model.feet[side].force_sensor;
-  const BodyMotion& motion = multibody.body(frame.body);
-  const Eigen::Vector3d origin = motion.point(Eigen::Vector3d(frame.origin));
-  const Eigen::Matrix3d R_WS = motion.R_WB * rotation(frame);
+  const Eigen::Vector3d origin = sensor.point(Eigen::Vector3d(frame.origin));
+  const Eigen::Matrix3d R_WS = sensor.R_WB * rotation(frame);
   FootWrench sum;
-  for (const Contact& contact : contacts) {
-    if (contact.foot != side) continue;
-    sum.force += contact.force;
-    sum.moment += (contact.p_W - origin).cross(contact.force);
+  for (const Touch& touch : touches) {
+    if (touch.foot != side) continue;
+    sum.force += touch.force;
+    sum.moment += (touch.p_W - origin).cross(touch.force);
   }
   sum.force = R_WS.transpose() * sum.force;
   sum.moment = R_WS.transpose() * sum.moment;
@@ -91,19 +90,19 @@ void FootSensors::draw_errors(int side) {
   foot.offset.force = noise(&biases, offset);
 }
 
-void FootSensors::reset(const Multibody& multibody, const FootWrench (&contact)[GAITD_MAX_FEET]) {
+void FootSensors::reset(Bodies bodies, const FootWrench (&contact)[GAITD_MAX_FEET]) {
   noise_ = RandomStream(seed_, RandomPurpose::kFootForce);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     draw_errors(side);
-    own_wrench(side, multibody);
+    own_wrench(side, bodies);
     feet_[side].unloaded = contact[side].force.norm() < kUnloaded;
   }
 }
 
-FootWrench FootSensors::own_wrench(int side, const Multibody& multibody) {
+FootWrench FootSensors::own_wrench(int side, Bodies bodies) {
   Foot& foot = feet_[side];
   const GaitdBody& body = model_.bodies[model_.feet[side].body];
-  const BodyMotion& motion = multibody.body(model_.feet[side].body);
+  const BodyMotion& motion = bodies[model_.feet[side].body];
   const Eigen::Vector3d com = motion.point(Eigen::Vector3d(body.com));
   const Eigen::Vector3d velocity = motion.velocity(com);
   const Eigen::Vector3d momentum =
@@ -117,18 +116,18 @@ FootWrench FootSensors::own_wrench(int side, const Multibody& multibody) {
   foot.momentum = momentum;
 
   const GaitdFrame& frame = model_.feet[side].force_sensor;
-  const BodyMotion& sensor = multibody.body(frame.body);
+  const BodyMotion& sensor = bodies[frame.body];
   const Eigen::Matrix3d R_SW = (sensor.R_WB * rotation(frame)).transpose();
   const Eigen::Vector3d arm = com - sensor.point(Eigen::Vector3d(frame.origin));
   return {R_SW * force, R_SW * (arm.cross(force) - spin)};
 }
 
-void FootSensors::update_strike(int side, const Multibody& multibody, double force) {
+void FootSensors::update_strike(int side, Bodies bodies, double force) {
   Foot& foot = feet_[side];
   foot.strike = 0;
   if (force < kUnloaded) {
     const GaitdFrame& sole = model_.feet[side].sole;
-    const BodyMotion& motion = multibody.body(sole.body);
+    const BodyMotion& motion = bodies[sole.body];
     const Eigen::Vector3d normal = motion.R_WB * rotation(sole).col(2);
     const Eigen::Vector3d velocity = motion.velocity(motion.point(Eigen::Vector3d(sole.origin)));
     foot.approach = std::max(0.0, -velocity.dot(normal));
@@ -143,14 +142,14 @@ void FootSensors::update_strike(int side, const Multibody& multibody, double for
   }
 }
 
-void FootSensors::sample(const Multibody& multibody, const FootWrench (&contact)[GAITD_MAX_FEET]) {
+void FootSensors::sample(Bodies bodies, const FootWrench (&contact)[GAITD_MAX_FEET]) {
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     Foot& foot = feet_[side];
-    update_strike(side, multibody, contact[side].force.norm());
+    update_strike(side, bodies, contact[side].force.norm());
     foot.offset.force += foot.drift * time_step_;
     FootWrench wrench = contact[side];
     if (foot.inertia_share > 0) {
-      const FootWrench own = own_wrench(side, multibody);
+      const FootWrench own = own_wrench(side, bodies);
       wrench.force += own.force;
       wrench.moment += own.moment;
     }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "rigid_body.h"
+#include "gaitd/sim/rigid_body.h"
 #include "vector_noise.h"
 
 namespace gaitd::sim {
@@ -127,9 +127,9 @@ void ImuSensor::draw_errors() {
   if (accelerometer_bias > 0) bias_.specific_force = accelerometer_bias * force;
 }
 
-void ImuSensor::reset(const Multibody& multibody) {
+void ImuSensor::reset(Bodies bodies) {
   draw_errors();
-  const BodyMotion& motion = multibody.body(body_);
+  const BodyMotion& motion = bodies[body_];
   const Eigen::Vector3d v = motion.velocity(motion.point(p_B_));
   std::fill(velocity_.begin(), velocity_.end(), v);
   slot_ = 0;
@@ -146,9 +146,9 @@ void ImuSensor::strike(double speed) {
   if (rotation_ > 0) rate_ring_.strike(rotation_ * speed * turn);
 }
 
-void ImuSensor::sample(const Multibody& multibody) {
+void ImuSensor::sample(Bodies bodies) {
   const Eigen::Vector3d gravity(0, 0, -gravity_);
-  const BodyMotion& motion = multibody.body(body_);
+  const BodyMotion& motion = bodies[body_];
   const Eigen::Matrix3d R_WI = motion.R_WB * R_BI_;
   const Eigen::Vector3d arm = motion.point(p_B_) - motion.p_WB;
   const Eigen::Vector3d v = motion.v_W + motion.w_W.cross(arm);

@@ -25,66 +25,45 @@ GaitdModel simulated_model(const GaitdModel& model, const Config& config) {
 
 constexpr double kDeepestStart = 0.02;  // m
 
-// How deep the feet sink when each point carries the same share of the weight.
-double static_penetration(const GaitdModel& model, const ContactModel& contacts) {
-  double stiffness = 0;
-  for (const FootContact& foot : contacts.feet()) {
-    stiffness += foot.point_count() * foot.law().stiffness;
-  }
-  return model.total_mass * model.gravity / stiffness;
-}
-
 }  // namespace
 
-Plant::Plant(const GaitdModel& model, const Config& config, double period)
+Plant::Plant(const GaitdModel& model, const Config& config, double period,
+             const PhysicsFactory& make)
     : model_(simulated_model(model, config)),
       config_(config),
       period_(period),
       steps_per_period_(static_cast<int>(std::lround(period / config.time_step))),
-      multibody_(model_),
-      terms_(model_),
-      contacts_(model_, Terrain(config.terrain, config.friction_scale)),
-      integrator_(model_, config.time_step),
+      physics_(make(model_, Terrain(config.terrain, config.friction_scale), config.time_step)),
       sensors_(model_, config.sensors, config.time_step, steps_per_period_, config.seed),
-      truth_(model_),
-      external_(Eigen::VectorXd::Zero(6 + model.joint_count)) {
-  start_ = make_start_state(model_, config, static_penetration(model_, contacts_), &multibody_);
-  terms_.update(multibody_);
-  drives_ = make_drives(model_, config, terms_.mass_matrix().diagonal().tail(model_.joint_count));
+      truth_(model_) {
+  start_ = make_start_state(model_, config, physics_.get());
+  physics_->place(start_);
+  drives_ = make_drives(model_, config, physics_->joint_inertia());
   reset();
-  for (const Contact& contact : contacts_.contacts()) {
-    if (contact.depth < kDeepestStart) continue;
+  for (const Touch& touch : physics_->touches()) {
+    if (touch.depth < kDeepestStart) continue;
     throw std::invalid_argument("start: expected the robot to stand on the terrain, got " +
-                                std::string(model_.bodies[contact.body].name) + " " +
-                                std::to_string(contact.depth) + " m inside it");
+                                std::string(model_.bodies[touch.body].name) + " " +
+                                std::to_string(touch.depth) + " m inside it");
   }
 }
 
 void Plant::reset() { place(start_); }
 
 void Plant::place(const State& state) {
-  state_ = state;
   step_ = 0;
   tick_ = 0;
   diverged_ = false;
   pushes_.clear();
-  contacts_.reset();
   drives_->reset();
   truth_.reset();
-  multibody_.set_state(state_);
-  terms_.update(multibody_);
-  // The forces of the ground at rest, for the first reading of the sensors.
-  contacts_.detect(multibody_);
-  for (Contact& contact : contacts_.contacts()) {
-    contact.force = contact.law.stiffness * contact.depth * contact.normal;
-  }
-  FootWrench wrench[GAITD_MAX_FEET];
+  physics_->place(state);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    wrench[side] = sum_foot_wrench(model_, side, multibody_, contacts_.contacts());
+    const int body = model_.feet[side].force_sensor.body;
+    wrench_[side] = sum_foot_wrench(model_, side, physics_->bodies()[body], physics_->touches());
   }
-  contacts_.finish(multibody_);
-  truth_.update(contacts_);
-  sensors_.reset(state_, multibody_, drives_->readings(), wrench);
+  truth_.update(physics_->touches());
+  sensors_.reset(physics_->state(), physics_->bodies(), drives_->readings(), wrench_);
 }
 
 double Plant::time() const { return static_cast<double>(tick_) * period_; }
@@ -103,40 +82,32 @@ bool Plant::advance(const GaitdJointCommands& commands) {
 }
 
 bool Plant::step() {
-  contacts_.detect(multibody_);
-  joint_rate_ = state_.u.tail(model_.joint_count);
+  const State& state = physics_->state();
+  joint_rate_ = state.u.tail(model_.joint_count);
   drives_->begin_step(
-      step_, {state_.q, joint_rate_, sensors_.measured_position(), sensors_.measured_velocity()});
-  add_disturbances();
-  if (!integrator_.step(multibody_, terms_, external_, &contacts_.contacts(), drives_.get(),
-                        &state_)) {
-    return false;
-  }
-  FootWrench wrench[GAITD_MAX_FEET];
+      step_, {state.q, joint_rate_, sensors_.measured_position(), sensors_.measured_velocity()});
+  update_forces();
+  // The forces act where the feet were before the step.
+  BodyMotion sensor_body[GAITD_MAX_FEET];
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    wrench[side] = sum_foot_wrench(model_, side, multibody_, contacts_.contacts());
+    sensor_body[side] = physics_->bodies()[model_.feet[side].force_sensor.body];
   }
-  multibody_.set_state(state_);
-  terms_.update(multibody_);
-  contacts_.finish(multibody_);
-  truth_.update(contacts_);
-  sensors_.sample(state_, multibody_, drives_->readings(), wrench);
+  if (!physics_->step(forces_, drives_.get())) return false;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    wrench_[side] = sum_foot_wrench(model_, side, sensor_body[side], physics_->touches());
+  }
+  truth_.update(physics_->touches());
+  sensors_.sample(state, physics_->bodies(), drives_->readings(), wrench_);
   ++step_;
   return true;
 }
 
-void Plant::add_disturbances() {
-  external_.setZero();
+void Plant::update_forces() {
+  forces_.clear();
   for (Push& push : pushes_) {
-    const Eigen::Vector3d force(push.force.force);
-    const Eigen::Vector3d point =
-        multibody_.body(push.force.body).point(Eigen::Vector3d(push.force.point));
-    Vector6 wrench;
-    wrench.head<3>() = (point - terms_.origin()).cross(force);
-    wrench.tail<3>() = force;
     // A push that ends within the step leaves its share of the impulse.
-    const double share = std::min(1.0, push.remaining / config_.time_step);
-    terms_.add_wrench(push.force.body, wrench, share, &external_);
+    push.force.share = std::min(1.0, push.remaining / config_.time_step);
+    forces_.push_back(push.force);
     push.remaining -= config_.time_step;
   }
   std::erase_if(pushes_,
@@ -154,24 +125,16 @@ bool Plant::valid(const GaitdDisturbance& disturbance, int body_count) {
 
 bool Plant::disturb(const GaitdDisturbance& disturbance) {
   if (!valid(disturbance, model_.body_count)) return false;
-  pushes_.push_back({disturbance, disturbance.duration});
+  pushes_.push_back({{disturbance.body, Eigen::Vector3d(disturbance.point),
+                      Eigen::Vector3d(disturbance.force), 1},
+                     disturbance.duration});
   return true;
-}
-
-double Plant::energy() const {
-  double potential = 0;
-  for (int i = 0; i < model_.body_count; ++i) {
-    const GaitdBody& body = model_.bodies[i];
-    potential +=
-        body.mass * model_.gravity * multibody_.body(i).point(Eigen::Vector3d(body.com)).z();
-  }
-  return potential + 0.5 * state_.u.dot(terms_.mass_matrix() * state_.u);
 }
 
 void Plant::read(GaitdSensors* sensors) const { sensors_.read(tick_, time(), sensors); }
 
 void Plant::read(GaitdTruth* truth) const {
-  truth_.read(time(), state_, multibody_, drives_->torque(), truth);
+  truth_.read(time(), physics_->state(), physics_->bodies(), drives_->torque(), truth);
 }
 
 const char* check_commands(const GaitdJointCommands& commands, int joint_count) {

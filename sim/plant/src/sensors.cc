@@ -35,28 +35,28 @@ Sensors::Sensors(const GaitdModel& model, const SensorFigures& figures, double t
   }
 }
 
-void Sensors::reset(const State& state, const Multibody& multibody, const DriveReadings& drives,
+void Sensors::reset(const State& state, Bodies bodies, const DriveReadings& drives,
                     const FootWrench (&wrench)[GAITD_MAX_FEET]) {
   joints_.reset(state, drives);
-  feet_.reset(multibody, wrench);
-  for (ImuSensor& imu : imus_) imu.reset(multibody);
+  feet_.reset(bodies, wrench);
+  for (ImuSensor& imu : imus_) imu.reset(bodies);
   // As many samples at rest as the delays reach back, and until the filters have settled.
   size_t samples = std::max(joints_.settling_samples(), joint_channel_.line.size());
   for (const auto& channel : foot_channels_) samples = std::max(samples, channel.line.size());
   for (const auto& channel : imu_channels_) samples = std::max(samples, channel.line.size());
   step_ = -static_cast<int64_t>(samples);
-  while (step_ < 0) measure(state, multibody, drives, wrench);
+  while (step_ < 0) measure(state, bodies, drives, wrench);
   joint_channel_.start();
   for (auto& channel : foot_channels_) channel.start();
   for (auto& channel : imu_channels_) channel.start();
 }
 
-void Sensors::measure(const State& state, const Multibody& multibody, const DriveReadings& drives,
+void Sensors::measure(const State& state, Bodies bodies, const DriveReadings& drives,
                       const FootWrench (&wrench)[GAITD_MAX_FEET]) {
   ++step_;
   joints_.sample(state, drives);
   joint_channel_.line.store(step_, joints_.newest());
-  feet_.sample(multibody, wrench);
+  feet_.sample(bodies, wrench);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     foot_channels_[static_cast<size_t>(side)].line.store(step_, feet_.newest(side));
   }
@@ -64,14 +64,14 @@ void Sensors::measure(const State& state, const Multibody& multibody, const Driv
     for (int side = 0; side < GAITD_MAX_FEET; ++side) {
       if (feet_.strike(side) > 0) imus_[i].strike(feet_.strike(side));
     }
-    imus_[i].sample(multibody);
+    imus_[i].sample(bodies);
     imu_channels_[i].line.store(step_, imus_[i].newest());
   }
 }
 
-void Sensors::sample(const State& state, const Multibody& multibody, const DriveReadings& drives,
+void Sensors::sample(const State& state, Bodies bodies, const DriveReadings& drives,
                      const FootWrench (&wrench)[GAITD_MAX_FEET]) {
-  measure(state, multibody, drives, wrench);
+  measure(state, bodies, drives, wrench);
   if (step_ % steps_per_period_ != 0) return;
   const int64_t tick = step_ / steps_per_period_;
   joint_channel_.advance(tick);

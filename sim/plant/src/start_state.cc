@@ -5,25 +5,23 @@
 
 namespace gaitd::sim {
 
-State make_start_state(const GaitdModel& model, const Config& config, double penetration,
-                       Multibody* multibody) {
+State make_start_state(const GaitdModel& model, const Config& config, Physics* physics) {
   State state;
   state.q = Eigen::Map<const Eigen::VectorXd>(model.nominal_position, model.joint_count);
   state.u = Eigen::VectorXd::Zero(6 + model.joint_count);
   state.R_WB = Eigen::AngleAxisd(config.start.yaw, Eigen::Vector3d::UnitZ());
-  multibody->set_state(state);
+  physics->place(state);
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   double lowest = 1e9;
   for (const GaitdFoot& foot : model.feet) {
     const Eigen::Vector3d sole =
-        multibody->body(foot.sole.body).point(Eigen::Vector3d(foot.sole.origin));
+        physics->bodies()[foot.sole.body].point(Eigen::Vector3d(foot.sole.origin));
     middle += 0.5 * sole;
     lowest = std::min(lowest, sole.z());
   }
   const double height = config.start.z ? *config.start.z : config.terrain.ground_z.value_or(0);
   state.p_WB = Eigen::Vector3d(config.start.x - middle.x(), config.start.y - middle.y(),
-                               height - penetration - lowest);
-  multibody->set_state(state);
+                               height - physics->resting_depth() - lowest);
   return state;
 }
 

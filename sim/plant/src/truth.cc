@@ -24,7 +24,7 @@ void Truth::reset() {
   body_contact_ = false;
 }
 
-void Truth::update(const ContactModel& contacts) {
+void Truth::update(std::span<const Touch> touches) {
   body_contact_ = false;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     Foot& foot = feet_[side];
@@ -33,16 +33,15 @@ void Truth::update(const ContactModel& contacts) {
     foot.side_force = 0;
     double weight = 0;
     Eigen::Vector2d slipped = Eigen::Vector2d::Zero();
-    for (size_t i = 0; i < contacts.contacts().size(); ++i) {
-      const Contact& contact = contacts.contacts()[i];
-      if (contact.foot < 0) body_contact_ = true;
-      if (contact.foot != side) continue;
-      const double normal_force = contact.force.dot(contact.normal);
-      foot.force += contact.force;
-      foot.penetration = std::max(foot.penetration, contact.depth);
-      if (std::abs(contact.normal.z()) < kSideNormal) foot.side_force += normal_force;
+    for (const Touch& touch : touches) {
+      if (touch.foot < 0) body_contact_ = true;
+      if (touch.foot != side) continue;
+      const double normal_force = touch.force.dot(touch.normal);
+      foot.force += touch.force;
+      foot.penetration = std::max(foot.penetration, touch.depth);
+      if (std::abs(touch.normal.z()) < kSideNormal) foot.side_force += normal_force;
       weight += normal_force;
-      slipped += normal_force * contacts.slip(i).head<2>();
+      slipped += normal_force * touch.slip.head<2>();
     }
     const bool loaded = foot.force.z() > kLoaded;
     if (loaded && !foot.loaded) foot.slip = 0;
@@ -51,8 +50,8 @@ void Truth::update(const ContactModel& contacts) {
   }
 }
 
-void Truth::read(double time, const State& state, const Multibody& multibody,
-                 const Eigen::VectorXd& torque, GaitdTruth* truth) const {
+void Truth::read(double time, const State& state, Bodies bodies, const Eigen::VectorXd& torque,
+                 GaitdTruth* truth) const {
   *truth = GaitdTruth{};
   truth->size = sizeof(GaitdTruth);
   truth->body_contact = body_contact_ ? 1 : 0;
@@ -64,14 +63,14 @@ void Truth::read(double time, const State& state, const Multibody& multibody,
   Eigen::Map<Eigen::Vector3d>(truth->pelvis_twist + 3) = R_BW * state.u.segment<3>(3);
   Eigen::Map<Eigen::Vector3d> com(truth->com), com_velocity(truth->com_velocity);
   for (int i = 0; i < model_.body_count; ++i) {
-    const BodyMotion& motion = multibody.body(i);
+    const BodyMotion& motion = bodies[i];
     const Eigen::Vector3d c = motion.point(Eigen::Vector3d(model_.bodies[i].com));
     com += model_.bodies[i].mass / model_.total_mass * c;
     com_velocity += model_.bodies[i].mass / model_.total_mass * motion.velocity(c);
   }
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdFrame& sole = model_.feet[side].sole;
-    const BodyMotion& motion = multibody.body(sole.body);
+    const BodyMotion& motion = bodies[sole.body];
     GaitdFootTruth& foot = truth->feet[side];
     Eigen::Map<Eigen::Vector3d>(foot.force) = feet_[side].force;
     foot.slip = feet_[side].slip;

@@ -35,6 +35,11 @@ enum {
   GAITD_LAYER_BACKEND = 100
 };
 
+/* What a descriptor says of its plugin beyond its layer. */
+enum {
+  GAITD_CAPABILITY_SIMULATION = 1 << 0 /* a backend: no hardware; truth, disturb and reset work */
+};
+
 typedef int32_t GaitdStatus;
 enum {
   GAITD_OK = 0,
@@ -66,7 +71,7 @@ typedef struct GaitdPluginDescriptor {
   uint32_t struct_size; /* of this descriptor */
   int32_t layer;
   uint32_t layer_version;
-  uint32_t capabilities; /* bits, none defined yet: 0 */
+  uint32_t capabilities;         /* GAITD_CAPABILITY_*; any other bit: refused */
   char id[GAITD_NAME_SIZE];      /* variant name: [a-z0-9_]+ */
   char version[GAITD_NAME_SIZE]; /* semantic version */
   char build[GAITD_NAME_SIZE];
@@ -169,7 +174,7 @@ typedef struct GaitdStateEstimatorState {
   int32_t initialised;
   double pelvis_position[3];
   double pelvis_orientation[4];
-  double pelvis_velocity[3]; /* m/s, W */
+  double pelvis_velocity[3];    /* m/s, W */
   double gyro_bias[3];          /* rad/s, pelvis frame */
   double accelerometer_bias[3]; /* m/s^2, pelvis frame */
   int32_t contact[GAITD_MAX_FEET];
@@ -221,16 +226,16 @@ typedef struct GaitdLayerVtable {
   uint32_t size;
   uint32_t reserved;
   GaitdStatus (*init)(void* self, const GaitdModel* model, const double* parameters,
-                      uint32_t parameter_count);                             /* [main] */
-  GaitdStatus (*activate)(void* self);                                       /* [main] */
-  GaitdStatus (*process)(void* self, const void* input, void* output);       /* [rt] */
-  GaitdStatus (*reset)(void* self);                                          /* [rt] */
-  GaitdStatus (*get_state)(void* self, void* state);                         /* [rt] */
-  GaitdStatus (*set_state)(void* self, const void* state);                   /* [rt] */
-  GaitdStatus (*set_parameter)(void* self, uint32_t index, double value);    /* [rt] */
-  GaitdStatus (*deactivate)(void* self);                                     /* [main] */
-  void (*destroy)(void* self);                                               /* [main] */
-  const void* (*get_extension)(void* self, const char* id);                  /* [main] */
+                      uint32_t parameter_count);                          /* [main] */
+  GaitdStatus (*activate)(void* self);                                    /* [main] */
+  GaitdStatus (*process)(void* self, const void* input, void* output);    /* [rt] */
+  GaitdStatus (*reset)(void* self);                                       /* [rt] */
+  GaitdStatus (*get_state)(void* self, void* state);                      /* [rt] */
+  GaitdStatus (*set_state)(void* self, const void* state);                /* [rt] */
+  GaitdStatus (*set_parameter)(void* self, uint32_t index, double value); /* [rt] */
+  GaitdStatus (*deactivate)(void* self);                                  /* [main] */
+  void (*destroy)(void* self);                                            /* [main] */
+  const void* (*get_extension)(void* self, const char* id);               /* [main] */
 } GaitdLayerVtable;
 
 typedef struct GaitdInstance {

@@ -10,11 +10,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "gaitd/abi/types.h"
-#include "gaitd/sim/contact.h"
-#include "gaitd/sim/multibody.h"
+#include "gaitd/sim/physics.h"
 #include "gaitd/sim/random.h"
 #include "gaitd/sim/sensor_figures.h"
 
@@ -26,9 +26,10 @@ struct FootWrench {
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // N m
 };
 
-// Sums the forces of `contacts` on the foot `side`; `multibody` is in the state they act in.
-FootWrench sum_foot_wrench(const GaitdModel& model, int side, const Multibody& multibody,
-                           const std::vector<Contact>& contacts);
+// Sums the forces of `touches` on the foot `side`; `sensor` is the motion of the body that carries
+// the sensor, in the state they act in.
+FootWrench sum_foot_wrench(const GaitdModel& model, int side, const BodyMotion& sensor,
+                           std::span<const Touch> touches);
 
 class FootSensors {
  public:
@@ -36,11 +37,11 @@ class FootSensors {
   FootSensors(const GaitdModel& model, const SensorFigures& figures, double time_step,
               uint64_t seed);
 
-  // Draws the errors and starts over with the robot at rest in the state of `multibody`; `contact`
+  // Draws the errors and starts over with the robot at rest in the state of `bodies`; `contact`
   // are the wrenches of the contacts alone.
-  void reset(const Multibody& multibody, const FootWrench (&contact)[GAITD_MAX_FEET]);
+  void reset(Bodies bodies, const FootWrench (&contact)[GAITD_MAX_FEET]);
 
-  void sample(const Multibody& multibody, const FootWrench (&contact)[GAITD_MAX_FEET]);
+  void sample(Bodies bodies, const FootWrench (&contact)[GAITD_MAX_FEET]);
 
   const FootWrench& newest(int side) const { return feet_[side].reading; }
 
@@ -73,9 +74,9 @@ class FootSensors {
 
   void draw_errors(int side);
   Matrix6 draw_distortion(RandomStream* stream, double crosstalk, double pair, double scale) const;
-  void update_strike(int side, const Multibody& multibody, double force);
-  // Moves the foot's memory to the state of `multibody` and returns weight and inertial force.
-  FootWrench own_wrench(int side, const Multibody& multibody);
+  void update_strike(int side, Bodies bodies, double force);
+  // Moves the foot's memory to the state of `bodies` and returns weight and inertial force.
+  FootWrench own_wrench(int side, Bodies bodies);
 
   GaitdModel model_;
   SensorFigures figures_;

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "gaitd/abi/types.h"
-#include "gaitd/sim/multibody.h"
+#include "gaitd/sim/physics.h"
 #include "gaitd/sim/random.h"
 #include "gaitd/sim/sensor_figures.h"
 
@@ -60,13 +60,13 @@ class ImuSensor {
   ImuSensor(const GaitdModel& model, int index, const SensorFigures& figures, double time_step,
             int steps_per_period, uint64_t seed);
 
-  // Draws the errors and starts over with the robot at rest in the state of `multibody`.
-  void reset(const Multibody& multibody);
+  // Draws the errors and starts over with the robot at rest in the state of `bodies`.
+  void reset(Bodies bodies);
 
   // A foot struck the ground at `speed` (m/s) in the step that is sampled next.
   void strike(double speed);
 
-  void sample(const Multibody& multibody);
+  void sample(Bodies bodies);
 
   const ImuReading& newest() const { return newest_; }
 

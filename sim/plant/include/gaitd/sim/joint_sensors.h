@@ -9,7 +9,7 @@
 
 #include "gaitd/abi/types.h"
 #include "gaitd/sim/drive_readings.h"
-#include "gaitd/sim/multibody.h"
+#include "gaitd/sim/physics.h"
 #include "gaitd/sim/random.h"
 #include "gaitd/sim/sensor_figures.h"
 

@@ -10,11 +10,8 @@
 
 #include "gaitd/abi/backend.h"
 #include "gaitd/sim/config.h"
-#include "gaitd/sim/contact_model.h"
 #include "gaitd/sim/drives.h"
-#include "gaitd/sim/dynamics_terms.h"
-#include "gaitd/sim/integrator.h"
-#include "gaitd/sim/multibody.h"
+#include "gaitd/sim/physics.h"
 #include "gaitd/sim/sensors.h"
 #include "gaitd/sim/truth.h"
 
@@ -26,7 +23,7 @@ class Plant {
   // `period`: control period (s), a whole multiple of config.time_step. `model` is the
   // controller's; the errors of `config` are applied here. Throws std::invalid_argument if it
   // cannot be simulated.
-  Plant(const GaitdModel& model, const Config& config, double period);
+  Plant(const GaitdModel& model, const Config& config, double period, const PhysicsFactory& make);
 
   // Back to the start state, time 0 and the first random number. Disturbances end.
   void reset();
@@ -42,14 +39,9 @@ class Plant {
 
   int64_t tick() const { return tick_; }
   double time() const;  // s since the start
-  const State& state() const { return state_; }
+  const State& state() const { return physics_->state(); }
   const GaitdModel& model() const { return model_; }  // as simulated
-  const Multibody& multibody() const { return multibody_; }
-  const ContactModel& contacts() const { return contacts_; }
-  const Integrator& integrator() const { return integrator_; }
-
-  // J, relative to the height of W's origin; rotors included. Contacts and stops are not.
-  double energy() const;
+  const Physics& physics() const { return *physics_; }
 
   void read(GaitdSensors* sensors) const;
   void read(GaitdTruth* truth) const;
@@ -60,28 +52,25 @@ class Plant {
 
  private:
   struct Push {
-    GaitdDisturbance force;
+    BodyForce force;
     double remaining;  // s
   };
 
   bool step();
-  void add_disturbances();
+  void update_forces();
 
   GaitdModel model_;
   Config config_;
   double period_;
   int steps_per_period_;
-  Multibody multibody_;
-  DynamicsTerms terms_;
-  ContactModel contacts_;
+  std::unique_ptr<Physics> physics_;
   std::unique_ptr<Drives> drives_;
-  Integrator integrator_;
   Sensors sensors_;
   Truth truth_;
   State start_;
-  State state_;
   std::vector<Push> pushes_;
-  Eigen::VectorXd external_;
+  std::vector<BodyForce> forces_;  // of the present step
+  FootWrench wrench_[GAITD_MAX_FEET];
   Eigen::VectorXd joint_rate_;
   int64_t step_ = 0;
   int64_t tick_ = 0;

@@ -15,7 +15,7 @@
 #include "gaitd/sim/foot_sensors.h"
 #include "gaitd/sim/imu_sensor.h"
 #include "gaitd/sim/joint_sensors.h"
-#include "gaitd/sim/multibody.h"
+#include "gaitd/sim/physics.h"
 #include "gaitd/sim/sensor_figures.h"
 #include "gaitd/sim/transport.h"
 
@@ -29,11 +29,11 @@ class Sensors {
 
   // Starts over with the robot at rest in `state`: its whole past is this state. `wrench`: of the
   // contacts alone.
-  void reset(const State& state, const Multibody& multibody, const DriveReadings& drives,
+  void reset(const State& state, Bodies bodies, const DriveReadings& drives,
              const FootWrench (&wrench)[GAITD_MAX_FEET]);
 
   // Samples everything at the end of a plant step.
-  void sample(const State& state, const Multibody& multibody, const DriveReadings& drives,
+  void sample(const State& state, Bodies bodies, const DriveReadings& drives,
               const FootWrench (&wrench)[GAITD_MAX_FEET]);
 
   // The sensors as they stand at control tick `tick`, `time` seconds after the start.
@@ -59,7 +59,7 @@ class Sensors {
     DelayLine<Reading> line;
   };
 
-  void measure(const State& state, const Multibody& multibody, const DriveReadings& drives,
+  void measure(const State& state, Bodies bodies, const DriveReadings& drives,
                const FootWrench (&wrench)[GAITD_MAX_FEET]);
 
   int joint_count_;

@@ -5,15 +5,14 @@
 
 #include "gaitd/abi/types.h"
 #include "gaitd/sim/config.h"
-#include "gaitd/sim/multibody.h"
+#include "gaitd/sim/physics.h"
 
 namespace gaitd::sim {
 
 // The nominal posture at rest with a level pelvis: the middle of the soles at x, y and yaw of
-// `config.start`, the lower sole `penetration` metres below start.z (or the ground). Leaves
-// `multibody` in that state.
-State make_start_state(const GaitdModel& model, const Config& config, double penetration,
-                       Multibody* multibody);
+// `config.start`, the lower sole as far below start.z (or the ground) as it sinks in. Leaves
+// `physics` somewhere else.
+State make_start_state(const GaitdModel& model, const Config& config, Physics* physics);
 
 }  // namespace gaitd::sim
 

@@ -4,10 +4,10 @@
 #define GAITD_SIM_TRUTH_H_
 
 #include <Eigen/Core>
+#include <span>
 
 #include "gaitd/abi/types.h"
-#include "gaitd/sim/contact_model.h"
-#include "gaitd/sim/multibody.h"
+#include "gaitd/sim/physics.h"
 
 namespace gaitd::sim {
 
@@ -24,11 +24,11 @@ class Truth {
 
   void reset();
 
-  // After a plant step that ContactModel::finish() closed.
-  void update(const ContactModel& contacts);
+  // After a plant step.
+  void update(std::span<const Touch> touches);
 
-  void read(double time, const State& state, const Multibody& multibody,
-            const Eigen::VectorXd& torque, GaitdTruth* truth) const;
+  void read(double time, const State& state, Bodies bodies, const Eigen::VectorXd& torque,
+            GaitdTruth* truth) const;
 
  private:
   struct Foot {

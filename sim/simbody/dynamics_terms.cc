@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gaitd/sim/dynamics_terms.h"
+#include "dynamics_terms.h"
 
 #include <Eigen/Geometry>
 
-#include "rigid_body.h"
+#include "gaitd/sim/rigid_body.h"
 
 namespace gaitd::sim {
 

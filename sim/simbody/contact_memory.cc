@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gaitd/sim/contact_memory.h"
+#include "contact_memory.h"
 
 #include <algorithm>
 

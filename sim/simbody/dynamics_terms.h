@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "gaitd/abi/types.h"
-#include "gaitd/sim/multibody.h"
+#include "multibody.h"
 
 namespace gaitd::sim {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gaitd/sim/contact_model.h"
+#include "contact_model.h"
 
 #include <utility>
 
 namespace gaitd::sim {
 
 ContactModel::ContactModel(const GaitdModel& model, Terrain terrain)
-    : terrain_(std::move(terrain)), spheres_(make_spheres(model)) {
+    : terrain_(std::move(terrain)), spheres_(make_body_spheres(model)) {
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     feet_.emplace_back(model.feet[side], side);
     foot_bodies_.push_back(model.feet[side].body);

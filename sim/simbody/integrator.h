@@ -14,12 +14,12 @@
 #include <Eigen/LU>
 #include <vector>
 
+#include "contact.h"
+#include "dynamics_terms.h"
 #include "gaitd/abi/types.h"
-#include "gaitd/sim/contact.h"
 #include "gaitd/sim/drives.h"
-#include "gaitd/sim/dynamics_terms.h"
-#include "gaitd/sim/joint_stops.h"
-#include "gaitd/sim/multibody.h"
+#include "gaitd/sim/joint_law.h"
+#include "multibody.h"
 
 namespace gaitd::sim {
 
@@ -38,17 +38,16 @@ class Integrator {
   int solves() const { return solves_; }
 
  private:
-  void solve(const DynamicsTerms& terms, const std::vector<Contact>& contacts,
-             const Drives& drives);
+  void solve(const DynamicsTerms& terms, const std::vector<Contact>& contacts);
   void add_contacts(const DynamicsTerms& terms, const std::vector<Contact>& contacts);
-  bool update_modes(const DynamicsTerms& terms, std::vector<Contact>* contacts, Drives* drives);
+  bool update_modes(const DynamicsTerms& terms, std::vector<Contact>* contacts);
   bool update_contacts(const DynamicsTerms& terms, std::vector<Contact>* contacts) const;
 
   static constexpr int kMaxSolves = 5;
 
   double h_;
-  Eigen::VectorXd damping_;  // n
-  JointStops stops_;
+  int joint_count_;
+  JointLaw joints_;
   Eigen::VectorXd bias_;
   Eigen::VectorXd constant_;  // the right side without contacts, drives and stops
   Eigen::VectorXd joint_rate_;

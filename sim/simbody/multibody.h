@@ -4,31 +4,13 @@
 #define GAITD_SIM_MULTIBODY_H_
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <memory>
+#include <vector>
 
 #include "gaitd/abi/types.h"
+#include "gaitd/sim/motion.h"
 
 namespace gaitd::sim {
-
-// Generalised coordinates of a free pelvis and n joints.
-struct State {
-  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();            // m, pelvis origin in W
-  Eigen::Quaterniond R_WB = Eigen::Quaterniond::Identity();  // pelvis frame in W
-  Eigen::VectorXd q;                                         // n, rad or m
-  Eigen::VectorXd u;  // 6 + n: pelvis angular then linear velocity (of its origin), both in W;
-                      // then the joint rates
-};
-
-struct BodyMotion {
-  Eigen::Matrix3d R_WB;
-  Eigen::Vector3d p_WB;  // m, body origin in W
-  Eigen::Vector3d w_W;   // rad/s
-  Eigen::Vector3d v_W;   // m/s, of the body origin
-
-  Eigen::Vector3d point(const Eigen::Vector3d& p_B) const { return p_WB + R_WB * p_B; }
-  Eigen::Vector3d velocity(const Eigen::Vector3d& p_W) const { return v_W + w_W.cross(p_W - p_WB); }
-};
 
 class Multibody {
  public:
@@ -44,6 +26,7 @@ class Multibody {
   // Moves the system to `state`; body(), compute_bias() and mass_matrix() are of it from then on.
   void set_state(const State& state);
   const BodyMotion& body(int index) const;
+  const std::vector<BodyMotion>& bodies() const;
 
   // c (6 + n, N m and N, ordered as State::u) in M(q) du/dt + c(q, u) = generalised force: the
   // velocity-dependent and gravity terms. Rotor inertia adds nothing to it.

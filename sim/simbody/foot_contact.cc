@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gaitd/sim/foot_contact.h"
+#include "foot_contact.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

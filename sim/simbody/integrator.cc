@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gaitd/sim/integrator.h"
+#include "integrator.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "rigid_body.h"
+#include "gaitd/sim/rigid_body.h"
 
 namespace gaitd::sim {
 namespace {
@@ -24,8 +24,7 @@ void integrate(double h, const Eigen::VectorXd& u, State* state) {
 }  // namespace
 
 Integrator::Integrator(const GaitdModel& model, double h)
-    : h_(h), damping_(model.joint_count), stops_(model) {
-  for (int j = 0; j < model.joint_count; ++j) damping_[j] = model.joints[j].damping;
+    : h_(h), joint_count_(model.joint_count), joints_(model) {
   const int dof = 6 + model.joint_count;
   bias_.setZero(dof);
   constant_.setZero(dof);
@@ -62,14 +61,13 @@ void Integrator::add_contacts(const DynamicsTerms& terms, const std::vector<Cont
   }
 }
 
-void Integrator::solve(const DynamicsTerms& terms, const std::vector<Contact>& contacts,
-                       const Drives& drives) {
+void Integrator::solve(const DynamicsTerms& terms, const std::vector<Contact>& contacts) {
   ++solves_;
   matrix_ = terms.mass_matrix();
   solution_ = constant_;
-  for (int j = 0; j < damping_.size(); ++j) {
-    matrix_(6 + j, 6 + j) += h_ * (damping_[j] + drives.slope(j) + stops_.slope(j));
-    solution_[6 + j] += h_ * (drives.constant(j) + stops_.constant(j));
+  for (int j = 0; j < joint_count_; ++j) {
+    matrix_(6 + j, 6 + j) += h_ * joints_.slope(j);
+    solution_[6 + j] += h_ * joints_.constant(j);
   }
   add_contacts(terms, contacts);
   const bool slides = std::any_of(contacts.begin(), contacts.end(), [](const Contact& contact) {
@@ -112,13 +110,10 @@ bool Integrator::update_contacts(const DynamicsTerms& terms, std::vector<Contact
   return changed;
 }
 
-bool Integrator::update_modes(const DynamicsTerms& terms, std::vector<Contact>* contacts,
-                              Drives* drives) {
-  bool changed = update_contacts(terms, contacts);
-  joint_rate_ = solution_.tail(damping_.size());
-  changed |= drives->revise(joint_rate_);
-  changed |= stops_.update(joint_rate_);
-  return changed;
+bool Integrator::update_modes(const DynamicsTerms& terms, std::vector<Contact>* contacts) {
+  const bool changed = update_contacts(terms, contacts);
+  joint_rate_ = solution_.tail(joint_count_);
+  return joints_.revise(joint_rate_) || changed;
 }
 
 bool Integrator::step(const Multibody& multibody, const DynamicsTerms& terms,
@@ -127,13 +122,13 @@ bool Integrator::step(const Multibody& multibody, const DynamicsTerms& terms,
   multibody.compute_bias(&bias_);
   constant_.noalias() = terms.mass_matrix() * state->u;
   constant_ += h_ * (external - bias_);
-  stops_.begin_step(h_, state->q);
+  joints_.begin_step(h_, state->q, drives);
   solves_ = 0;
   do {
-    solve(terms, *contacts, *drives);
+    solve(terms, *contacts);
     if (!solution_.allFinite()) return false;
-  } while (update_modes(terms, contacts, drives) && solves_ < kMaxSolves);
-  drives->end_step(joint_rate_);
+  } while (update_modes(terms, contacts) && solves_ < kMaxSolves);
+  joints_.end_step(joint_rate_);
   integrate(h_, solution_, state);
   return true;
 }

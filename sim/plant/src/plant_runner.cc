@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plant_runner.h"
+#include "gaitd/sim/plant_runner.h"
 
 #include <utility>
 
@@ -130,7 +130,7 @@ void PlantRunner::run_one_period() {
   if (diverged_.exchange(true, std::memory_order_acq_rel)) return;
   if (host_ != nullptr && host_->log != nullptr) {
     host_->log(host_->context, GAITD_LOG_ERROR,
-               "simbody: the simulation diverged (state not finite); reset it");
+               "the simulation diverged (state not finite); reset it");
   }
 }
 

@@ -5,13 +5,13 @@
 
 #include <vector>
 
+#include "contact.h"
+#include "contact_memory.h"
+#include "foot_contact.h"
 #include "gaitd/abi/types.h"
-#include "gaitd/sim/contact.h"
-#include "gaitd/sim/contact_memory.h"
-#include "gaitd/sim/foot_contact.h"
-#include "gaitd/sim/multibody.h"
-#include "gaitd/sim/sphere_contact.h"
 #include "gaitd/sim/terrain.h"
+#include "multibody.h"
+#include "sphere_contact.h"
 
 namespace gaitd::sim {
 

@@ -6,11 +6,11 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "contact.h"
+#include "contact_memory.h"
 #include "gaitd/abi/types.h"
-#include "gaitd/sim/contact.h"
-#include "gaitd/sim/contact_memory.h"
-#include "gaitd/sim/multibody.h"
 #include "gaitd/sim/terrain.h"
+#include "multibody.h"
 
 namespace gaitd::sim {
 

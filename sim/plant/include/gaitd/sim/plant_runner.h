@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "gaitd/abi/backend.h"
+#include "gaitd/sim/latest_value.h"
 #include "gaitd/sim/plant.h"
-#include "latest_value.h"
-#include "spsc_ring.h"
+#include "gaitd/sim/spsc_ring.h"
 
 namespace gaitd::sim {
 

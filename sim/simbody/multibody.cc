@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gaitd/sim/multibody.h"
+#include "multibody.h"
 
 #ifdef NDEBUG
 #error "Debian's Simbody changes its data layout under NDEBUG: build without it"
@@ -138,6 +138,8 @@ void Multibody::set_state(const State& state) {
 const BodyMotion& Multibody::body(int index) const {
   return impl_->motion[static_cast<size_t>(index)];
 }
+
+const std::vector<BodyMotion>& Multibody::bodies() const { return impl_->motion; }
 
 void Multibody::compute_bias(Eigen::VectorXd* c) const {
   const Impl& s = *impl_;

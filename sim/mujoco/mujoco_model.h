@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The robot and the ground as an MJCF document.
+#ifndef GAITD_SIM_MUJOCO_MODEL_H_
+#define GAITD_SIM_MUJOCO_MODEL_H_
+
+#include <string>
+
+#include "gaitd/abi/types.h"
+#include "gaitd/sim/terrain.h"
+
+namespace gaitd::sim {
+
+// Bodies and joints are named by their indices in `model`, the soles "sole.left" and "sole.right".
+// No joint has damping, friction or limits: JointLaw has them.
+std::string mujoco_document(const GaitdModel& model, const Terrain& terrain, double time_step);
+
+}  // namespace gaitd::sim
+
+#endif  // GAITD_SIM_MUJOCO_MODEL_H_
