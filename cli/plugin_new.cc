@@ -42,18 +42,24 @@ int create(const Context& context, PluginProject project) {
 
 void add_plugin_new(CLI::App* plugin, Context* context) {
   auto* command = plugin->add_subcommand(
-      "new", "Write a project for a new variant of a layer: build, source, tests, README");
+      "new",
+      "Write a project for a new variant of a layer or backend: build, source, tests, README");
   command->footer(
-      "The project begins as a copy of the simplest variant of the layer, so that it builds, "
-      "passes\n"
-      "`gaitctl plugin check` and walks at once. It needs CMake, a C++20 compiler, Eigen and the\n"
-      "headers and libraries of this gaitd.");
+      "The project begins as a copy of a variant of the layer, the simplest one or that of --from, "
+      "so\n"
+      "that it builds, passes `gaitctl plugin check` and walks at once. It needs CMake, a C++20\n"
+      "compiler, Eigen and the headers and libraries of this gaitd; a backend, which begins as "
+      "the\n"
+      "one on MuJoCo, needs MuJoCo too.");
   auto project = std::make_shared<PluginProject>();
-  const std::vector<std::string> layers(sdk::kLayerNames.begin(), sdk::kLayerNames.end());
+  std::vector<std::string> layers(sdk::kLayerNames.begin(), sdk::kLayerNames.end());
+  layers.emplace_back("backend");
   command->add_option("LAYER", project->layer, "Which layer")
       ->required()
       ->check(CLI::IsMember(layers));
   command->add_option("NAME", project->name, "Of the variant: a-z, 0-9 and _")->required();
+  command->add_option("--from", project->from, "The installed variant that it begins as")
+      ->type_name("VARIANT");
   command->add_option("-o,--output", project->folder, "Folder to make; NAME if left out")
       ->type_name("FOLDER");
   command->callback([context, project] {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <regex>
 #include <system_error>
 
 namespace gaitd::cli {
@@ -16,29 +17,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a new variant begins as: the one of its layer that is easiest to read.
+// What a new variant begins as, unless it is told otherwise: the one that is easiest to read.
 struct Base {
   const char* layer;
   const char* variant;
-  const char* class_name;
   const char* input;
   const char* output;
-  std::vector<const char*> extra = {};  // further files, below the folder of the layer
 };
 
-const std::array<Base, 5> kBases = {{
-    {"state_estimator", "kinematic_inertial", "KinematicInertial", "GaitdStateEstimatorInput",
-     "GaitdRobotState"},
-    {"icp_planner", "single_cmp", "SingleCmp", "GaitdIcpPlannerInput", "GaitdIcpPlan"},
-    {"step_adjuster", "fixed_steps", "FixedSteps", "GaitdStepAdjusterInput", "GaitdStepAdjustment"},
-    {"toe_off", "icp_criteria", "IcpCriteria", "GaitdToeOffInput", "GaitdToeOff"},
-    {"whole_body_controller",
-     "com_height_qp",
-     "ComHeightQp",
-     "GaitdWholeBodyControllerInput",
-     "GaitdWholeBodyControllerOutput",
-     {"inverse_dynamics/inverse_dynamics_qp.h", "inverse_dynamics/inverse_dynamics_qp.cc",
-      "inverse_dynamics/null_space_projector.h", "inverse_dynamics/null_space_projector.cc"}},
+const std::array<Base, 6> kBases = {{
+    {"state_estimator", "kinematic_inertial", "GaitdStateEstimatorInput", "GaitdRobotState"},
+    {"icp_planner", "single_cmp", "GaitdIcpPlannerInput", "GaitdIcpPlan"},
+    {"step_adjuster", "fixed_steps", "GaitdStepAdjusterInput", "GaitdStepAdjustment"},
+    {"toe_off", "icp_criteria", "GaitdToeOffInput", "GaitdToeOff"},
+    {"whole_body_controller", "com_height_qp", "GaitdWholeBodyControllerInput",
+     "GaitdWholeBodyControllerOutput"},
+    {"backend", "mujoco", "GaitdJointCommands", "GaitdSensors"},
 }};
 
 // my_planner -> MyPlanner
@@ -70,12 +64,14 @@ class Writer {
  public:
   Writer(const PluginProject& project, const Base& base)
       : project_(project),
-        base_(base),
+        variant_(project.from.empty() ? base.variant : project.from),
+        backend_(project.layer == "backend"),
         sources_(project.prefix / "share/gaitd/plugin-sources" / base.layer),
-        templates_(project.prefix / "share/gaitd/plugin-template") {
+        templates_(project.prefix / "share/gaitd/plugin-template" /
+                   (backend_ ? "backend" : "layer")) {
     words_ = {{"@NAME@", project.name},
               {"@LAYER@", project.layer},
-              {"@BASE@", base.variant},
+              {"@BASE@", variant_},
               {"@CLASS@", class_name(project.name)},
               {"@INPUT@", base.input},
               {"@OUTPUT@", base.output},
@@ -84,20 +80,24 @@ class Writer {
 
   // All files in memory; empty, or what is missing.
   std::string read_all() {
-    const std::string own = std::string(base_.variant) + "/" + base_.variant;
-    std::string cc_files = project_.name + ".cc";
-    copy(own + ".h", project_.name + ".h");
-    copy(own + ".cc", project_.name + ".cc");
-    copy(std::string(base_.variant) + "/adapter.cc", "adapter.cc");
-    for (const char* file : base_.extra) {
-      const std::string name = fs::path(file).filename();
-      copy(file, name);
-      if (name.ends_with(".cc")) cc_files += " " + name;
+    std::error_code ignored;
+    const std::string adapter = backend_ ? variant_ + "_backend.cc" : "adapter.cc";
+    if (!fs::is_regular_file(sources_ / variant_ / adapter, ignored)) return no_such_variant();
+    base_class_ = backend_ ? class_name(variant_) : exported_class(sources_ / variant_ / adapter);
+    for (const auto& entry : fs::directory_iterator(sources_ / variant_, ignored)) {
+      const fs::path extension = entry.path().extension();
+      if (extension == ".h" || extension == ".cc") copy(entry.path());
+    }
+    copy_shared();
+    std::string cc_files;
+    for (const auto& [name, text] : files_) {
+      const bool exports = name == "adapter.cc" || name == project_.name + "_backend.cc";
+      if (name.ends_with(".cc") && !exports) cc_files += (cc_files.empty() ? "" : " ") + name;
     }
     words_["@SOURCES@"] = cc_files;
     fill("CMakeLists.txt.in", "CMakeLists.txt");
     fill("README.md.in", "README.md");
-    fill("test.cc.in", "test/" + project_.name + "_test.cc");
+    if (!backend_) fill("test.cc.in", "test/" + project_.name + "_test.cc");
     fill("walk.yaml.in", "test/walk.yaml.in");
     return error_;
   }
@@ -117,6 +117,63 @@ class Writer {
   }
 
  private:
+  std::string no_such_variant() const {
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(sources_, ignored)) {
+      const fs::path folder = entry.path();
+      const std::string name = folder.filename();
+      const fs::path adapter = folder / (backend_ ? name + "_backend.cc" : "adapter.cc");
+      if (fs::is_regular_file(adapter, ignored)) names.push_back(name);
+    }
+    if (names.empty()) {
+      return sources_.string() +
+             ": expected what new plugins begin with, got nothing; install gaitd as a whole";
+    }
+    std::sort(names.begin(), names.end());
+    std::string text = "--from: no variant '" + variant_ + "' of " + project_.layer + "; there is:";
+    for (const std::string& name : names) text += " " + name;
+    return text;
+  }
+
+  // The class in GAITD_EXPORT_LAYER(gaitd::plugins::Class, ...).
+  static std::string exported_class(const fs::path& adapter) {
+    std::string text;
+    read(adapter, &text);
+    std::smatch match;
+    const std::regex pattern(R"(GAITD_EXPORT_LAYER\(\s*[\w:]*?(\w+),)");
+    return std::regex_search(text, match, pattern) ? match[1].str() : "";
+  }
+
+  // What the sources include from other folders of their layer.
+  void copy_shared() {
+    const std::regex include("#include \"([\\w]+)\\.h\"");
+    for (bool found = true; found;) {
+      found = false;
+      const auto files = files_;
+      for (const auto& [name, text] : files) {
+        for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it) {
+          const std::string stem = (*it)[1].str();
+          if (files_.count(stem + ".h") != 0) continue;
+          found |= copy_from_siblings(stem);
+        }
+      }
+    }
+  }
+
+  bool copy_from_siblings(const std::string& stem) {
+    std::error_code ignored;
+    for (const auto& folder : fs::directory_iterator(sources_, ignored)) {
+      const fs::path header = folder.path() / (stem + ".h");
+      if (!fs::is_regular_file(header, ignored)) continue;
+      copy(header);
+      const fs::path source = folder.path() / (stem + ".cc");
+      if (fs::is_regular_file(source, ignored)) copy(source);
+      return true;
+    }
+    return false;
+  }
+
   std::string* take(const fs::path& from, const std::string& to) {
     std::string* text = &files_[to];
     if (!read(from, text) && error_.empty()) {
@@ -125,10 +182,22 @@ class Writer {
     }
     return text;
   }
-  void copy(const std::string& from, const std::string& to) {
-    std::string* text = take(sources_ / from, to);
-    replace_all(text, base_.class_name, class_name(project_.name));
-    replace_all(text, base_.variant, project_.name);
+  void copy(const fs::path& from) {
+    std::string name = from.filename();
+    if (backend_) {
+      replace_all(&name, variant_ + "_", project_.name + "_");
+    } else if (from.stem() == variant_) {
+      name = project_.name + from.extension().string();
+    }
+    if (files_.count(name) != 0 && error_.empty()) {
+      error_ =
+          "NAME: '" + project_.name + "' is the name of a file of the project; choose another one";
+    }
+    std::string* text = take(from, name);
+    if (!base_class_.empty()) replace_all(text, base_class_, class_name(project_.name));
+    // The engine of a backend keeps its own name, in <engine/engine.h> say.
+    replace_all(text, backend_ ? variant_ + "_" : variant_, project_.name + (backend_ ? "_" : ""));
+    if (backend_) replace_all(text, "\"" + variant_ + "\"", "\"" + project_.name + "\"");
   }
   void fill(const std::string& from, const std::string& to) {
     std::string* text = take(templates_ / from, to);
@@ -136,15 +205,17 @@ class Writer {
   }
 
   const PluginProject& project_;
-  const Base& base_;
+  std::string variant_;  // that it begins as
+  bool backend_;
   fs::path sources_;
   fs::path templates_;
+  std::string base_class_;
   std::map<std::string, std::string> words_;
   std::map<std::string, std::string> files_;
   std::string error_;
 };
 
-std::string check_name(const PluginProject& project, const Base& base) {
+std::string check_name(const PluginProject& project) {
   const std::string& name = project.name;
   const bool valid =
       !name.empty() && name.size() < 32 && std::islower(static_cast<unsigned char>(name[0])) &&
@@ -153,11 +224,6 @@ std::string check_name(const PluginProject& project, const Base& base) {
   if (!valid) {
     return "NAME: expected a name of a-z, 0-9 and _ that begins with a letter, like my_" +
            project.layer + ", got '" + name + "'";
-  }
-  for (const char* file : base.extra) {
-    if (name == fs::path(file).stem() || name == "adapter") {
-      return "NAME: '" + name + "' is the name of a file of the project; choose another one";
-    }
   }
   return "";
 }
@@ -168,7 +234,7 @@ std::string write_plugin_project(const PluginProject& project, std::vector<fs::p
   const auto base = std::find_if(kBases.begin(), kBases.end(),
                                  [&](const Base& b) { return project.layer == b.layer; });
   if (base == kBases.end()) return "LAYER: nothing to begin with for '" + project.layer + "'";
-  std::string error = check_name(project, *base);
+  std::string error = check_name(project);
   if (!error.empty()) return error;
   std::error_code ignored;
   if (fs::exists(project.folder, ignored)) {

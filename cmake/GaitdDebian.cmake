@@ -1,5 +1,5 @@
-# Debian packages by CPack: gaitd (programs, plugins, robots, service) and gaitd-dev (headers and
-# libraries for plugins and whole-body controllers).
+# Debian packages by CPack: gaitd (programs, plugins, robots, service), gaitd-dev (headers and
+# libraries for plugins and whole-body controllers) and gaitd-mujoco (the backend mujoco).
 configure_file(cmake/package/gaitd.pc.in gaitd.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gaitd.pc DESTINATION lib/pkgconfig COMPONENT dev)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/examples/plugin
@@ -32,10 +32,14 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
 set(CPACK_COMPONENTS_ALL gaitd system dev)
+if(TARGET plugin_backend_mujoco)
+  list(APPEND CPACK_COMPONENTS_ALL mujoco)
+endif()
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_COMPONENT_GAITD_GROUP gaitd)
 set(CPACK_COMPONENT_SYSTEM_GROUP gaitd)
 set(CPACK_COMPONENT_DEV_GROUP gaitd-dev)
+set(CPACK_COMPONENT_MUJOCO_GROUP gaitd-mujoco)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
@@ -51,5 +55,10 @@ set(CPACK_DEBIAN_GAITD_PACKAGE_CONTROL_EXTRA
 set(CPACK_DEBIAN_GAITD-DEV_PACKAGE_NAME gaitd-dev)
 set(CPACK_DEBIAN_GAITD-DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_GAITD-DEV_PACKAGE_DEPENDS
-    "gaitd (= ${PROJECT_VERSION}-1), libeigen3-dev, g++, cmake")
+    "gaitd (= ${PROJECT_VERSION}-1), libeigen3-dev, nlohmann-json3-dev, g++, cmake")
+set(CPACK_DEBIAN_GAITD-MUJOCO_PACKAGE_NAME gaitd-mujoco)
+set(CPACK_DEBIAN_GAITD-MUJOCO_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_GAITD-MUJOCO_DESCRIPTION "MuJoCo as a second physics engine of gaitd")
+set(CPACK_DEBIAN_GAITD-MUJOCO_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_GAITD-MUJOCO_PACKAGE_DEPENDS "gaitd (= ${PROJECT_VERSION}-1)")
 include(CPack)

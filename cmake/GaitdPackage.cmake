@@ -1,6 +1,6 @@
 # What authors of plugins need, in the build tree and installed: the CMake package gaitd (headers,
 # static libraries without an ABI promise, gaitd_plugin()), and what `gaitctl plugin new` begins with.
-foreach(library interfaces dynamics qp walking)
+foreach(library interfaces dynamics qp walking json_reader sim)
   if(NOT TARGET gaitd_${library})
     return()
   endif()
@@ -23,14 +23,23 @@ write_basic_package_version_file(${package}/gaitd-config-version.cmake
 install(FILES ${package}/gaitd-build.cmake ${package}/gaitd-config.cmake
         ${package}/gaitd-config-version.cmake ${package}/GaitdPlugin.cmake
         DESTINATION lib/cmake/gaitd COMPONENT dev)
-foreach(folder interfaces dynamics qp walking)
+foreach(folder interfaces dynamics qp walking sim/plant)
   install(DIRECTORY ${folder}/include/gaitd DESTINATION include COMPONENT dev)
 endforeach()
 
 set(share ${CMAKE_BINARY_DIR}/share/gaitd)
 file(MAKE_DIRECTORY ${share})
-file(CREATE_LINK ${PROJECT_SOURCE_DIR}/plugins ${share}/plugin-sources SYMBOLIC)
+if(IS_SYMLINK ${share}/plugin-sources)  # of an earlier version
+  file(REMOVE ${share}/plugin-sources)
+endif()
+file(MAKE_DIRECTORY ${share}/plugin-sources/backend)
+foreach(layer state_estimator icp_planner step_adjuster toe_off whole_body_controller)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/plugins/${layer} ${share}/plugin-sources/${layer} SYMBOLIC)
+endforeach()
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/sim/mujoco ${share}/plugin-sources/backend/mujoco SYMBOLIC)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/cli/plugin_template ${share}/plugin-template SYMBOLIC)
 install(DIRECTORY plugins/ DESTINATION share/gaitd/plugin-sources
         FILES_MATCHING PATTERN "*.h" PATTERN "*.cc" PATTERN test EXCLUDE)
+install(DIRECTORY sim/mujoco DESTINATION share/gaitd/plugin-sources/backend
+        FILES_MATCHING PATTERN "*.h" PATTERN "*.cc")
 install(DIRECTORY cli/plugin_template/ DESTINATION share/gaitd/plugin-template)

@@ -1,9 +1,12 @@
 # What plugins build with: find_package(gaitd), then
 #   gaitd_plugin(LAYER VARIANT ADAPTER [LIBRARIES...])   see GaitdPlugin.cmake
-#   gaitd::interfaces gaitd::dynamics gaitd::qp gaitd::walking
+#   gaitd::interfaces gaitd::dynamics gaitd::qp gaitd::walking   for layers
+#   gaitd::sim                                                   for simulated backends
 #   ${gaitd_GAITCTL}   the gaitctl of this gaitd
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4 NO_MODULE)
+find_dependency(Threads)
+find_dependency(nlohmann_json 3.11)
 include(${CMAKE_CURRENT_LIST_DIR}/gaitd-targets.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/GaitdPlugin.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/gaitd-build.cmake)

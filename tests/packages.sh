@@ -5,18 +5,24 @@ source "$(dirname "$0")/packages_common.sh"
 
 make_packages "$scratch"
 root=$scratch/root
-for name in gaitd gaitd-dev; do dpkg-deb -x "$scratch/$name.deb" "$root"; done
+for name in gaitd gaitd-dev gaitd-mujoco; do dpkg-deb -x "$scratch/$name.deb" "$root"; done
 for file in etc/gaitd/gaitd.yaml usr/lib/sysusers.d/gaitd.conf usr/lib/tmpfiles.d/gaitd.conf \
   usr/lib/udev/rules.d/60-gaitd.rules \
   lib/systemd/system/gaitd.service usr/share/doc/gaitd/examples/network/80-can-fd.network \
   usr/bin/gaitd usr/bin/gaitctl usr/bin/gaitd-fake-robot \
-  usr/lib/gaitd/plugins/backend/socketcan.so usr/share/gaitd/robots/atlas/can-fd.yaml \
+  usr/lib/gaitd/plugins/backend/socketcan.so usr/lib/gaitd/plugins/backend/mujoco.so usr/share/gaitd/robots/atlas/can-fd.yaml \
   usr/include/gaitd/abi/plugin.h usr/lib/cmake/gaitd/gaitd-config.cmake; do
   [[ -f $root/$file ]] || fail "not in the packages: $file"
 done
 if grep -rIl "$GAITD_SOURCE" "$root" >"$scratch/foreign.txt"; then
   fail "these files name the source tree: $(cat "$scratch/foreign.txt")"
 fi
+
+dpkg-deb -I "$scratch/gaitd.deb" | grep -q mujoco && fail "gaitd depends on MuJoCo"
+dpkg-deb -I "$scratch/gaitd-mujoco.deb" | grep -q 'Depends:.*libmujoco' ||
+  fail "gaitd-mujoco does not depend on MuJoCo"
+python3 "$GAITD_SOURCE/tests/installed_headers.py" "$root/usr" ||
+  fail "headers are installed that cannot be used"
 
 # The example project, copied out, finds nothing but the installed packages.
 cp -r "$root/usr/share/doc/gaitd-dev/examples/plugin" "$scratch/project"

@@ -1,5 +1,5 @@
-# `gaitctl plugin new`: a project for every layer; one of them is built, checked and takes over while
-# the robot walks.
+# `gaitctl plugin new`: a project for every layer, from every variant; one of them is built, checked
+# and takes over while the robot walks, and the robot walks in a new backend.
 source "$(dirname "$0")/common.sh"
 cd "$scratch"
 
@@ -19,6 +19,21 @@ for layer in state_estimator icp_planner step_adjuster toe_off whole_body_contro
   grep -q "class MyVariant" "$layer/my_variant.h" || fail "$layer: no class MyVariant"
 done
 
+# From every variant there is, with all that it includes.
+for adapter in "$GAITD_SOURCE"/plugins/*/*/adapter.cc; do
+  variant=$(basename "$(dirname "$adapter")")
+  layer=$(basename "$(dirname "$(dirname "$adapter")")")
+  expect 0 gaitctl plugin new "$layer" mine --from "$variant" -o "from_$variant"
+  for header in $(sed -n 's/^#include "\([a-z_]*\.h\)"$/\1/p' "from_$variant"/*.cc "from_$variant"/*.h); do
+    [[ -f from_$variant/$header ]] || fail "$variant: the project has no $header"
+  done
+  grep -rq "GAITD_EXPORT_LAYER(gaitd::plugins::Mine," "from_$variant" || fail "$variant: exports no Mine"
+done
+expect 1 gaitctl plugin new toe_off mine --from nose -o nose 2>error.txt
+grep -q 'there is: icp_criteria never' error.txt || fail "an unknown variant: $(cat error.txt)"
+expect 0 gaitctl plugin new backend my_engine -o backend
+grep -rqiE 'mujoco(Physics|Backend|_physics|_model|_backend)' backend && fail "the name of the base is left: $(grep -rniE 'mujoco_' backend)"
+
 # Nothing is overwritten, bad names and layers are refused.
 expect 1 gaitctl plugin new toe_off my_variant -o toe_off 2>error.txt
 grep -q 'is there already' error.txt || fail "an existing folder: $(cat error.txt)"
@@ -29,7 +44,7 @@ done
 expect 2 gaitctl plugin new nose my_variant 2>/dev/null
 
 # GAITD_PLUGIN_LAYERS="state_estimator icp_planner ..." builds more of them.
-for layer in ${GAITD_PLUGIN_LAYERS:-step_adjuster}; do
+for layer in ${GAITD_PLUGIN_LAYERS:-step_adjuster backend}; do
   "${CMAKE:-cmake}" -S "$layer" -B "$layer/build" >build.txt 2>&1 &&
     "${CMAKE:-cmake}" --build "$layer/build" >>build.txt 2>&1 || fail "$layer: $(tail -n 20 build.txt)"
   if grep -i warning build.txt; then fail "$layer: warnings while building"; fi

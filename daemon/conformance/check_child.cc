@@ -35,6 +35,7 @@ int run_check_child(std::string_view group, const char* library_path) {
   run.pass();
   if (group == "load") check_load(run);
   if (group == "backend") check_backend(run);
+  if (group == "simulation") check_simulation(run);
   if (group == "walk") check_walk(run);
   if (group == "repeat") check_repeat(run);
   if (group == "parameters") check_parameters(run);

@@ -79,6 +79,7 @@ class Instance {
 // The groups. Each begins the checks that it names.
 void check_load(CheckRun& run);        // create, init, destroy, unload
 void check_backend(CheckRun& run);     // create, destroy
+void check_simulation(CheckRun& run);  // world, reading, standing, truth, push, reset
 void check_walk(CheckRun& run);        // process, time, allocation
 void check_repeat(CheckRun& run);      // repeatable, state
 void check_parameters(CheckRun& run);  // parameters

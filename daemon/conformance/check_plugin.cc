@@ -25,33 +25,42 @@ __attribute__((constructor)) void become_check_child(int argc, char** argv, char
   }
 }
 
+enum class Of { kAll, kLayers, kSimulations };
+
 struct Demand {
   const char* name;
-  bool of_backends;
+  Of of;
   const char* demands;
 };
 
 // The suite, in the order of the report. docs/plugins.md explains each.
 constexpr Demand kSuite[] = {
-    {"file", true, "a complete shared library for this machine"},
-    {"descriptor", true, "a descriptor of this ABI with sound names and parameters"},
-    {"symbols", true, "the entry function exported"},
-    {"thread_local", true, "no thread-local storage in a layer"},
-    {"sharing", true, "no unique symbols, which all copies of the library share"},
-    {"binding", true, "linked with -z now"},
-    {"load", true, "loads with every symbol resolved"},
-    {"create", true, "makes instances, and none for a host of another ABI"},
-    {"init", false, "takes the robot and its parameters"},
-    {"destroy", true, "ends an instance cleanly"},
-    {"unload", false, "leaves memory after its last user"},
-    {"process", false, "answers every tick of a walk with a sound output"},
-    {"time", false, "within its declared worst case"},
-    {"allocation", false, "no heap in process() after warm-up"},
-    {"repeatable", false, "the same inputs give the same bits"},
-    {"state", false, "hands its state over to another instance"},
-    {"parameters", false, "parameters change live, bad values are refused"},
-    {"sizes", false, "too short inputs are refused, longer ones taken"},
-    {"bad_numbers", false, "survives numbers that are none, recovers by reset()"}};
+    {"file", Of::kAll, "a complete shared library for this machine"},
+    {"descriptor", Of::kAll, "a descriptor of this ABI with sound names and parameters"},
+    {"symbols", Of::kAll, "the entry function exported"},
+    {"thread_local", Of::kAll, "no thread-local storage in a layer"},
+    {"sharing", Of::kAll, "no unique symbols, which all copies of the library share"},
+    {"binding", Of::kAll, "linked with -z now"},
+    {"load", Of::kAll, "loads with every symbol resolved"},
+    {"create", Of::kAll, "makes instances, and none for a host of another ABI"},
+    {"init", Of::kLayers, "takes the robot and its parameters"},
+    {"destroy", Of::kAll, "ends an instance cleanly"},
+    {"unload", Of::kLayers, "leaves memory after its last user"},
+    {"process", Of::kLayers, "answers every tick of a walk with a sound output"},
+    {"time", Of::kLayers, "within its declared worst case"},
+    {"allocation", Of::kLayers, "no heap in process() after warm-up"},
+    {"repeatable", Of::kLayers, "the same inputs give the same bits"},
+    {"state", Of::kLayers, "hands its state over to another instance"},
+    {"parameters", Of::kLayers, "parameters change live, bad values are refused"},
+    {"sizes", Of::kLayers, "too short inputs are refused, longer ones taken"},
+    {"bad_numbers", Of::kLayers, "survives numbers that are none, recovers by reset()"},
+    {"world", Of::kSimulations, "takes a world, and says what is wrong with a bad one"},
+    {"reading", Of::kSimulations,
+     "shows the robot at rest, its soles loaded, before the first tick"},
+    {"standing", Of::kSimulations, "a robot that is held in its posture stands for a minute"},
+    {"truth", Of::kSimulations, "truth and sensors are of the same robot"},
+    {"push", Of::kSimulations, "a push moves the robot, a bad one is refused"},
+    {"reset", Of::kSimulations, "starts over, and the same commands give the same bits"}};
 
 // The check that a reason of the host belongs to.
 std::string_view check_of(const std::string& what) {
@@ -133,7 +142,10 @@ void collect(const ChildEnd& end, PluginReport& report) {
   std::string what = end.start_error.empty() ? end.abnormal_end() : end.start_error;
   if (what.empty()) what = end.last("error ");
   if (what.empty()) return;
-  if (running.empty()) running = find(report, "load").verdict == Verdict::kPass ? "unload" : "load";
+  if (running.empty()) {
+    const bool loaded = find(report, "load").verdict == Verdict::kPass;
+    running = loaded ? report.checks.back().name : "load";
+  }
   CheckResult& check = find(report, running);
   check.verdict = Verdict::kFail;
   check.detail = what;
@@ -161,10 +173,19 @@ PluginReport check_plugin(const std::filesystem::path& file, const GaitdModel& m
   }
   const bool loadable = check_file(report);
   const bool backend = report.descriptor.layer == GAITD_LAYER_BACKEND;
-  for (const Demand& demand : kSuite) {
-    CheckResult& check = find(report, demand.name);
+  const bool simulation =
+      backend && (report.descriptor.capabilities & GAITD_CAPABILITY_SIMULATION) != 0;
+  // What is not of this kind of plugin is not in its report.
+  std::erase_if(report.checks, [&](const CheckResult& check) {
+    const Of of = std::find_if(std::begin(kSuite), std::end(kSuite), [&](const Demand& demand) {
+                    return check.name == demand.name;
+                  })->of;
+    return loadable &&
+           ((of == Of::kLayers && simulation) || (of == Of::kSimulations && !simulation));
+  });
+  for (CheckResult& check : report.checks) {
     if (check.verdict != Verdict::kSkipped) continue;
-    check.detail = loadable && backend && !demand.of_backends
+    check.detail = loadable && backend && !simulation
                        ? "nothing of a backend is called that may touch hardware"
                        : "not tried after the failure above";
   }
@@ -180,7 +201,7 @@ PluginReport check_plugin(const std::filesystem::path& file, const GaitdModel& m
   };
   if (!loadable) return report;
   if (backend) {
-    run("backend");
+    if (run("backend") && simulation) run("simulation");
   } else if (run("load")) {
     for (const char* group : {"walk", "repeat", "parameters", "inputs"}) run(group);
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The robot and the ground as an MJCF document.
-#ifndef GAITD_SIM_MUJOCO_MODEL_H_
-#define GAITD_SIM_MUJOCO_MODEL_H_
+#pragma once
 
 #include <string>
 
@@ -15,5 +14,3 @@ namespace gaitd::sim {
 std::string mujoco_document(const GaitdModel& model, const Terrain& terrain, double time_step);
 
 }  // namespace gaitd::sim
-
-#endif  // GAITD_SIM_MUJOCO_MODEL_H_

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // MuJoCo as the physics of the simulated robot: a second opinion on everything that the first one
 // (our contacts on Simbody's multibody dynamics) says.
-#ifndef GAITD_SIM_MUJOCO_PHYSICS_H_
-#define GAITD_SIM_MUJOCO_PHYSICS_H_
+#pragma once
 
 #include <mujoco/mujoco.h>
 
@@ -65,5 +64,3 @@ class MujocoPhysics : public Physics {
 };
 
 }  // namespace gaitd::sim
-
-#endif  // GAITD_SIM_MUJOCO_PHYSICS_H_

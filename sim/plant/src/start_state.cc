@@ -4,6 +4,12 @@
 #include <algorithm>
 
 namespace gaitd::sim {
+namespace {
+
+constexpr double kRounding = 1e-3;  // m
+constexpr double kLowering = 1e-5;  // m
+
+}  // namespace
 
 State make_start_state(const GaitdModel& model, const Config& config, Physics* physics) {
   State state;
@@ -20,8 +26,24 @@ State make_start_state(const GaitdModel& model, const Config& config, Physics* p
     lowest = std::min(lowest, sole.z());
   }
   const double height = config.start.z ? *config.start.z : config.terrain.ground_z.value_or(0);
+  const auto stands = [&] {
+    physics->place(state);
+    bool touches[GAITD_MAX_FEET] = {};
+    for (const Touch& touch : physics->touches()) {
+      if (touch.foot >= 0) touches[touch.foot] = true;
+    }
+    return touches[GAITD_LEFT] && touches[GAITD_RIGHT];
+  };
   state.p_WB = Eigen::Vector3d(config.start.x - middle.x(), config.start.y - middle.y(),
                                height - physics->resting_depth() - lowest);
+  // Heights in scenarios are rounded: a hair above the ground is meant to be on it.
+  const double written = state.p_WB.z();
+  while (!stands()) {
+    state.p_WB.z() -= kLowering;
+    if (state.p_WB.z() > written - kRounding) continue;
+    state.p_WB.z() = written;  // it is meant to fall
+    break;
+  }
   return state;
 }
 
