@@ -5,7 +5,7 @@ source "$(dirname "$0")/common.sh"
 cd "$scratch"
 bad=$GAITD_BUILD/tests/bad_plugins
 export GAITD_TEST_TRACE=$scratch/trace
-robot=(--backend mock --set log.enabled=false)
+robot=(--backend still_robot --set log.enabled=false)
 export GAITD_PATH=$bad/still_robot
 
 # refused TEXT FILE: a swap to this file is refused with this text.
