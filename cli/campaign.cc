@@ -13,6 +13,7 @@
 #include "cli/campaign_plot.h"
 #include "cli/campaign_search.h"
 #include "cli/campaign_sweep.h"
+#include "cli/random_draw.h"
 #include "daemon/config/node.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/settings.h"
@@ -147,24 +148,15 @@ void check_keys(MapReader* root, const Campaign& campaign) {
   for (const CampaignDraw& draw : campaign.draws) check("draw", draw.key);
 }
 
-// 0..1, from the seed and the place of the number: the same on every machine.
-double uniform(std::uint64_t seed, const std::string& key, std::size_t i) {
-  std::uint64_t h = 14695981039346656037ULL;  // FNV-1a
-  for (const char c : key) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  std::uint64_t z = h + (seed + 1) * 0x9e3779b97f4a7c15ULL + i * 0xd1342543de82ef95ULL;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;  // splitmix64
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
 std::string draw_value(const CampaignDraw& draw, std::uint64_t seed) {
   if (const std::size_t count = draw.choices.size(); count > 0) {
-    const double place = uniform(seed, draw.key, 0) * static_cast<double>(count);
+    const double place = uniform_draw(seed, draw.key, 0) * static_cast<double>(count);
     return draw.choices[std::min(count - 1, static_cast<std::size_t>(place))];
   }
   std::string text;
   for (std::size_t i = 0; i < draw.low.size(); ++i) {
-    const double value = draw.low[i] + (draw.high[i] - draw.low[i]) * uniform(seed, draw.key, i);
+    const double value =
+        draw.low[i] + (draw.high[i] - draw.low[i]) * uniform_draw(seed, draw.key, i);
     char number[32];
     std::snprintf(number, sizeof(number), "%.6g", value);
     text += (i > 0 ? ", " : "") + std::string(number);
