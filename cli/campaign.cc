@@ -10,9 +10,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "cli/campaign_groups.h"
 #include "cli/campaign_plot.h"
 #include "cli/campaign_search.h"
+#include "cli/campaign_settings.h"
 #include "cli/campaign_sweep.h"
+#include "cli/gauntlet/gauntlet.h"
+#include "cli/random_draw.h"
 #include "daemon/config/node.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/settings.h"
@@ -30,11 +34,6 @@ using daemon::NodePtr;
 
 constexpr std::size_t kMaxRuns = 1000000;
 
-// As YAML takes it behind KEY=.
-std::string value_text(const Node& node) {
-  return node.kind == NodeKind::kScalar && !node.quoted ? node.text : daemon::to_json(node).dump();
-}
-
 // A path is meant from the folder of the campaign, where there is such a file.
 std::string scenario_from(const std::string& campaign_file, const std::string& scenario) {
   const fs::path beside = fs::path(campaign_file).parent_path() / scenario;
@@ -45,13 +44,34 @@ std::string scenario_from(const std::string& campaign_file, const std::string& s
   return scenario;
 }
 
+// Kinds of which each seed draws a scenario of its own.
+void read_gauntlet(MapReader* root, Campaign* campaign) {
+  const std::vector<std::string>& kinds = gauntlet_kinds();
+  int i = 0;
+  for (const NodePtr& node : root->list("gauntlet", 1, 1000)) {
+    const std::string path = "gauntlet[" + std::to_string(i++) + "]";
+    const bool known = std::find(kinds.begin(), kinds.end(), node->text) != kinds.end();
+    if (node->kind != NodeKind::kScalar || !known) {
+      root->issues()->add(node->where, path, "a kind of the gauntlet", daemon::describe(*node),
+                          daemon::suggestion(node->text, kinds));
+    } else if (!campaign->drawn.insert(node->text).second) {
+      root->issues()->add(node->where, path, "each kind once", "'" + node->text + "' again",
+                          "leave one of them out");
+    } else {
+      campaign->scenarios.push_back(node->text);
+    }
+  }
+}
+
 void read_scenarios(MapReader* root, Campaign* campaign) {
+  read_gauntlet(root, campaign);
   const daemon::Paths paths = daemon::Paths::detect();
   int i = 0;
   for (const NodePtr& node : root->list("scenarios", 1, 1000)) {
     const std::string path = "scenarios[" + std::to_string(i++) + "]";
     const std::string scenario = scenario_from(campaign->file, node->text);
-    if (node->kind != NodeKind::kScalar || !paths.scenario(scenario)) {
+    if (node->kind != NodeKind::kScalar || !paths.scenario(scenario) ||
+        campaign->drawn.contains(scenario)) {
       root->issues()->add(node->where, path, "the name of a scenario or the path of its file",
                           daemon::describe(*node),
                           daemon::suggestion(node->text, paths.scenarios()));
@@ -61,24 +81,9 @@ void read_scenarios(MapReader* root, Campaign* campaign) {
   }
 }
 
-void read_settings(MapReader map, Campaign* campaign) {
-  for (const Node::Entry& entry : map.entries()) {
-    CampaignSetting setting{entry.key, {}};
-    if (entry.value->kind == NodeKind::kList) {
-      for (const NodePtr& item : entry.value->items) setting.values.push_back(value_text(*item));
-    }
-    if (setting.values.empty()) {
-      map.fail(entry.key, "a list of values", daemon::describe(*entry.value),
-               "write [a, b]; one value is a list too");
-      continue;
-    }
-    campaign->settings.push_back(std::move(setting));
-  }
-}
-
 bool read_choices(MapReader map, CampaignDraw* draw) {
   for (const NodePtr& item : map.list("choose", 1, 1000)) {
-    draw->choices.push_back(value_text(*item));
+    draw->choices.push_back(setting_text(*item));
   }
   map.require({"choose"});
   map.finish();
@@ -143,28 +148,32 @@ void check_keys(MapReader* root, const Campaign& campaign) {
                "each key once, and seeds under seeds:", "'" + key + "' again",
                "leave one of them out");
   };
-  for (const CampaignSetting& setting : campaign.settings) check("set", setting.key);
+  for (const CampaignSetting& setting : campaign.settings) {
+    const auto bundle = campaign.bundles.find(setting.key);
+    if (bundle == campaign.bundles.end() || setting.key == kSweptSetting) {
+      check("set", setting.key);
+      continue;
+    }
+    std::set<std::string> keys;  // of any of its values
+    for (const auto& [value, assignments] : bundle->second) {
+      for (const std::string& assignment : assignments) {
+        keys.insert(assignment.substr(0, assignment.find('=')));
+      }
+    }
+    for (const std::string& key : keys) check("set", key);
+  }
   for (const CampaignDraw& draw : campaign.draws) check("draw", draw.key);
-}
-
-// 0..1, from the seed and the place of the number: the same on every machine.
-double uniform(std::uint64_t seed, const std::string& key, std::size_t i) {
-  std::uint64_t h = 14695981039346656037ULL;  // FNV-1a
-  for (const char c : key) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  std::uint64_t z = h + (seed + 1) * 0x9e3779b97f4a7c15ULL + i * 0xd1342543de82ef95ULL;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;  // splitmix64
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
 std::string draw_value(const CampaignDraw& draw, std::uint64_t seed) {
   if (const std::size_t count = draw.choices.size(); count > 0) {
-    const double place = uniform(seed, draw.key, 0) * static_cast<double>(count);
+    const double place = uniform_draw(seed, draw.key, 0) * static_cast<double>(count);
     return draw.choices[std::min(count - 1, static_cast<std::size_t>(place))];
   }
   std::string text;
   for (std::size_t i = 0; i < draw.low.size(); ++i) {
-    const double value = draw.low[i] + (draw.high[i] - draw.low[i]) * uniform(seed, draw.key, i);
+    const double value =
+        draw.low[i] + (draw.high[i] - draw.low[i]) * uniform_draw(seed, draw.key, i);
     char number[32];
     std::snprintf(number, sizeof(number), "%.6g", value);
     text += (i > 0 ? ", " : "") + std::string(number);
@@ -183,7 +192,8 @@ std::optional<Campaign> load_campaign(const std::string& file, Issues* issues) {
   std::ifstream in(file);
   campaign.text.assign(std::istreambuf_iterator<char>(in), {});
   MapReader root(node, "", issues);
-  root.require({"schema", "name", "scenarios"});
+  root.require({"schema", "name"});
+  if (!root.has("gauntlet")) root.require({"scenarios"});
   constexpr std::array<std::string_view, 2> kSuccess = {"expectations", "no_fall"};
   root.schema("gaitd.campaign/1");
   campaign.name = root.text("name").value_or("");
@@ -195,7 +205,8 @@ std::optional<Campaign> load_campaign(const std::string& file, Issues* issues) {
   read_draws(root.map("draw"), &campaign);
   read_seeds(&root, &campaign);
   campaign.only_falls = root.choice("success", kSuccess).value_or(0) == 1;
-  campaign.success_min = root.number("success_min", {0.0, 1.0, ""}).value_or(1.0);
+  read_success_min(&root, &campaign);
+  read_groups(&root, &campaign);
   campaign.keep_logs = static_cast<int>(root.integer("keep_logs", 0, 1000000).value_or(10));
   check_keys(&root, campaign);
   root.finish();
@@ -234,14 +245,18 @@ std::vector<CampaignRun> expand(const Campaign& campaign) {
   return runs;
 }
 
+std::vector<std::string> assignments(const Campaign& campaign, const std::string& key,
+                                     const std::string& value) {
+  const auto bundle = campaign.bundles.find(key);
+  if (bundle != campaign.bundles.end()) return bundle->second.at(value);
+  return {key + "=" + value};
+}
+
 std::vector<std::string> assignments(const Campaign& campaign, const CampaignRun& run) {
   std::vector<std::string> out{"seed=" + std::to_string(run.seed)};
   for (std::size_t i = 0; i < run.values.size(); ++i) {
-    if (campaign.settings[i].key == kSweptSetting) {
-      const std::vector<std::string>& swept = campaign.swept.at(run.values[i]);
-      out.insert(out.end(), swept.begin(), swept.end());
-    } else {
-      out.push_back(campaign.settings[i].key + "=" + run.values[i]);
+    for (std::string& assignment : assignments(campaign, campaign.settings[i].key, run.values[i])) {
+      out.push_back(std::move(assignment));
     }
   }
   for (std::size_t i = 0; i < run.drawn.size(); ++i) {

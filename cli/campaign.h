@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +28,12 @@ struct CampaignDraw {
   std::vector<std::string> choices;  ///< instead of the bounds
 };
 
+/// How often runs with these settings have to succeed, all of them together.
+struct CampaignTarget {
+  std::vector<std::pair<std::string, std::string>> where;  ///< key of a setting, its value
+  double rate = 1.0;
+};
+
 /// Polar plots of what a search found, one file for each scenario.
 struct CampaignPlot {
   std::string angle;                     ///< setting whose values are angles in rad, 0 upwards
@@ -42,17 +49,21 @@ struct Campaign {
   std::string file;
   std::string text;  ///< of the file
   std::string name;
-  std::vector<std::string> scenarios;     ///< names, or paths of files
+  std::vector<std::string> scenarios;     ///< names, paths of files, or kinds of the gauntlet
+  std::set<std::string> drawn;            ///< those that are kinds of the gauntlet
   std::vector<CampaignSetting> settings;  ///< every combination is tried
   bool searches = false;  ///< the last setting ascends, and is bisected instead of tried in full
-  /// Of a sweep: KEY=VALUE of everything that each value of the setting kSweptSetting stands for.
-  std::map<std::string, std::vector<std::string>> swept;
+  /// By setting and value: KEY=VALUE of everything that it stands for, of a sweep and of settings
+  /// that change several keys together.
+  std::map<std::string, std::map<std::string, std::vector<std::string>>> bundles;
   std::optional<CampaignPlot> plot;
   std::vector<CampaignDraw> draws;
   std::vector<std::uint64_t> seeds;
   bool only_falls = false;   ///< success is not to fall; else every expectation of the scenario
-  double success_min = 1.0;  ///< share of runs of each cell that must succeed
-  int keep_logs = 10;        ///< of the worst runs
+  double success_min = 1.0;  ///< share of runs of each cell that must succeed, without targets
+  std::vector<CampaignTarget> targets;
+  std::vector<std::vector<std::string>> groups;  ///< settings by which the summary counts
+  int keep_logs = 10;                            ///< of the worst runs
 };
 
 /// One run of a campaign. Runs with the same cell differ in nothing but the seed.
@@ -67,6 +78,10 @@ struct CampaignRun {
 
 /// Nothing when there is any error; all of them go to `issues`.
 std::optional<Campaign> load_campaign(const std::string& file, daemon::Issues* issues);
+
+/// KEY=VALUE of everything that this value of a setting stands for.
+std::vector<std::string> assignments(const Campaign& campaign, const std::string& key,
+                                     const std::string& value);
 
 /// All runs; the seed changes last, so that half a campaign says something of every cell.
 std::vector<CampaignRun> expand(const Campaign& campaign);

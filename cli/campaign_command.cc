@@ -20,6 +20,7 @@
 #include "cli/campaign_results.h"
 #include "cli/campaign_runner.h"
 #include "cli/campaign_search.h"
+#include "cli/campaign_settings.h"
 #include "cli/campaign_summary.h"
 #include "cli/failure.h"
 #include "cli/print.h"
@@ -124,7 +125,9 @@ std::string library_of(const Campaign& campaign) {
     for (const std::string& value : setting.values) {
       daemon::Settings settings;
       daemon::Issues unreadable;  // gaitd will say so
-      settings.set_assignment(setting.key + "=" + value, &unreadable);
+      for (const std::string& assignment : assignments(campaign, setting.key, value)) {
+        settings.set_assignment(assignment, &unreadable);
+      }
       for (const daemon::Settings::Entry& entry : daemon::library_paths(settings)) {
         return entry.key + "=" + entry.value->text;
       }
@@ -143,7 +146,7 @@ void write_plots(const Campaign& campaign, const std::vector<SearchResult>& foun
 
 int run(const Context& context, const Arguments& arguments) {
   daemon::Issues issues;
-  const std::optional<Campaign> campaign = load_campaign(arguments.file, &issues);
+  std::optional<Campaign> campaign = load_campaign(arguments.file, &issues);
   if (!campaign) return fail(context, kFailed, "campaign", issues.error_text());
   if (!arguments.trust) {
     const std::string path = library_of(*campaign);
@@ -154,15 +157,22 @@ int run(const Context& context, const Arguments& arguments) {
                       "path with --set, or say --trust if you know the library");
     }
   }
+  std::string error;
+  std::vector<std::string> settings;  // those that are no settings of the campaign
+  for (const std::string& setting : arguments.settings) {
+    if (!narrow(&*campaign, setting, &error)) settings.push_back(setting);
+    if (!error.empty()) return fail(context, kFailed, "campaign", error);
+  }
   const fs::path folder =
       fs::absolute(arguments.folder.empty() ? fs::path(arguments.file).stem().string() + "-results"
                                             : arguments.folder);
   // What --set says makes another campaign of it.
   std::string text = campaign->text;
   for (const std::string& setting : arguments.settings) text += "# --set " + setting + "\n";
-  std::string error;
   const int lock = take_folder(folder, text, &error);
-  if (lock < 0) return fail(context, kFailed, "campaign", error);
+  if (lock < 0 || !write_drawn(*campaign, folder, &error)) {
+    return fail(context, kFailed, "campaign", error);
+  }
 
   const std::vector<CampaignRun> runs = expand(*campaign);
   ResultFile results(*campaign, runs);
@@ -173,7 +183,7 @@ int run(const Context& context, const Arguments& arguments) {
   RunnerOptions options;
   options.gaitctl = fs::read_symlink("/proc/self/exe", ignored);
   options.folder = folder;
-  options.settings = arguments.settings;
+  options.settings = settings;
   options.trust = arguments.trust;
   options.jobs = arguments.jobs > 0
                      ? arguments.jobs
@@ -190,9 +200,10 @@ int run(const Context& context, const Arguments& arguments) {
   bar.end();
   close(lock);
   if (end == RunnerEnd::kFailed) return fail(context, kFailed, "campaign", error);
-  const nlohmann::json summary = summary_json(*campaign, runs, results.results(), &order, folder);
+  const nlohmann::json summary = summary_json(*campaign, runs, results.results(), &order, options);
   if (campaign->plot) write_plots(*campaign, order.found(), folder);
   std::ofstream(folder / "summary.txt") << summary_text(summary);
+  std::ofstream(folder / "summary.json") << json_text(summary);
   std::cout << (context.json ? json_text(summary) : summary_text(summary));
   if (end == RunnerEnd::kInterrupted) {
     std::cerr << "interrupted; the same command goes on\n";

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "cli/child.h"
+#include "cli/gauntlet/gauntlet.h"
 #include "cli/stop_signals.h"
 
 namespace gaitd::cli {
@@ -55,7 +56,7 @@ class Pool {
     std::vector<std::string> arguments{options_.gaitctl.string(),
                                        "--json",
                                        "run",
-                                       run.scenario,
+                                       scenario_of(campaign_, run, options_.folder),
                                        "--log",
                                        running(run.number, ".mcap").string()};
     if (options_.trust) arguments.emplace_back("--trust");
@@ -144,6 +145,39 @@ class Pool {
 };
 
 }  // namespace
+
+std::string scenario_of(const Campaign& campaign, const CampaignRun& run, const fs::path& folder) {
+  if (!campaign.drawn.contains(run.scenario)) return run.scenario;
+  return (folder / "scenarios" / (run.scenario + "-" + std::to_string(run.seed) + ".yaml"))
+      .string();
+}
+
+bool write_drawn(const Campaign& campaign, const fs::path& folder, std::string* error) {
+  std::error_code ignored;
+  if (!campaign.drawn.empty()) fs::create_directories(folder / "scenarios", ignored);
+  for (const std::string& kind : campaign.drawn) {
+    for (const std::uint64_t seed : campaign.seeds) {
+      CampaignRun run;
+      run.scenario = kind;
+      run.seed = seed;
+      const std::string path = scenario_of(campaign, run, folder);
+      const std::string text = gauntlet_scenario(kind, seed);
+      std::ifstream in(path, std::ios::binary);
+      const std::string there(std::istreambuf_iterator<char>(in), {});
+      if (there == text) continue;
+      if (!text.starts_with(there)) {
+        *error = path + ": another gaitd has drawn it otherwise; give another folder with -o";
+        return false;
+      }
+      std::ofstream out(path, std::ios::binary | std::ios::trunc);
+      out << text << std::flush;
+      if (out) continue;
+      *error = path + ": cannot write: " + std::strerror(errno);
+      return false;
+    }
+  }
+  return true;
+}
 
 RunnerEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs,
                     const RunnerOptions& options, RunOrder* order, ResultFile* results,

@@ -22,6 +22,15 @@ struct RunnerOptions {
 
 enum class RunnerEnd { kDone, kInterrupted, kFailed };
 
+/// What gaitctl run is given: the name of a scenario, its file, or for a kind of the gauntlet the
+/// file that write_drawn() makes.
+std::string scenario_of(const Campaign& campaign, const CampaignRun& run,
+                        const std::filesystem::path& folder);
+
+/// Writes the drawn scenarios of all runs into the folder of the campaign. Results of other ones
+/// must not get mixed with theirs, so those that are there have to be the same.
+bool write_drawn(const Campaign& campaign, const std::filesystem::path& folder, std::string* error);
+
 /// Plays the runs that the order asks for, several at once, and appends what came of them. SIGINT
 /// and SIGTERM end it; runs that were under way are forgotten. `progress` is called after each run
 /// and a few times a second, with the number of runs that this call has finished.

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <system_error>
 
+#include "cli/campaign_groups.h"
+#include "cli/campaign_runner.h"
 #include "cli/campaign_sweep.h"
 #include "cli/print.h"
 #include "daemon/verdict/number_text.h"
@@ -46,6 +48,27 @@ std::string held_text(const json& cell) {
   return text;
 }
 
+// For a shell.
+std::string quoted(const std::string& word) {
+  if (word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
+                             "_-./=:,@%+") == std::string::npos) {
+    return word;
+  }
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+// The command that plays a run again.
+std::string replay_text(const Campaign& campaign, const CampaignRun& run,
+                        const RunnerOptions& options) {
+  std::string text = "gaitctl run " + quoted(scenario_of(campaign, run, options.folder));
+  std::vector<std::string> settings = assignments(campaign, run);
+  settings.insert(settings.end(), options.settings.begin(), options.settings.end());
+  for (const std::string& setting : settings) text += " --set " + quoted(setting);
+  return text + (options.trust ? " --trust" : "");
+}
+
 // Cells of a search. False if one is not finished.
 bool add_found(const Campaign& campaign, RunOrder* order, json* cells) {
   bool finished = true;
@@ -74,7 +97,8 @@ SuccessInterval wilson_interval(int successes, int runs) {
 
 json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
                   const std::map<int, CampaignResult>& results, RunOrder* order,
-                  const fs::path& folder) {
+                  const RunnerOptions& options) {
+  const fs::path& folder = options.folder;
   json cells = json::array();
   int total = 0;
   bool pass = order->remaining() == 0;
@@ -121,13 +145,16 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
                   {"fell", result->fell},
                   {"failed", result->failed},
                   {"problem", result->problem},
-                  {"log", fs::exists(log, ignored) ? json(log.string()) : json()}};
+                  {"log", fs::exists(log, ignored) ? json(log.string()) : json()},
+                  {"replay", replay_text(campaign, run, options)}};
     for (std::size_t i = 0; i < campaign_figures().size(); ++i) {
       const double figure = result->figures[i];
       entry["figures"][campaign_figures()[i]] = std::isnan(figure) ? json() : json(figure);
     }
     worst_runs.push_back(entry);
   }
+  const json targets = targets_json(campaign, runs, results);
+  for (const json& target : targets) pass = pass && target["pass"].get<bool>();
   return {{"campaign", campaign.name},
           {"pass", pass},
           {"runs", results.size() + order->remaining()},
@@ -136,16 +163,13 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
           {"success_min", campaign.success_min},
           {"searched", campaign.searches ? json(campaign.settings.back().key) : json()},
           {"cells", cells},
+          {"groups", groups_json(campaign, runs, results)},
+          {"targets", targets},
           {"worst", worst_runs},
           {"results", (folder / "results.csv").string()}};
 }
 
 std::string summary_text(const json& summary) {
-  const auto percent = [](const json& share) {
-    char text[16];
-    std::snprintf(text, sizeof(text), "%.1f %%", 100.0 * share.get<double>());
-    return std::string(text);
-  };
   const bool searches = !summary["searched"].is_null();
   std::vector<std::vector<std::string>> rows;
   for (const json& cell : summary["cells"]) {
@@ -159,9 +183,9 @@ std::string summary_text(const json& summary) {
       continue;
     }
     rows.push_back({cell["scenario"], cell["successes"].dump() + "/" + cell["runs"].dump(),
-                    percent(cell["success_rate"]),
-                    percent(cell["low"]) + " .. " + percent(cell["high"]), cell["falls"].dump(),
-                    cell["refusals"].dump(), settings});
+                    percent_text(cell["success_rate"]),
+                    percent_text(cell["low"]) + " .. " + percent_text(cell["high"]),
+                    cell["falls"].dump(), cell["refusals"].dump(), settings});
   }
   std::string text = summary["campaign"].get<std::string>() + ": " + summary["finished"].dump() +
                      " of " + summary["runs"].dump() + " runs, " + summary["successes"].dump() +
@@ -170,7 +194,9 @@ std::string summary_text(const json& summary) {
                                      "FALLS",    "REFUSED", "SETTINGS"};
   if (searches)
     header = {"SCENARIO", "LARGEST " + summary["searched"].get<std::string>(), "SETTINGS"};
-  text += table(header, rows);
+  const std::string groups = groups_text(summary["groups"]);
+  text += groups.empty() ? table(header, rows) : groups;
+  if (!summary["targets"].empty()) text += "\ntargets\n" + targets_text(summary["targets"]);
   text += "\nworst runs\n";
   for (const json& run : summary["worst"]) {
     const std::string failed = run["failed"].get<std::string>();
@@ -183,6 +209,9 @@ std::string summary_text(const json& summary) {
         (run["fell"].get<bool>() ? "  fell" : "") +
         (failed.empty() ? "" : "  not held: " + failed) + (problem.empty() ? "" : "  " + problem) +
         "\n" + (run["log"].is_null() ? "" : "        " + run["log"].get<std::string>() + "\n");
+  }
+  if (!summary["worst"].empty()) {
+    text += "\nthe worst again: " + summary["worst"][0]["replay"].get<std::string>() + "\n";
   }
   text += "\nresults: " + summary["results"].get<std::string>() + "\n";
   text += summary["pass"].get<bool>() ? "campaign: passed\n" : "campaign: FAILED\n";

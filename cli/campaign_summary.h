@@ -9,6 +9,7 @@
 
 #include "cli/campaign.h"
 #include "cli/campaign_results.h"
+#include "cli/campaign_runner.h"
 #include "cli/campaign_search.h"
 
 namespace gaitd::cli {
@@ -19,11 +20,12 @@ struct SuccessInterval {
 };
 SuccessInterval wilson_interval(int successes, int runs);
 
-/// Success rates by cell, or what a search found, the worst runs with their logs, and whether the
-/// campaign is passed; a search is if it found something for every combination.
+/// Success rates by cell and by group, or what a search found, the worst runs with their logs and
+/// the commands that play them again, and whether the campaign is passed; a search is if it found
+/// something for every combination.
 nlohmann::json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
                             const std::map<int, CampaignResult>& results, RunOrder* order,
-                            const std::filesystem::path& folder);
+                            const RunnerOptions& options);
 std::string summary_text(const nlohmann::json& summary);
 
 }  // namespace gaitd::cli

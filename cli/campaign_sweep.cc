@@ -61,7 +61,7 @@ void read_sweep(daemon::MapReader map, Campaign* campaign) {
         assignments.push_back(place + "." + row.key + "=" + daemon::value_text(p, p.default_value));
       }
       setting.values.push_back(name + value);
-      campaign->swept[name + value] = std::move(assignments);
+      campaign->bundles[kSweptSetting][name + value] = std::move(assignments);
     }
   }
   if (setting.values.empty()) {

@@ -15,6 +15,7 @@
 #include "cli/campaign.h"
 #include "cli/campaign_results.h"
 #include "cli/campaign_summary.h"
+#include "cli/gauntlet/gauntlet.h"
 #include "cli/test/cli_process.h"
 #include "cli/test/sample_log.h"
 
@@ -194,7 +195,7 @@ TEST_F(CampaignTest, ASweepWithoutPlacesSetsThemFromTheStart) {
   const Outcome outcome = run();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_HAS(workspace_.read("calls"), "--set gait.omega=10");
-  EXPECT_EQ(outcome.out.find("gait.omega"), outcome.out.rfind("gait.omega")) << outcome.out;
+  EXPECT_GT(outcome.out.find("gait.omega"), outcome.out.find("worst runs")) << outcome.out;
 }
 
 TEST_F(CampaignTest, ASweepOfNothingIsAnError) {
@@ -225,6 +226,111 @@ TEST_F(CampaignTest, PlaysAllAndSumsUp) {
   EXPECT_HAS(workspace_.read("calls"), "--set seed=3 --set gait.swing_height=0.2");
   EXPECT_HAS(workspace_.read("calls"), "--set duration=3.0");
   EXPECT_HAS(outcome.err, "12/12, 6 failed");
+}
+
+TEST_F(CampaignTest, NamesOfASettingStandForSeveralKeys) {
+  campaign("scenarios: [" + file("good.yaml") +
+           "]\nset:\n  class:\n    easy: {a.b: 1, c: [1, 2]}\n    hard: {a.b: 2}\n");
+  daemon::Issues issues;
+  const auto loaded = load_campaign(file("c.yaml"), &issues);
+  ASSERT_TRUE(loaded) << issues.error_text();
+  const std::vector<CampaignRun> runs = expand(*loaded);
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(runs[1].values, std::vector<std::string>{"hard"});
+  EXPECT_EQ(assignments(*loaded, runs[0]),
+            (std::vector<std::string>{"seed=1", "a.b=1", "c=[1,2]"}));
+  EXPECT_EQ(assignments(*loaded, runs[1]), (std::vector<std::string>{"seed=1", "a.b=2"}));
+  // A key twice would hide one of its values.
+  campaign("scenarios: [" + file("good.yaml") +
+           "]\nset:\n  a.b: [3]\n  class:\n    easy: {a.b: 1}\n");
+  EXPECT_HAS(run().err, "set.a.b: expected each key once");
+}
+
+TEST_F(CampaignTest, ANameMayNotHideALibrary) {
+  campaign("scenarios: [" + file("good.yaml") +
+           "]\nset:\n  class:\n    easy: {toe_off.variant: ./evil.so}\n");
+  const Outcome outcome = run();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_HAS(outcome.err, "a file may not name code to run");
+}
+
+TEST_F(CampaignTest, SetLeavesOneOfTheValues) {
+  campaign("scenarios: [" + file("good.yaml") +
+           "]\nset:\n  x: [1, 2, 3]\n  class: {easy: {y: 1}, hard: {y: 2}}\n"
+           "draw: {z: [0, 1]}\nseeds: 2\n");
+  const Outcome outcome = run("--json --set x=2 --set class=hard --set z=0.5");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json summary = json::parse(outcome.out);
+  ASSERT_EQ(summary["cells"].size(), 1u);
+  EXPECT_EQ(summary["cells"][0]["set"], json({{"x", "2"}, {"class", "hard"}}));
+  EXPECT_EQ(lines("calls"), 2);
+  EXPECT_HAS(workspace_.read("calls"), "--set x=2 --set y=2 --set z=0.5");
+  EXPECT_EQ(workspace_.read("results/results.csv").find(",z,"), std::string::npos);
+  const Outcome wrong = run("--set class=odd");
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_HAS(wrong.err, "--set class=odd: expected one of the campaign's values of 'class': easy");
+}
+
+TEST_F(CampaignTest, CountsByGroupsAndAsksForTargets) {
+  campaign("scenarios: [" + file("good.yaml") + ", " + file("bad.yaml") +
+           "]\nset: {x: [1, 2], y: [1, 2]}\nseeds: 2\ngroups: [[scenario], [x, scenario]]\n"
+           "success_min: [{where: {x: 1}, rate: 0.5}, {where: {x: 2, y: 1}, rate: 0.6}]\n");
+  const Outcome outcome = run("--json");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  const json summary = json::parse(outcome.out);
+  const json& groups = summary["groups"];
+  ASSERT_EQ(groups.size(), 2u);
+  ASSERT_EQ(groups[0]["rows"].size(), 2u);
+  EXPECT_EQ(groups[0]["rows"][0]["values"], json({file("good.yaml")}));
+  EXPECT_EQ(groups[0]["rows"][0]["successes"], 8);
+  EXPECT_EQ(groups[0]["rows"][1]["successes"], 0);
+  EXPECT_NEAR(groups[0]["rows"][0]["low"].get<double>(), wilson_interval(8, 8).low, 1e-12);
+  ASSERT_EQ(groups[1]["rows"].size(), 4u);
+  EXPECT_EQ(groups[1]["rows"][0]["runs"], 4);
+  EXPECT_EQ(summary["targets"][0]["pass"], true);
+  EXPECT_EQ(summary["targets"][0]["runs"], 8);
+  EXPECT_EQ(summary["targets"][1]["pass"], false);
+  EXPECT_HAS(workspace_.read("results/summary.txt"), "FAIL  x=2 y=1 2/4, 50.0 %");
+  EXPECT_EQ(json::parse(workspace_.read("results/summary.json")), summary);
+  // What no run is about is not asked for.
+  fs::remove_all(file("results"));
+  EXPECT_EQ(run("--set x=1").exit_code, 0);
+  campaign("scenarios: [" + file("good.yaml") +
+           "]\nset: {x: [1]}\ngroups: [[z]]\nsuccess_min: [{where: {x: 2}, rate: 1}]\n");
+  const Outcome wrong = run();
+  EXPECT_HAS(wrong.err, "groups[0]: expected a list of keys of 'set'");
+  EXPECT_HAS(wrong.err, "success_min[0].where.x: expected a key of 'set' and one of its values");
+}
+
+TEST_F(CampaignTest, DrawsScenariosOfTheGauntlet) {
+  campaign("gauntlet: [flat, blocks]\nset: {mode: [walk-bent]}\nseeds: [4, 9]\n");
+  const Outcome outcome = run("--json --set gait.swing_height=0.1");
+  const json summary = json::parse(outcome.out);
+  EXPECT_EQ(summary["cells"][1]["scenario"], "blocks");
+  EXPECT_EQ(summary["finished"], 4);
+  for (const char* kind : {"flat", "blocks"}) {
+    for (const std::uint64_t seed : {4, 9}) {
+      const std::string name = std::string(kind) + "-" + std::to_string(seed) + ".yaml";
+      EXPECT_EQ(workspace_.read("results/scenarios/" + name), gauntlet_scenario(kind, seed));
+      EXPECT_HAS(workspace_.read("calls"), "results/scenarios/" + name);
+    }
+  }
+  // The command of the summary is that of the run.
+  const std::string replay = summary["worst"][0]["replay"];
+  EXPECT_HAS(replay, "gaitctl run " + file("results/scenarios/"));
+  EXPECT_HAS(replay, " --set mode=walk-bent --set gait.swing_height=0.1");
+  EXPECT_HAS(workspace_.read("results/summary.txt"), "the worst again: " + replay);
+
+  // Results of other scenarios are not mixed with these.
+  workspace_.write("results/scenarios/flat-9.yaml", "name: flat\n");
+  const Outcome mixed = run("--set gait.swing_height=0.1");
+  EXPECT_EQ(mixed.exit_code, 1);
+  EXPECT_HAS(mixed.err, "flat-9.yaml: another gaitd has drawn it otherwise");
+
+  campaign("gauntlet: [flat, flat, stars-up]\n");
+  const Outcome wrong = run();
+  EXPECT_HAS(wrong.err, "gauntlet[1]: expected each kind once");
+  EXPECT_HAS(wrong.err, "did you mean 'stairs-up'?");
 }
 
 TEST_F(CampaignTest, SucceedsAsOftenAsAsked) {

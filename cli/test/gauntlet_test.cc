@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the gauntlet draws: always the same, within its ranges, and ground that the feet can stand
+// on.
+#include "cli/gauntlet/gauntlet.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "daemon/config/paths.h"
+#include "daemon/config/robot.h"
+#include "daemon/config/scenario.h"
+#include "daemon/config/yaml_reader.h"
+
+namespace gaitd::cli {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using nlohmann::json;
+
+constexpr int kSeeds = 60;
+constexpr double kDegree = M_PI / 180.0;
+
+std::uint64_t hash_of(const std::string& text) {
+  std::uint64_t h = 14695981039346656037ULL;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  return h;
+}
+
+const GaitdModel& atlas() {
+  static const auto kRobot = [] {
+    daemon::Settings settings;
+    daemon::Issues issues;
+    auto robot = daemon::load_robot(daemon::Paths::detect().robot("atlas")->string(),
+                                    daemon::Profile::kSimulation, &settings, &issues);
+    EXPECT_TRUE(robot) << issues.error_text();
+    return robot;
+  }();
+  return kRobot->model;
+}
+
+daemon::Scenario scenario_of(const std::string& kind, std::uint64_t seed) {
+  daemon::Issues issues;
+  daemon::Settings settings;
+  const daemon::NodePtr root = daemon::parse_yaml(gauntlet_scenario(kind, seed), kind, &issues);
+  auto scenario = daemon::read_scenario(root, kind, &settings, &issues);
+  EXPECT_TRUE(scenario) << kind << " " << seed << ": " << issues.error_text();
+  if (!scenario) return {};
+  check_scenario(*scenario, atlas(), &issues);
+  EXPECT_TRUE(issues.all().empty()) << kind << " " << seed << ": " << issues.error_text();
+  return *scenario;
+}
+
+Isometry3d pose(const json& position, double roll, double pitch) {
+  Isometry3d out = Isometry3d::Identity();
+  out.translation() = Vector3d(position[0], position[1], position[2]);
+  out.rotate(Eigen::AngleAxisd(pitch, Vector3d::UnitY()) *
+             Eigen::AngleAxisd(roll, Vector3d::UnitX()));
+  return out;
+}
+
+// How far the point is above the ground that is highest there; it must be above some.
+double height_above(const json& terrain, const Vector3d& point) {
+  double ground = terrain["ground_z"].get<double>();
+  for (const json& box : terrain["boxes"]) {
+    const Isometry3d middle = pose(box["center"], box["rpy"][0], box["rpy"][1]);
+    const Vector3d half = 0.5 * Vector3d(box["size"][0], box["size"][1], box["size"][2]);
+    const Vector3d up = middle.linear().col(2);
+    // Where the vertical through the point meets the plane of the top.
+    const Vector3d top = middle * Vector3d(0.0, 0.0, half.z());
+    Vector3d hit = point;
+    hit.z() = top.z() - (up.x() * (point.x() - top.x()) + up.y() * (point.y() - top.y())) / up.z();
+    const Vector3d local = middle.inverse() * hit;
+    if (std::abs(local.x()) > half.x() || std::abs(local.y()) > half.y()) continue;
+    ground = std::max(ground, hit.z());
+  }
+  return point.z() - ground;
+}
+
+const json& footsteps_of(const daemon::Scenario& scenario) {
+  return scenario.commands.at(0).params;
+}
+
+template <typename Visit>
+void for_each_drawn(const std::string& kind, const Visit& visit) {
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    SCOPED_TRACE(kind + " " + std::to_string(seed));
+    visit(scenario_of(kind, seed));
+  }
+}
+
+// The least and the largest of what is drawn: in the range, and nearly all of it.
+class Range {
+ public:
+  Range(double low, double high) : low_(low), high_(high) {}
+  ~Range() {
+    const double part = 0.15 * (high_ - low_);
+    EXPECT_GE(least_, low_ - 1e-3);
+    EXPECT_LE(least_, low_ + part);
+    EXPECT_LE(most_, high_ + 1e-3);
+    EXPECT_GE(most_, high_ - part);
+  }
+  void see(double value) {
+    least_ = std::min(least_, value);
+    most_ = std::max(most_, value);
+  }
+
+ private:
+  double low_, high_;
+  double least_ = 1e9, most_ = -1e9;
+};
+
+TEST(Gauntlet, TheSameSeedIsTheSameTextOnEveryMachine) {
+  std::string all;
+  std::set<std::string> different;
+  for (const std::string& kind : gauntlet_kinds()) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const std::string text = gauntlet_scenario(kind, seed);
+      EXPECT_EQ(text, gauntlet_scenario(kind, seed));
+      different.insert(text.substr(text.find("terrain:")));
+      all += text;
+    }
+  }
+  EXPECT_EQ(different.size(), 20 * gauntlet_kinds().size());
+  // Whoever changes what is drawn changes this, and makes old figures those of another gauntlet.
+  EXPECT_EQ(hash_of(all), 0x5f94b2a5a103e6bfULL);
+}
+
+TEST(Gauntlet, EveryKindIsAcceptedAndAsksForAWalkToAGoal) {
+  EXPECT_EQ(gauntlet_scenario("nothing", 1), "");
+  for (const std::string& kind : gauntlet_kinds()) {
+    for_each_drawn(kind, [&](const daemon::Scenario& scenario) {
+      EXPECT_EQ(scenario.expect.no_fall, true);
+      ASSERT_TRUE(scenario.expect.final_pelvis);
+      // Who stands still does not arrive.
+      const daemon::FinalPelvis& goal = *scenario.expect.final_pelvis;
+      EXPECT_GT(std::hypot(goal.x, goal.y), 1.5 * goal.tolerance);
+      if (kind.starts_with("push")) {
+        ASSERT_EQ(scenario.expect.checks.size(), 1u);
+        EXPECT_EQ(scenario.expect.checks[0].signal, "gait/step_index");
+        EXPECT_GE(scenario.expect.checks[0].min.value_or(0.0), 5.0);
+        EXPECT_EQ(scenario.disturbances.size(), 2u);
+      } else {
+        ASSERT_TRUE(scenario.expect.steps_taken);
+        EXPECT_GE(*scenario.expect.steps_taken, 6);
+        EXPECT_TRUE(scenario.disturbances.empty());
+      }
+    });
+  }
+}
+
+TEST(Gauntlet, MassesCentreAndFrictionAreWithinTheirRanges) {
+  Range friction(0.55, 1.0), mass(0.95, 1.05), com(-0.01, 0.01);
+  for (const std::string& kind : gauntlet_kinds()) {
+    for_each_drawn(kind, [&](const daemon::Scenario& scenario) {
+      friction.see(scenario.terrain["friction"]);
+      const json& scale = scenario.model_error["mass_scale"];
+      EXPECT_EQ(scale.size(), 31u);
+      for (const auto& [link, value] : scale.items()) mass.see(value);
+      for (const json& value : scenario.model_error["com_offset"]["utorso"]) com.see(value);
+    });
+  }
+}
+
+TEST(Gauntlet, WalksAreWithinTheirRanges) {
+  Range length(0.50, 0.70), back(-0.30, -0.10), side(-0.25, 0.25), turn(-0.2, 0.2);
+  const auto walk = [](const daemon::Scenario& scenario) { return scenario.commands.at(0).params; };
+  for_each_drawn("long", [&](const auto& s) { length.see(walk(s)["length"]); });
+  for_each_drawn("back", [&](const auto& s) { back.see(walk(s)["length"]); });
+  for_each_drawn("side", [&](const auto& s) { side.see(walk(s)["lateral"]); });
+  for_each_drawn("curve", [&](const auto& s) { turn.see(walk(s)["turn"]); });
+}
+
+TEST(Gauntlet, FeetStandFlatOnTheGroundOfEveryFoothold) {
+  for (const char* kind :
+       {"stairs-up", "stairs-down", "drops", "slope-up", "slope-down", "blocks"}) {
+    for_each_drawn(kind, [&](const daemon::Scenario& scenario) {
+      bool left = footsteps_of(scenario)[0]["side"] == "right";
+      for (const json& step : footsteps_of(scenario)) {
+        EXPECT_NE(step["side"] == "left", left);
+        left = !left;
+        const Isometry3d sole =
+            pose({step["x"], step["y"], step["z"]}, step["roll"], step["pitch"]);
+        for (const double x : {-0.1302, 0.1302}) {
+          for (const double y : {-0.0643, 0.0643}) {
+            EXPECT_NEAR(height_above(scenario.terrain, sole * Vector3d(x, y, 0.0)), 0.0, 0.002)
+                << step.dump();
+          }
+        }
+      }
+    });
+  }
+}
+
+TEST(Gauntlet, StairsDropsAndSlopesAreWithinTheirRanges) {
+  Range rise(0.10, 0.20), fall(-0.20, -0.10), drop(-0.20, -0.10), angle(3 * kDegree, 13 * kDegree);
+  const auto changes = [](const daemon::Scenario& scenario, Range* range) {
+    double z = scenario.start.position[2];
+    int stairs = 0;
+    for (const json& step : footsteps_of(scenario)) {
+      const double change = step["z"].get<double>() - z;
+      z += change;
+      if (std::abs(change) < 0.001) continue;
+      range->see(change);
+      ++stairs;
+    }
+    EXPECT_GE(stairs, 2);
+  };
+  for_each_drawn("stairs-up", [&](const auto& s) { changes(s, &rise); });
+  for_each_drawn("stairs-down", [&](const auto& s) { changes(s, &fall); });
+  for_each_drawn("drops", [&](const auto& s) { changes(s, &drop); });
+  for_each_drawn("slope-up", [&](const auto& s) {
+    angle.see(-footsteps_of(s)[2]["pitch"].template get<double>());
+  });
+  for_each_drawn("slope-down", [&](const auto& s) { angle.see(footsteps_of(s)[2]["pitch"]); });
+}
+
+TEST(Gauntlet, BlocksTiltUpToFifteenDegreesAndGoUpAndDown) {
+  Range tilt(5 * kDegree, 15 * kDegree);
+  int up = 0, down = 0;
+  for_each_drawn("blocks", [&](const daemon::Scenario& scenario) {
+    for (const json& step : footsteps_of(scenario)) {
+      const double tilted =
+          std::abs(step["roll"].get<double>()) + std::abs(step["pitch"].get<double>());
+      if (tilted > 0.0) tilt.see(tilted);
+    }
+    const double change =
+        footsteps_of(scenario).back()["z"].get<double>() - scenario.start.position[2];
+    up += change > 0.05 ? 1 : 0;
+    down += change < -0.05 ? 1 : 0;
+  });
+  EXPECT_GE(up, 10);
+  EXPECT_GE(down, 10);
+}
+
+TEST(Gauntlet, UnknownStepsAreThereAndTheWalkIsNotToldOfThem) {
+  Range height(-0.10, 0.04), change(-0.05, 0.05);
+  for_each_drawn("unknown-steps", [&](const daemon::Scenario& scenario) {
+    EXPECT_EQ(scenario.commands.at(0).method, "walk");
+    const double length = scenario.commands[0].params["length"];
+    double before = 0.0;
+    for (int i = 1; i <= 10; ++i) {
+      const Vector3d foothold(length * i, 0.0, scenario.start.position[2]);
+      const double now = -height_above(scenario.terrain, foothold);
+      height.see(now);
+      change.see(now - before);
+      before = now;
+    }
+  });
+}
+
+TEST(Gauntlet, PushesAreWithinTheirRangesAndInEveryDirection) {
+  Range impulse(25.0, 60.0), force(150.0, 340.0), direction(-M_PI, M_PI);
+  const auto strength = [&](const daemon::ScenarioDisturbance& push) {
+    direction.see(std::atan2(push.force[1], push.force[0]));
+    EXPECT_EQ(push.force[2], 0.0);
+    return std::hypot(push.force[0], push.force[1]);
+  };
+  for_each_drawn("push-walking", [&](const daemon::Scenario& scenario) {
+    for (const auto& push : scenario.disturbances) {
+      EXPECT_TRUE(push.at_step);
+      impulse.see(strength(push) * push.duration);
+    }
+    // Apart, and both before the last steps.
+    EXPECT_GE(scenario.disturbances[1].step - scenario.disturbances[0].step, 2);
+    EXPECT_LE(scenario.disturbances[1].step, 6);
+  });
+  for_each_drawn("push-standing", [&](const daemon::Scenario& scenario) {
+    for (const auto& push : scenario.disturbances) {
+      EXPECT_FALSE(push.at_step);
+      EXPECT_LT(push.time + 3.0, scenario.commands.at(0).at);
+      EXPECT_EQ(push.duration, 0.2);
+      force.see(strength(push));
+    }
+  });
+}
+
+}  // namespace
+}  // namespace gaitd::cli
