@@ -360,6 +360,7 @@ void Application::prepare_status() {
                                 .telemetry = telemetry_.get(),
                                 .watch = tick_watch_.get(),
                                 .swaps = swaps_.get(),
+                                .estop = &estop_,
                                 .lockstep = lockstep,
                                 .constants = {{"robot", robot_->name},
                                               {"backend", config_.backend},

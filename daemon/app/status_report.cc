@@ -2,6 +2,7 @@
 #include "daemon/app/status_report.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <string_view>
@@ -116,6 +117,18 @@ void add_times(const TickWatch::Report& report, const RealtimeReport& realtime, 
 
 }  // namespace
 
+void show_estop(const EstopFlag& estop, json* status) {
+  const std::uint64_t asked = estop.asked();
+  if (asked == 0) return;
+  const bool taken = estop.acted_on(asked);
+  const json& tick = (*status)["tick"];
+  if (taken && tick.is_number() && tick.get<std::int64_t>() >= estop.tick()) return;
+  const char* const name = kFaultNames[std::countr_zero(std::uint32_t{kFaultEstop})];
+  json& faults = (*status)["faults"];
+  if (std::find(faults.begin(), faults.end(), name) == faults.end()) faults.push_back(name);
+  if (taken) (*status)["state"] = kSafetyStateNames[static_cast<std::size_t>(SafetyState::kFault)];
+}
+
 void StatusReport::set_realtime(const RealtimeReport& realtime) {
   const std::scoped_lock lock(realtime_mutex_);
   realtime_ = realtime;
@@ -123,6 +136,7 @@ void StatusReport::set_realtime(const RealtimeReport& realtime) {
 
 json StatusReport::status() const {
   json s = status_of(*sources_.telemetry);
+  show_estop(*sources_.estop, &s);
   s.update(sources_.constants);
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     s["layers"][layer]["layer"] = layer_name(layer);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "daemon/app/realtime.h"
+#include "daemon/command/estop_flag.h"
 #include "daemon/control/loop_pulse.h"
 #include "daemon/control/tick_watch.h"
 #include "daemon/swap/swap_service.h"
@@ -27,6 +28,7 @@ class StatusReport {
     const Telemetry* telemetry;
     const TickWatch* watch;
     const SwapService* swaps;
+    const EstopFlag* estop;
     bool lockstep;
     // What does not change: robot, backend, clock, version, scenario.
     nlohmann::json constants;
@@ -52,5 +54,10 @@ class StatusReport {
   mutable std::mutex realtime_mutex_;
   RealtimeReport realtime_;
 };
+
+// Lets the fault of a stop that was asked for show before the tick that takes it is over, which may
+// be late: no status says less than an answer that was given before it. The state follows as soon
+// as the control thread has taken the stop.
+void show_estop(const EstopFlag& estop, nlohmann::json* status);
 
 }  // namespace gaitd::daemon
