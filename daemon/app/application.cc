@@ -15,6 +15,7 @@
 #include "daemon/app/check_config.h"
 #include "daemon/app/metadata.h"
 #include "daemon/app/realtime.h"
+#include "daemon/app/watch.h"
 #include "daemon/config/command_parse.h"
 #include "daemon/config/library_paths.h"
 #include "daemon/control/command_json.h"
@@ -35,22 +36,10 @@ void log_plugin(int level, std::string_view plugin, std::string_view message) {
   spdlog::log(kLevels[std::clamp(level, 0, 3)], "{}: {}", plugin, message);
 }
 
-constexpr std::chrono::seconds kTellOverruns{10};
-
 nlohmann::json settings_json(const Settings& settings) {
   nlohmann::json all;
   for (const Settings::Entry& entry : settings.effective()) all[entry.key] = to_json(*entry.value);
   return all;
-}
-
-void tell_of_log(const Telemetry::LogStatus& now, const Telemetry::LogStatus& before) {
-  if (before.open && !now.open) {
-    spdlog::error("{}; the log stops here until there is room, the robot goes on", now.error);
-  } else if (now.part != before.part && before.open) {
-    spdlog::info("log: full, goes on in {}", now.file);
-  } else if (now.part != before.part) {
-    spdlog::info("log: goes on in {}; {} ticks are lost", now.file, now.lost);
-  }
 }
 
 }  // namespace
@@ -355,78 +344,6 @@ bool Application::start_telemetry() {
   return true;
 }
 
-// What a robot says of itself; null for a simulation.
-nlohmann::json Application::health() const {
-  const GaitdBackendInstance& backend = backend_->instance();
-  GaitdHealth h{};
-  if (backend.vtable->health == nullptr || backend.vtable->health(backend.self, &h) != GAITD_OK) {
-    return nullptr;
-  }
-  return {
-      {"healthy", h.conditions == 0}, {"text", h.text},   {"late", h.late}, {"missing", h.missing},
-      {"duplicate", h.duplicate},     {"stale", h.stale}, {"lost", h.lost}, {"unsent", h.unsent}};
-}
-
-// Every joint as its sensors show it, for checks of signs and offsets.
-nlohmann::json Application::joints() const {
-  std::vector<double> values;
-  const bool ticked = telemetry_->latest(values);
-  nlohmann::json joints = nlohmann::json::array();
-  for (int i = 0; i < robot_->model.joint_count; ++i) {
-    const GaitdJoint& joint = robot_->model.joints[i];
-    nlohmann::json row = {{"name", joint.name},
-                          {"position_min", joint.position_min},
-                          {"position_max", joint.position_max}};
-    for (const char* what : {"position", "velocity", "torque"}) {
-      const std::string signal = std::string("joint/") + joint.name + "/" + what;
-      const int at = find_signal(telemetry_->table(), signal);
-      row[what] = ticked && at >= 0 ? nlohmann::json(values[at]) : nlohmann::json();
-    }
-    joints.push_back(row);
-  }
-  return {{"joints", joints}};
-}
-
-nlohmann::json Application::status() const {
-  nlohmann::json s = status_of(*telemetry_);
-  s["robot"] = robot_->name;
-  s["backend"] = backend_id_;
-  s["clock"] = config_.clock == GAITD_CLOCK_LOCKSTEP ? "lockstep" : "realtime";
-  s["version"] = GAITD_VERSION;
-  s["scenario"] = scenario_ ? nlohmann::json(scenario_->name) : nlohmann::json(nullptr);
-  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
-    s["layers"][layer]["layer"] = layer_name(layer);
-    s["layers"][layer]["variant"] = swaps_->variant(layer);
-  }
-  {
-    const std::scoped_lock lock(realtime_mutex_);
-    add_times(tick_watch_->report(), realtime_, &s);
-  }
-  s["health"] = health();
-  const Telemetry::LogStatus log = telemetry_->log_status();
-  s["log"] = {{"file", log.file},
-              {"part", log.part},
-              {"open", log.open},
-              {"error", log.error},
-              {"ticks", log.ticks},
-              {"bytes", log.bytes},
-              {"waiting", log.waiting},
-              {"stalled", log.stalled},
-              {"dropouts", telemetry_->dropouts() + log.lost}};
-  add_age(&s);
-  return s;
-}
-
-// Whether what the status says still holds: a control loop that hangs says nothing any more.
-void Application::add_age(nlohmann::json* status) const {
-  constexpr double kStale = 0.1;          // s
-  constexpr double kStaleLockstep = 1.0;  // s, where a tick may take its time
-  const ControlLoop* loop = running_loop_;
-  const double age = loop == nullptr ? 0.0 : loop->pulse().age();
-  (*status)["age"] = age;
-  (*status)["stale"] = age > (config_.clock == GAITD_CLOCK_LOCKSTEP ? kStaleLockstep : kStale);
-}
-
 void Application::prepare_swaps() {
   std::vector<fs::path> folders = directory_.roots();
   folders.insert(folders.end(), config_.plugin_folders.begin(), config_.plugin_folders.end());
@@ -454,6 +371,24 @@ void Application::prepare_swaps() {
   swaps_->start();
 }
 
+void Application::prepare_status() {
+  const bool lockstep = config_.clock == GAITD_CLOCK_LOCKSTEP;
+  const nlohmann::json scenario = scenario_ ? nlohmann::json(scenario_->name) : nlohmann::json();
+  StatusReport::Sources sources{.model = &robot_->model,
+                                .backend = backend_->instance(),
+                                .telemetry = telemetry_.get(),
+                                .watch = tick_watch_.get(),
+                                .swaps = swaps_.get(),
+                                .estop = &estop_,
+                                .lockstep = lockstep,
+                                .constants = {{"robot", robot_->name},
+                                              {"backend", backend_id_},
+                                              {"clock", lockstep ? "lockstep" : "realtime"},
+                                              {"version", GAITD_VERSION},
+                                              {"scenario", scenario}}};
+  status_ = std::make_unique<StatusReport>(std::move(sources));
+}
+
 bool Application::start_server() {
   tick_watch_ = std::make_unique<TickWatch>(config_.period);
   bridge_ = std::make_unique<CommandBridge>();
@@ -471,8 +406,9 @@ bool Application::start_server() {
   add_parameter_methods(&methods, bridge_.get(), &parameters_);
   prepare_swaps();
   swaps_->add_methods(&methods);
-  methods.add_snapshot("status", [this] { return status(); });
-  methods.add_snapshot("joint.list", [this] { return joints(); });
+  prepare_status();
+  methods.add_snapshot("status", [this] { return status_->status(); });
+  methods.add_snapshot("joint.list", [this] { return status_->joints(); });
   methods.add_snapshot("version", [] {
     return nlohmann::json{
         {"version", GAITD_VERSION},
@@ -508,52 +444,9 @@ bool Application::prepare() {
   return start_telemetry() && start_server();
 }
 
-bool Application::report_overruns(std::uint64_t* told) const {
-  const TickWatch::Report report = tick_watch_->report();
-  if (report.overruns == *told) return false;
-  spdlog::warn("{} overruns; late in tick {}: {}, {:.0f} us of {:.0f}", report.overruns - *told,
-               report.late.tick, late_name(report.late.what), report.late.time, report.late.budget);
-  *told = report.overruns;
-  return true;
-}
-
-// Says on the terminal what other threads cannot: faults, when they come and go, and where the log
-// goes on or why it ended.
-void Application::watch_telemetry(const std::atomic<bool>& running, ServiceManager* manager) const {
-  const int signal = find_signal(telemetry_->table(), "safety/faults");
-  const int state = find_signal(telemetry_->table(), "safety/state");
-  std::vector<double> values;
-  std::uint32_t last_faults = 0;
-  Telemetry::LogStatus last_log = telemetry_->log_status();
-  std::uint64_t overruns_told = 0;
-  auto next_told = std::chrono::steady_clock::now();
-  while (running) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    const auto now = std::chrono::steady_clock::now();
-    if (now >= next_told && report_overruns(&overruns_told)) next_told = now + kTellOverruns;
-    const Telemetry::LogStatus log = telemetry_->log_status();
-    tell_of_log(log, last_log);
-    last_log = log;
-    if (signal < 0 || state < 0 || !telemetry_->latest(values)) continue;
-    const auto faults = static_cast<std::uint32_t>(values[signal]);
-    std::string names;
-    for (std::size_t i = 0; i < kFaultNames.size(); ++i) {
-      if ((faults >> i & 1u) != 0) names += std::string(" ") + kFaultNames[i];
-    }
-    manager->tell(kSafetyStateNames[static_cast<std::size_t>(values[state])] + names);
-    if (faults == last_faults) continue;
-    if (faults != 0) {
-      spdlog::error("fault:{}; the joints are damped until `gaitctl reset`", names);
-    } else {
-      spdlog::info("faults cleared");
-    }
-    last_faults = faults;
-  }
-}
-
 bool Application::become_realtime() {
-  const std::scoped_lock lock(realtime_mutex_);
   enter_realtime(config_.realtime, &realtime_);
+  status_->set_realtime(realtime_);
   for (const std::string& line : realtime_.got) spdlog::info("real time: {}", line);
   for (const std::string& line : realtime_.degraded) spdlog::warn("real time, degraded: {}", line);
   if (realtime_.degraded.empty() || !config_.realtime.require) return true;
@@ -566,9 +459,9 @@ int Application::run() {
   const bool paced = config_.clock == GAITD_CLOCK_REALTIME;
   CpuLatency latency;
   if (paced) {
-    const std::scoped_lock lock(realtime_mutex_);
     lock_memory(config_.realtime, &realtime_);
     stay_awake(config_.realtime, &latency, &realtime_);
+    status_->set_realtime(realtime_);
   }
   if (backend.vtable->start(backend.self) != GAITD_OK) {
     spdlog::error("backend {}: start failed; see the messages above", config_.backend);
@@ -580,16 +473,24 @@ int Application::run() {
   options.arm = simulation_;  // a robot comes up disarmed, a simulated one ready to use
   options.overrun = config_.realtime.overrun;
   options.overrun_run = config_.realtime.overrun_run;
-  loop_ = std::make_unique<ControlLoop>(options, robot_->model, pipeline_.get(), backend,
-                                        telemetry_.get(), bridge_.get(), player_.get(),
-                                        &swaps_->port(), tick_watch_.get(), &estop_);
+  const ControlLoop::Parts parts{.model = &robot_->model,
+                                 .pipeline = pipeline_.get(),
+                                 .backend = backend,
+                                 .telemetry = telemetry_.get(),
+                                 .watch = tick_watch_.get(),
+                                 .estop = &estop_,
+                                 .bridge = bridge_.get(),
+                                 .scenario = player_.get(),
+                                 .swaps = &swaps_->port()};
+  loop_ = std::make_unique<ControlLoop>(options, parts);
+  status_->set_pulse(&loop_->pulse());
   running_loop_ = loop_.get();
   if (stop_requested_) loop_->stop();
   LoopReport report;
   bool allowed = true;
   std::atomic<bool> running{true};
   auto manager = std::make_unique<ServiceManager>([this] { return loop_->pulse().rounds(); });
-  std::thread watch([&] { watch_telemetry(running, manager.get()); });
+  std::thread watch([&] { Watch(*telemetry_, *tick_watch_, manager.get()).run(running); });
   std::thread control([&] {
     if (paced) allowed = become_realtime();
     if (allowed) report = loop_->run();

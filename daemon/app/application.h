@@ -3,13 +3,12 @@
 
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "daemon/app/realtime.h"
-#include "daemon/app/service_manager.h"
+#include "daemon/app/status_report.h"
 #include "daemon/command/estop_flag.h"
 #include "daemon/config/daemon_config.h"
 #include "daemon/config/paths.h"
@@ -67,19 +66,14 @@ class Application {
   bool load_backend();
   bool start_telemetry();
   void prepare_swaps();
+  void prepare_status();
   bool start_server();
   std::string default_log_file() const;
-  void watch_telemetry(const std::atomic<bool>& running, ServiceManager* manager) const;
-  bool report_overruns(std::uint64_t* told) const;  // false: there are no more
   // On the control thread. False: not what is required.
   bool become_realtime();
   void report_issues(const Issues& issues) const;
   // Where the value that holds for a key was written.
   Location place_of(std::string_view key) const;
-  nlohmann::json status() const;
-  void add_age(nlohmann::json* status) const;
-  nlohmann::json health() const;
-  nlohmann::json joints() const;
   LogMetadata metadata() const;
 
   const Options options_;
@@ -104,8 +98,8 @@ class Application {
   std::unique_ptr<SwapService> swaps_;
   std::unique_ptr<Pipeline> pipeline_;
   std::unique_ptr<TickWatch> tick_watch_;
-  mutable std::mutex realtime_mutex_;
   RealtimeReport realtime_;
+  std::unique_ptr<StatusReport> status_;
   std::unique_ptr<ControlLoop> loop_;
   // The server answers, and signals come, before there is a loop to stop.
   std::atomic<ControlLoop*> running_loop_{nullptr};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 namespace gaitd::daemon {
 
@@ -10,7 +11,7 @@ namespace gaitd::daemon {
 /// processor that has to be woken first costs a periodic thread tens of microseconds each time.
 class CpuLatency {
  public:
-  CpuLatency() = default;
+  explicit CpuLatency(std::string device = "/dev/cpu_dma_latency") : device_(std::move(device)) {}
   ~CpuLatency();
   CpuLatency(const CpuLatency&) = delete;
   CpuLatency& operator=(const CpuLatency&) = delete;
@@ -21,6 +22,7 @@ class CpuLatency {
   bool held() const { return file_ >= 0; }
 
  private:
+  const std::string device_;
   int file_ = -1;
 };
 

@@ -14,7 +14,7 @@ bool CaptureCheck::lost(double dt, const GaitdRobotState& robot, const GaitdGait
                         const sdk::Parameters<SafetyParameter>& p) {
   const walking::ConvexPolygon feet = walking::support_polygon(model_, gait);
   const double reach = p[P::kCaptureReach] * model_.nominal_com_height;
-  if (feet.empty() || gait.omega <= 0.0 || reach <= 0.0) {
+  if (feet.empty() || gait.omega <= 0.0) {
     reset();
     return false;
   }

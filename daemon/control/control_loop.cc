@@ -41,20 +41,17 @@ RunEnd end_of(ScenarioPlayer::End end) {
 
 }  // namespace
 
-ControlLoop::ControlLoop(const LoopOptions& options, const GaitdModel& model, Pipeline* pipeline,
-                         const GaitdBackendInstance& backend, Telemetry* telemetry,
-                         CommandBridge* bridge, ScenarioPlayer* scenario, SwapPort* swaps,
-                         TickWatch* watch, EstopFlag* estop)
+ControlLoop::ControlLoop(const LoopOptions& options, const Parts& parts)
     : options_(options),
-      model_(model),
-      pipeline_(pipeline),
-      backend_(backend),
-      telemetry_(telemetry),
-      bridge_(bridge),
-      scenario_(scenario),
-      swaps_(swaps),
-      watch_(watch),
-      estop_(estop),
+      model_(*parts.model),
+      pipeline_(parts.pipeline),
+      backend_(parts.backend),
+      telemetry_(parts.telemetry),
+      watch_(parts.watch),
+      estop_(parts.estop),
+      bridge_(parts.bridge),
+      scenario_(parts.scenario),
+      swaps_(parts.swaps),
       command_(std::make_unique<Command>()),
       pace_(options.period, options.overrun, options.overrun_run) {
   if (swaps_ != nullptr) swaps_->publish(pipeline_->swap_right());

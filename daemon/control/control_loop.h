@@ -43,9 +43,19 @@ struct LoopReport {
 // simulation has made the next sensors.
 class ControlLoop {
  public:
-  ControlLoop(const LoopOptions& options, const GaitdModel& model, Pipeline* pipeline,
-              const GaitdBackendInstance& backend, Telemetry* telemetry, CommandBridge* bridge,
-              ScenarioPlayer* scenario, SwapPort* swaps, TickWatch* watch, EstopFlag* estop);
+  // What it brings together; all of it outlives the loop. The last three may be null.
+  struct Parts {
+    const GaitdModel* model;
+    Pipeline* pipeline;
+    GaitdBackendInstance backend;
+    Telemetry* telemetry;
+    TickWatch* watch;
+    EstopFlag* estop;
+    CommandBridge* bridge = nullptr;
+    ScenarioPlayer* scenario = nullptr;
+    SwapPort* swaps = nullptr;
+  };
+  ControlLoop(const LoopOptions& options, const Parts& parts);
 
   // Runs until stop(), the end of the scenario, or a failure that no later tick could mend. Call on
   // a thread of its own.
@@ -79,11 +89,11 @@ class ControlLoop {
   Pipeline* pipeline_;
   GaitdBackendInstance backend_;
   Telemetry* telemetry_;
+  TickWatch* watch_;
+  EstopFlag* estop_;
   CommandBridge* bridge_;
   ScenarioPlayer* scenario_;
   SwapPort* swaps_;
-  TickWatch* watch_;
-  EstopFlag* estop_;
 
   LoopPulse pulse_;
   std::atomic<bool> stop_{false};

@@ -75,8 +75,14 @@ class ControlLoopTest : public ::testing::Test {
     ScenarioPlayer player(scenario, atlas(), backend.bench.parameters, &issues);
     EXPECT_TRUE(issues.ok()) << issues.error_text();
     TickWatch watch(kPipelinePeriod);
-    ControlLoop loop({}, atlas(), &pipeline, backend.instance(), &telemetry, bridge, &player,
-                     nullptr, &watch, &estop);
+    ControlLoop loop({}, {.model = &atlas(),
+                          .pipeline = &pipeline,
+                          .backend = backend.instance(),
+                          .telemetry = &telemetry,
+                          .watch = &watch,
+                          .estop = &estop,
+                          .bridge = bridge,
+                          .scenario = &player});
     const LoopReport report = loop.run();
     EXPECT_TRUE(telemetry.close({}, &error)) << error;
     const auto log = LogReader::open(path, &error);

@@ -301,8 +301,8 @@ void InvariantEkf::update_trust(const GaitdStateEstimatorInput& in) {
     const double share = f.normal_force / std::max(total, least);
     const bool swings = in.gait->phase == GAITD_PHASE_SWING && in.gait->next_side == side;
     f.time_above = share > p_[P::kTrustOn] && !swings ? f.time_above + in.time.period : 0.0;
-    f.trusted =
-        f.time_above >= p_[P::kTrustDelay] || (f.trusted && share >= p_[P::kTrustOff] && !swings);
+    const bool earned = f.time_above > 0.0 && f.time_above >= p_[P::kTrustDelay];
+    f.trusted = earned || (f.trusted && share >= p_[P::kTrustOff] && !swings);
     f.time_trusted = f.trusted ? f.time_trusted + in.time.period : 0.0;
   }
 }

@@ -59,7 +59,7 @@ class InvariantEkf {
       sdk::real_parameter("contact_least", "N", 0, 1000, 40,
                           "normal force of a contact of a light robot: above offset and noise of "
                           "its sensors"),
-      sdk::real_parameter("force_filter", "Hz", 1, 500, 80, "low-pass of the normal force"),
+      sdk::real_parameter("force_filter", "Hz", 5, 500, 80, "low-pass of the normal force"),
       sdk::real_parameter("leg_pole", "1/s", 50, 2000, 300,
                           "two low-passes of the rates of leg joints and of the pelvis twist"),
       sdk::real_parameter("upper_body_pole", "1/s", 50, 2000, 300,

@@ -338,7 +338,7 @@ void KinematicInertial::update_trust(const GaitdStateEstimatorInput& in, double 
     const bool swinging = in.gait->phase == GAITD_PHASE_SWING && in.gait->next_side == side;
     f.time_above = share > p_[P::kTrustOn] && !swinging ? f.time_above + dt : 0.0;
     const bool was = f.trusted;
-    if (!f.trusted) f.trusted = f.time_above >= p_[P::kTrustDelay];
+    if (!f.trusted) f.trusted = f.time_above > 0.0 && f.time_above >= p_[P::kTrustDelay];
     if (share < p_[P::kTrustOff] || swinging) f.trusted = false;
     f.time_trusted = f.trusted && was ? f.time_trusted + dt : 0.0;
     if (f.trusted && !was) {

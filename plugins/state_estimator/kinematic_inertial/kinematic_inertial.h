@@ -61,7 +61,7 @@ class KinematicInertial {
       sdk::real_parameter("contact_least", "N", 0, 1000, 40,
                           "normal force of a contact of a light robot: above offset and noise of "
                           "its sensors"),
-      sdk::real_parameter("force_filter", "Hz", 1, 500, 80, "low-pass of the normal force"),
+      sdk::real_parameter("force_filter", "Hz", 5, 500, 80, "low-pass of the normal force"),
       sdk::real_parameter("leg_pole", "1/s", 0, 2000, 300,
                           "observer of the rates of leg joints; 0: the rates of the sensors"),
       sdk::real_parameter("upper_body_pole", "1/s", 0, 2000, 300,
@@ -70,7 +70,7 @@ class KinematicInertial {
                           "pole of the observer of position, velocity and bias"),
       sdk::real_parameter("tilt_rate", "1/s", 0, 3, 0.5,
                           "levelling in a walk; three times faster when standing"),
-      sdk::real_parameter("tilt_bias_rate", "1/s^2", 0, 10, 0.05, "gyroscope bias from the same"),
+      sdk::real_parameter("tilt_bias_rate", "1/s^2", 0, 1, 0.05, "gyroscope bias from the same"),
       sdk::real_parameter("anchor_rate", "1/s", 0, 50, 2,
                           "correction of the heading by feet at rest"),
       sdk::real_parameter("bias_rate", "1/s^2", 0, 50, 0.5,

@@ -17,7 +17,7 @@ namespace gaitd::plugins {
 inline constexpr GaitdParameter kJointRateGainParameter = sdk::real_parameter(
     "joint_rate_gain", "1/s", 1, 500, 30, "allowed joint rate per distance to a position limit");
 inline constexpr GaitdParameter kHorizonParameter = sdk::real_parameter(
-    "limit_horizon", "s", 0.001, 1, 0.02, "in which a joint may reach its allowed rate");
+    "limit_horizon", "s", 0.001, 0.2, 0.02, "in which a joint may reach its allowed rate");
 inline constexpr GaitdParameter kJointAccelerationParameter =
     sdk::real_parameter("joint_acceleration_limit", "rad/s^2", 10, 1e5, 2000, "of every joint");
 inline constexpr GaitdParameter kBaseAccelerationParameter = sdk::real_parameter(
@@ -35,7 +35,7 @@ inline constexpr GaitdParameter kTorqueRateParameter =
 inline constexpr GaitdParameter kTorqueRateWeightParameter = sdk::real_parameter(
     "torque_rate_weight", "", 0, 1e12, 1e6, "of what is above, squared, in effort limits");
 inline constexpr GaitdParameter kMaxIterationsParameter =
-    sdk::integer_parameter("max_iterations", "", 10, 10000, 300,
+    sdk::integer_parameter("max_iterations", "", 20, 10000, 300,
                            "changes of the active set after which the solver gives up");
 inline constexpr GaitdParameter kReferenceLeakParameter =
     sdk::real_parameter("reference_leak", "1/s", 0, 1000, 8,
