@@ -104,6 +104,16 @@ void add_run_command(CLI::App* app, Context* context) {
       ->type_name("KEY=VALUE")
       ->take_all()
       ->expected(1);
+  const auto* backend =
+      command
+          ->add_option_function<std::string>(
+              "--backend",
+              [arguments](const std::string& name) {
+                arguments->settings.push_back("backend=" + name);
+              },
+              "The simulation to play them in: simbody, mujoco, or the path of a plugin")
+          ->type_name("NAME|FILE");
+  context->values[backend] = [] { return std::vector<std::string>{"simbody", "mujoco"}; };
   command
       ->add_option("--log", arguments->log,
                    "Log file, or folder for several (ending in /); by default a new file in "

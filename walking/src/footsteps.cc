@@ -10,6 +10,10 @@
 namespace gaitd::walking {
 namespace {
 
+// The feet stand where they are estimated: a step that is as long as allowed is not too long for
+// that.
+constexpr double kEstimate = 0.005;  // m
+
 GaitdPose moved(const GaitdPose& pose, double x, double y, double yaw) {
   GaitdPose result;
   sdk::view(result.position) = sdk::transform(pose, {x, y, 0.0});
@@ -80,32 +84,33 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const
       sdk::from_yaw(-stance_yaw) * (sdk::view(step.pose.position) - sdk::view(stance.position));
   const double outwards = side_sign(step.side) * d.y();
   const double turn = std::remainder(rpy.z() - stance_yaw, 2.0 * M_PI);
-  if (outwards < p[Gait::kMinFootSeparation] - 0.005) {
+  if (outwards < p[Gait::kMinFootSeparation] - kEstimate) {
     return refuse(
         "footstep %d (%s): %.3f m beside the other foot, at least %.3f expected "
         "(gait.min_foot_separation), or the legs cross; move it outwards",
         number, side, outwards, p[Gait::kMinFootSeparation]);
   }
-  if (outwards > p[Gait::kMaxFootSeparation]) {
+  if (outwards > p[Gait::kMaxFootSeparation] + kEstimate) {
     return refuse(
         "footstep %d (%s): %.3f m beside the other foot, at most %.3f expected "
         "(gait.max_foot_separation); take more steps",
         number, side, outwards, p[Gait::kMaxFootSeparation]);
   }
-  if (d.x() > p[Gait::kMaxStepForward] || -d.x() > p[Gait::kMaxStepBackward]) {
+  if (d.x() > p[Gait::kMaxStepForward] + kEstimate ||
+      -d.x() > p[Gait::kMaxStepBackward] + kEstimate) {
     return refuse(
         "footstep %d (%s): %.3f m ahead of the other foot, %.3f to %.3f expected "
         "(gait.max_step_backward, gait.max_step_forward); take more steps",
         number, side, d.x(), -p[Gait::kMaxStepBackward], p[Gait::kMaxStepForward]);
   }
   const double travel = (sdk::view(step.pose.position) - sdk::view(from.position)).head<2>().norm();
-  if (travel > p[Gait::kMaxFootTravel]) {
+  if (travel > p[Gait::kMaxFootTravel] + kEstimate) {
     return refuse(
         "footstep %d (%s): %.3f m from where this foot stands before, at most %.3f expected "
         "(gait.max_foot_travel); take shorter steps",
         number, side, travel, p[Gait::kMaxFootTravel]);
   }
-  if (std::abs(d.z()) > p[Gait::kMaxStepHeight]) {
+  if (std::abs(d.z()) > p[Gait::kMaxStepHeight] + kEstimate) {
     return refuse(
         "footstep %d (%s): %.3f m above the other foot, within %.3f expected "
         "(gait.max_step_height); find lower footholds",
