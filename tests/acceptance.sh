@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export PATH=$PWD/build/release/bin:$PATH
 campaigns=(gate gauntlet terrain estimators model-errors walks footsteps parameters)
-names=("${campaigns[@]}" sanitizers soak)
+names=("${campaigns[@]}" mutations sanitizers soak)
 chosen=("$@")
 ((${#chosen[@]})) || chosen=("${names[@]}")
 for name in "${chosen[@]}"; do
@@ -36,6 +36,7 @@ for name in "${chosen[@]}"; do
   mkdir -p "$out"
   result=0
   case $name in
+    mutations) tests/mutations.sh >"$out/output.txt" 2>&1 || result=$? ;;
     sanitizers) tests/sanitizers.sh >"$out/output.txt" 2>&1 || result=$? ;;
     soak) tests/soak.sh 0.75 >"$out/output.txt" 2>&1 || result=$? ;;
     *) gaitctl campaign "sim/campaigns/$name.yaml" -o "$out/$commit" || result=$? ;;

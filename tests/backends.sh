@@ -18,7 +18,7 @@ still=$scratch/example/build/lib/gaitd/plugins/backend/still_robot.so
 expect 0 gaitctl plugin check "$still"
 start_daemon --backend "$still" --log "$scratch/still.mcap"
 [[ $(field backend) == still_robot ]] || fail "status names the backend $(field backend)"
-[[ $(field state) == disarmed ]] || fail "a robot comes up $(field state)"
+wait_for state disarmed 30
 expect 1 gaitctl sim reset 2>error.txt
 stop_daemon
 gaitctl log info "$scratch/still.mcap" | grep -q still_robot || fail "the log does not name its backend"
