@@ -3,7 +3,7 @@
 source "$(dirname "$0")/common.sh"
 cd "$scratch"
 
-mapfile -t lines < <(awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' "$GAITD_SOURCE/docs/backend.md")
+mapfile -t lines < <(commands_of docs/backend.md)
 ((${#lines[@]} >= 5)) || fail "docs/backend.md has only ${#lines[@]} lines of commands"
 export PATH="$(dirname "${CMAKE:-/usr/bin/cmake}"):$PATH"
 for line in "${lines[@]}"; do

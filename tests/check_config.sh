@@ -35,7 +35,7 @@ expect 2 gaitd "$robot"
   cd "$GAITD_SOURCE"
   while read -r line; do
     eval "expect 0 $line"
-  done < <(awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' docs/configuration.md)
+  done < <(commands_of docs/configuration.md)
 )
 
 # Every error of all files at once, with its place and what would be right.

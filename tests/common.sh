@@ -59,6 +59,9 @@ client=(gaitctl)
 # field NAME: of `gaitctl status`.
 field() { "${client[@]}" status | awk -v name="$1" '$1 == name { $1 = ""; print substr($0, 2) }'; }
 
+# commands_of PAGE: the lines of its ```sh blocks.
+commands_of() { awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' "$GAITD_SOURCE/$1"; }
+
 # wait_for NAME VALUE SECONDS: until the status says so. A fault ends it at once.
 wait_for() {
   local value deadline=$((SECONDS + $3))

@@ -20,7 +20,7 @@ for header in headers:
     include = header.relative_to(prefix / "include")
     source = f'#include "{include}"\n#include "{include}"\nint main() {{}}\n'
     compiled = subprocess.run(
-        ["c++", "-std=c++20", "-march=x86-64-v3", f"-I{prefix}/include", "-I/usr/include/eigen3",
+        ["c++", "-std=c++20", f"-I{prefix}/include", "-I/usr/include/eigen3",
          "-fsyntax-only", "-x", "c++", "-"], input=source, capture_output=True, text=True)
     if compiled.returncode != 0:
         failures.append(f"{include}: does not compile on its own: {compiled.stderr.splitlines()[0]}")

@@ -64,7 +64,7 @@ run_block() {
 run_page() {
   local lines i command end
   # One command per line; a here-document belongs to the line that begins it.
-  mapfile -t lines < <(awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' "$GAITD_SOURCE/$1")
+  mapfile -t lines < <(commands_of "$1")
   ((${#lines[@]} >= 5)) || fail "$1 has only ${#lines[@]} lines of commands"
   for ((i = 0; i < ${#lines[@]}; ++i)); do
     command=${lines[i]}

@@ -14,8 +14,7 @@ for plugin in "$GAITD_PLUGINS"/*/*.so; do
 done
 ((count >= 7)) || fail "only $count plugins in $GAITD_PLUGINS"
 
-mapfile -t lines < <(awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' \
-  "$GAITD_SOURCE/docs/plugins.md")
+mapfile -t lines < <(commands_of docs/plugins.md)
 ((${#lines[@]} >= 2)) || fail "docs/plugins.md has only ${#lines[@]} lines of commands"
 for line in "${lines[@]}"; do
   printf '$ %s\n' "$line"

@@ -212,6 +212,7 @@ void Application::read_backend(Issues* issues) {
     issues->add_text(place_of("backend"), "backend", path ? refusal.text() : error);
     return;
   }
+  backend_file_ = *path;
   backend_id_ = file->descriptor.id;
   simulation_ = (file->descriptor.capabilities & GAITD_CAPABILITY_SIMULATION) != 0;
 }
@@ -240,19 +241,14 @@ nlohmann::json Application::backend_config() {
 }
 
 bool Application::load_backend() {
-  std::string error;
-  const auto path = directory_.find(GAITD_LAYER_BACKEND, config_.backend, &error);
-  if (!path) {
-    spdlog::error("{}", error);
-    return false;
-  }
   Refusal refusal;
-  backend_ = LoadedBackend::load({*path, &robot_->model, true, {}, log_plugin}, &refusal);
+  backend_ = LoadedBackend::load({backend_file_, &robot_->model, true, {}, log_plugin}, &refusal);
   if (backend_ == nullptr) {
     spdlog::error("{}", refusal.text());
     return false;
   }
-  error = backend_->init(robot_->model, backend_config().dump(), config_.period, config_.clock);
+  const std::string error =
+      backend_->init(robot_->model, backend_config().dump(), config_.period, config_.clock);
   if (!error.empty()) {
     spdlog::error("{}", error);
     return false;

@@ -89,6 +89,7 @@ class Application {
   std::vector<std::string> layer_variants_;  // in use
   LayerVariants known_variants_;             // installed, and "other"
   std::unique_ptr<LoadedBackend> backend_;
+  std::filesystem::path backend_file_;
   std::string backend_id_;
   bool simulation_ = false;
   std::string log_file_;

@@ -176,13 +176,12 @@ PluginReport check_plugin(const std::filesystem::path& file, const GaitdModel& m
   const bool simulation =
       backend && (report.descriptor.capabilities & GAITD_CAPABILITY_SIMULATION) != 0;
   // What is not of this kind of plugin is not in its report.
-  std::erase_if(report.checks, [&](const CheckResult& check) {
-    const Of of = std::find_if(std::begin(kSuite), std::end(kSuite), [&](const Demand& demand) {
-                    return check.name == demand.name;
-                  })->of;
-    return loadable &&
-           ((of == Of::kLayers && simulation) || (of == Of::kSimulations && !simulation));
-  });
+  for (const Demand& demand : kSuite) {
+    const bool foreign = demand.of == (simulation ? Of::kLayers : Of::kSimulations);
+    if (!loadable || !foreign) continue;
+    std::erase_if(report.checks,
+                  [&](const CheckResult& check) { return check.name == demand.name; });
+  }
   for (CheckResult& check : report.checks) {
     if (check.verdict != Verdict::kSkipped) continue;
     check.detail = loadable && backend && !simulation

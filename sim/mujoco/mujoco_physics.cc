@@ -26,9 +26,10 @@ mjModel* load(const std::string& document) {
   mj_defaultVFS(files.get());
   constexpr const char* kName = "robot.xml";
   const int size = static_cast<int>(document.size());
-  const int index = mj_makeEmptyFileVFS(files.get(), kName, size) == 0 ? 0 : -1;
-  if (index < 0) throw std::invalid_argument("MuJoCo: the model is too large");
-  std::memcpy(files->filedata[index], document.data(), document.size());
+  if (mj_makeEmptyFileVFS(files.get(), kName, size) != 0) {
+    throw std::invalid_argument("MuJoCo: the model is too large");
+  }
+  std::memcpy(files->filedata[0], document.data(), document.size());
   char error[1000] = "";
   mjModel* model = mj_loadXML(kName, files.get(), error, sizeof(error));
   mj_deleteVFS(files.get());
@@ -65,7 +66,6 @@ MujocoPhysics::MujocoPhysics(const GaitdModel& model, const Terrain& terrain, do
     const int joint = mj_name2id(m_.get(), mjOBJ_JOINT, std::to_string(j).c_str());
     place_.push_back(m_->jnt_qposadr[joint]);
     rate_.push_back(m_->jnt_dofadr[joint]);
-    m_->dof_armature[rate_.back()] = model.joints[j].rotor_inertia;
   }
   for (const int side : {GAITD_LEFT, GAITD_RIGHT}) {
     const char* name = side == GAITD_LEFT ? "sole.left" : "sole.right";

@@ -29,28 +29,9 @@
 #include <string>
 
 #include "gaitd/abi/backend.h"
-#include "gaitd/sdk/parameter.h"
+#include "gaitd/sdk/descriptor.h"
 
 namespace gaitd::sdk {
-
-constexpr GaitdPluginDescriptor make_backend_descriptor(std::string_view id,
-                                                        std::string_view version,
-                                                        double worst_case_us,
-                                                        uint32_t capabilities) {
-  GaitdPluginDescriptor d{};
-  d.magic = GAITD_PLUGIN_MAGIC;
-  d.abi_major = GAITD_ABI_MAJOR;
-  d.abi_minor = GAITD_ABI_MINOR;
-  d.struct_size = sizeof(GaitdPluginDescriptor);
-  d.layer = GAITD_LAYER_BACKEND;
-  d.layer_version = 1;
-  d.capabilities = capabilities;
-  internal::copy(d.id, id);
-  internal::copy(d.version, version);
-  internal::copy(d.build, __VERSION__);
-  d.worst_case_us = worst_case_us;
-  return d;
-}
 
 // The C functions of one backend class. Exceptions end here and become GAITD_EXCEPTION; until
 // init() succeeded everything answers GAITD_NOT_READY.
@@ -206,7 +187,8 @@ class BackendAdapter {
   __attribute__((                                                                          \
       visibility("default"), used,                                                         \
       section(GAITD_PLUGIN_SECTION))) constinit const GaitdPluginDescriptor gaitd_plugin = \
-      ::gaitd::sdk::make_backend_descriptor(id, version, worst_case_us, capabilities);     \
+      ::gaitd::sdk::make_descriptor(GAITD_LAYER_BACKEND, id, version, worst_case_us,       \
+                                    std::array<GaitdParameter, 0>{}, capabilities);        \
   __attribute__((visibility("default"))) GaitdStatus gaitd_create_backend(                 \
       const GaitdHost* host, GaitdBackendInstance* instance) {                             \
     return ::gaitd::sdk::BackendAdapter<BackendClass>::create(host, instance);             \

@@ -16,7 +16,7 @@
 #include <memory>
 #include <new>
 
-#include "gaitd/sdk/parameter.h"
+#include "gaitd/sdk/descriptor.h"
 
 namespace gaitd::sdk {
 
@@ -52,27 +52,6 @@ struct LayerTraits<GAITD_LAYER_WHOLE_BODY_CONTROLLER> {
   using Output = GaitdWholeBodyControllerOutput;
   using State = GaitdWholeBodyControllerState;
 };
-
-template <std::size_t N>
-constexpr GaitdPluginDescriptor make_descriptor(int layer, std::string_view id,
-                                                std::string_view version, double worst_case_us,
-                                                const std::array<GaitdParameter, N>& parameters) {
-  static_assert(N <= GAITD_MAX_PARAMETERS);
-  GaitdPluginDescriptor d{};
-  d.magic = GAITD_PLUGIN_MAGIC;
-  d.abi_major = GAITD_ABI_MAJOR;
-  d.abi_minor = GAITD_ABI_MINOR;
-  d.struct_size = sizeof(GaitdPluginDescriptor);
-  d.layer = layer;
-  d.layer_version = 1;
-  internal::copy(d.id, id);
-  internal::copy(d.version, version);
-  internal::copy(d.build, __VERSION__);
-  d.worst_case_us = worst_case_us;
-  d.parameter_count = static_cast<std::uint32_t>(N);
-  for (std::size_t i = 0; i < N; ++i) d.parameters[i] = parameters[i];
-  return d;
-}
 
 // The C functions of one layer class. Exceptions end here and become GAITD_EXCEPTION.
 template <class Layer, int kLayer>
