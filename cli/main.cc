@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "cli/calibrate/calibrate_command.h"
 #include "cli/campaign_command.h"
 #include "cli/compare_command.h"
 #include "cli/completion_command.h"
@@ -51,6 +52,7 @@ int run(int argc, char** argv) {
   add_daemon_commands(&app, &context);
   add_plugin_commands(&app, &context);
   add_joint_commands(&app, &context);
+  add_calibrate_command(&app, &context);
   add_param_commands(&app, &context);
   add_watch_command(&app, &context);
   add_run_command(&app, &context);

@@ -178,7 +178,7 @@ bool Application::load_layers(const LayerRequests& requests) {
       return false;
     }
   }
-  const GaitdStart start = scenario_ ? scenario_->start : GaitdStart{};
+  const GaitdStart start = start_pose();
   pipeline_ = std::make_unique<Pipeline>(robot_->model, robot_->calibration, std::move(layers_),
                                          start, &parameters_, config_.period);
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
@@ -223,6 +223,19 @@ Profile Application::profile() const {
 
 // The section of the configuration that is the backend's: a simulation can be put in place of
 // another, a robot cannot.
+// A robot comes up disarmed, a simulated one ready to use, unless it hangs on a hoist.
+bool Application::arms_itself() const {
+  return simulation_ && (!scenario_ || scenario_->hoist.is_null());
+}
+
+// Where the soles are to begin with.
+GaitdStart Application::start_pose() const {
+  if (!scenario_) return {};
+  GaitdStart start = scenario_->start;
+  if (!scenario_->hoist.is_null()) start.position[2] += scenario_->hoist.at("height").get<double>();
+  return start;
+}
+
 std::string Application::backend_scope() const { return simulation_ ? "sim" : backend_id_; }
 
 // What the backend checks itself: the world of a simulation, the wiring of a robot.
@@ -292,12 +305,12 @@ LogMetadata Application::metadata() const {
   }
   m["plugins"] = plugins.dump();
   m["truth"] = simulation_ ? "true" : "false";
-  const GaitdStart start = scenario_ ? scenario_->start : GaitdStart{};
+  const GaitdStart start = start_pose();
   const auto& at = start.position;
   add_replay_metadata(*robot_,
                       {{"start", {at[0], at[1], at[2], start.yaw}},
                        {"mode", scenario_ ? scenario_->mode : -1},
-                       {"arm", simulation_},
+                       {"arm", arms_itself()},
                        {"simulation", simulation_},
                        {"period", config_.period},
                        {"hardware", profile() == Profile::kHardware}},
@@ -466,7 +479,7 @@ int Application::run() {
   LoopOptions options;
   options.clock = config_.clock;
   options.period = config_.period;
-  options.arm = simulation_;  // a robot comes up disarmed, a simulated one ready to use
+  options.arm = arms_itself();
   options.overrun = config_.realtime.overrun;
   options.overrun_run = config_.realtime.overrun_run;
   const ControlLoop::Parts parts{.model = &robot_->model,

@@ -62,6 +62,8 @@ class Application {
   LayerRequests choose_layers(Issues* issues);
   bool load_layers(const LayerRequests& requests);
   nlohmann::json backend_config();
+  bool arms_itself() const;
+  GaitdStart start_pose() const;
   std::string backend_scope() const;
   bool load_backend();
   bool start_telemetry();

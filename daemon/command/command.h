@@ -7,6 +7,7 @@
 #include "gaitd/abi/backend.h"
 #include "gaitd/abi/types.h"
 #include "gaitd/walking/commands.h"
+#include "gaitd/walking/stance_pose.h"
 
 namespace gaitd::daemon {
 
@@ -28,6 +29,7 @@ enum class CommandType : std::uint8_t {
   kSimReset,   // simulation only: back to the start pose
   kSwap,       // of a layer, by a scenario
   kJointTest,  // one joint, a small motion there and back, while disarmed
+  kPose,       // of the pelvis, while standing
 };
 
 struct JointTest {
@@ -49,6 +51,7 @@ struct Command {
   std::array<GaitdFootstep, walking::kMaxFootstepsPerCommand> footsteps;
   GaitdDisturbance push;
   JointTest joint_test;
+  walking::PoseCommand pose;
   int parameter_index = -1;  // into the rows of LiveParameters
   double parameter_value = 0.0;
   int swap_layer = -1;              // GAITD_LAYER_*

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "daemon/config/command_parse.h"
 #include "daemon/config/joint_names.h"
 #include "daemon/config/yaml_reader.h"
 
@@ -37,6 +38,25 @@ void read_foot(MapReader map, FootCalibration* foot) {
   map.finish();
 }
 
+// How well the zeros are known: for people and programs, the control does not use it.
+void check_covariance(MapReader map, const GaitdModel& model) {
+  if (!map.valid() || map.entries().empty()) return map.finish();
+  map.require({"joints", "zeros"});
+  const std::vector<NodePtr> names = map.list("joints", 1, GAITD_MAX_JOINTS);
+  for (const NodePtr& name : names) {
+    const std::string text = name->kind == NodeKind::kScalar ? name->text : "";
+    if (joint_index(model, text) < 0) map.fail("joints", "joints of the robot", describe(*name), "");
+  }
+  const std::vector<NodePtr> rows = map.list("zeros", 0, GAITD_MAX_JOINTS);
+  bool square = rows.size() == names.size();
+  for (const NodePtr& row : rows) {
+    square = square && row->kind == NodeKind::kList && row->items.size() == names.size();
+    for (const NodePtr& item : row->items) square = square && as_number(*item).has_value();
+  }
+  if (!square) map.fail("zeros", "rows of numbers, one row and one number for each joint", "", "");
+  map.finish();
+}
+
 }  // namespace
 
 std::optional<Calibration> read_calibration(const NodePtr& document, const GaitdModel& model,
@@ -55,6 +75,7 @@ std::optional<Calibration> read_calibration(const NodePtr& document, const Gaitd
   read_foot(feet.map("left"), &calibration.feet[GAITD_LEFT]);
   read_foot(feet.map("right"), &calibration.feet[GAITD_RIGHT]);
   feet.finish();
+  check_covariance(root.map("covariance"), model);
   root.finish();
   issues->append(found);
   if (!found.ok()) return std::nullopt;

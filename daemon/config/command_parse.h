@@ -23,7 +23,8 @@ const std::vector<std::string>& command_methods();
 //               contact_polygon, landing_region}, ...], replace}
 //   replace    footsteps with replace: true
 //   sim.push   {link, force: [x, y, z], duration, point: [x, y, z]}
-//   joint.test {joint, amplitude, duration}: not for scenarios
+//   joint.test {joint, amplitude, duration}
+//   pose       {pelvis: {x, y, z, roll, pitch, yaw}, duration}
 // Everything that is wrong goes to `issues`; then nothing is returned. Without a model the names of
 // links are not checked and the body of a push is -1.
 std::optional<Command> parse_command(std::string_view method, const NodePtr& params,

@@ -58,7 +58,8 @@ std::string read_name(MapReader* root) {
 }
 
 // Without a height the robot starts on the ground.
-GaitdStart read_start(MapReader map, const nlohmann::json& terrain, const Location& where) {
+GaitdStart read_start(MapReader map, const nlohmann::json& terrain, const Location& where,
+                      nlohmann::json* hoist) {
   GaitdStart start{};
   start.position[0] = map.number("x", kPositionBounds).value_or(0.0);
   start.position[1] = map.number("y", kPositionBounds).value_or(0.0);
@@ -69,6 +70,11 @@ GaitdStart read_start(MapReader map, const nlohmann::json& terrain, const Locati
                       "add it");
   }
   start.yaw = map.number("yaw", {-100.0, 100.0, "rad"}).value_or(0.0);
+  if (map.has("hoist")) {
+    MapReader hung = map.map("hoist");
+    *hoist = {{"height", hung.number("height", {0.02, 0.2, "m"}).value_or(0.1)}};
+    hung.finish();
+  }
   map.finish();
   return start;
 }
@@ -102,11 +108,12 @@ void check_sensor(const std::string& sensor, const GaitdModel& model, const std:
 }  // namespace
 
 nlohmann::json Scenario::simulator_config() const {
-  return {{"start",
-           {{"x", start.position[0]},
-            {"y", start.position[1]},
-            {"z", start.position[2]},
-            {"yaw", start.yaw}}},
+  nlohmann::json place = {{"x", start.position[0]},
+                          {"y", start.position[1]},
+                          {"z", start.position[2]},
+                          {"yaw", start.yaw}};
+  if (!hoist.is_null()) place["hoist"] = hoist;
+  return {{"start", place},
           {"seed", seed},
           {"terrain", terrain},
           {"sensors", sensors},
@@ -139,13 +146,14 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
   scenario.seed = static_cast<std::uint64_t>(root.integer("seed", 0, 4294967295).value_or(1));
   scenario.mode = root.choice("mode", kModeNames).value_or(GAITD_MODE_STAND);
   scenario.terrain = read_terrain(root.map("terrain"));
-  scenario.start = read_start(root.map("start"), scenario.terrain, root.where());
+  scenario.start = read_start(root.map("start"), scenario.terrain, root.where(), &scenario.hoist);
   scenario.start_where = root.where(root.has("start") ? "start" : "");
   scenario.sensors = read_sensors(root.map("sensors"));
   scenario.actuators = read_actuators(root.map("actuators"));
   scenario.model_error = read_model_error(root.map("model_error"));
   scenario.commands = read_scenario_commands(&root, scenario.duration);
-  const CommandedSteps steps = check_commands(scenario.commands, scenario.mode, &found);
+  const CommandedSteps steps = check_commands(
+      scenario.commands, scenario.mode, !scenario.hoist.is_null(), &found);
   scenario.disturbances = read_disturbances(&root, scenario.duration, steps);
   MapReader expect = root.map("expect");
   scenario.expect = read_expectations(expect);
@@ -168,8 +176,9 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
 void check_scenario(const Scenario& scenario, const GaitdModel& model, Issues* issues) {
   check_start(scenario, model, issues);
   for (const ScenarioCommand& command : scenario.commands) {
-    if (command.method != "sim.push") continue;
-    parse_command(command.method, from_json(command.params, command.where), &model, "push", issues);
+    if (command.method != "sim.push" && command.method != "joint.test") continue;
+    const std::string path = command.method == "sim.push" ? "push" : command.method;
+    parse_command(command.method, from_json(command.params, command.where), &model, path, issues);
   }
   for (const ScenarioDisturbance& disturbance : scenario.disturbances) {
     check_link(disturbance.link, model, disturbance.where, "disturbances.link", issues);

@@ -49,6 +49,7 @@ struct Scenario {
   double duration = 0.0;  // s, simulated
   std::uint64_t seed = 1;
   GaitdStart start{};  // middle of the feet
+  nlohmann::json hoist;  // start.hoist as written; null: it stands
   Location start_where;
   int mode = GAITD_MODE_STAND;
   // Of the simulator's configuration, as written there.

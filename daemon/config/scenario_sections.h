@@ -23,7 +23,7 @@ struct CommandedSteps {
 };
 // Reports the commands that will be refused whatever happens: in mode stand, not armed, on the
 // wrong foot. They must be in the order of time.
-CommandedSteps check_commands(const std::vector<ScenarioCommand>& commands, int mode,
+CommandedSteps check_commands(const std::vector<ScenarioCommand>& commands, int mode, bool hangs,
                               Issues* issues);
 
 std::vector<ScenarioDisturbance> read_disturbances(MapReader* root, double duration,

@@ -24,7 +24,8 @@ std::string_view side_name(int side) { return side == GAITD_LEFT ? "left" : "rig
 // Goes through the commands in the order of time. The robot of a simulation arms itself.
 class Story {
  public:
-  Story(int mode, Issues* issues) : mode_(mode), issues_(issues) {}
+  Story(int mode, bool hangs, Issues* issues)
+      : mode_(mode), hangs_(hangs), issues_(issues), stopped_by_(hangs ? kHoist : "") {}
 
   void tell(const ScenarioCommand& scenario_command, const Command& command) {
     at_ = &scenario_command;
@@ -43,7 +44,7 @@ class Story {
         if (stopped_by_ == "estop") stopped_by_ = "reset";
         break;
       case CommandType::kSimReset:
-        stopped_by_.clear();
+        stopped_by_ = hangs_ ? kHoist : "";
         last_.reset();
         break;
       case CommandType::kMode:
@@ -56,8 +57,14 @@ class Story {
       case CommandType::kFootsteps:
         tell_footsteps(command);
         break;
+      case CommandType::kJointTest:
+        if (stopped_by_.empty()) {
+          refuse(at_->method, "the robot is armed", "add disarm, or start: {hoist: {}}");
+        }
+        break;
       case CommandType::kPause:
       case CommandType::kResume:
+      case CommandType::kPose:
         check_armed();
         break;
       case CommandType::kStop:
@@ -85,6 +92,9 @@ class Story {
 
   void check_armed() {
     if (stopped_by_.empty()) return;
+    if (stopped_by_ == kHoist) {
+      return refuse(at_->method, "the robot hangs on its hoist, disarmed", "add arm before it");
+    }
     refuse(at_->method,
            "the robot is not armed since '" + stopped_by_ + "' at " + at_time(stopped_at_),
            stopped_by_ == "estop" ? "add reset and arm before it" : "add arm before it");
@@ -134,7 +144,10 @@ class Story {
     last_ = Ahead{side, begin + kShortestStep * count, at_->where.line};
   }
 
+  static constexpr const char* kHoist = "start.hoist";
+
   int mode_;
+  bool hangs_;
   Issues* issues_;
   const ScenarioCommand* at_ = nullptr;
   std::string stopped_by_;  // the command after which the robot is not armed; "": it is
@@ -144,10 +157,10 @@ class Story {
 
 }  // namespace
 
-CommandedSteps check_commands(const std::vector<ScenarioCommand>& commands, int mode,
+CommandedSteps check_commands(const std::vector<ScenarioCommand>& commands, int mode, bool hangs,
                               Issues* issues) {
   CommandedSteps steps;
-  Story story(mode, issues);
+  Story story(mode, hangs, issues);
   for (const ScenarioCommand& scenario_command : commands) {
     Issues ignored;  // reported when the command was read
     const auto command = parse_command(scenario_command.method,

@@ -31,6 +31,13 @@ void visit_joint_test(Test& test, Field&& field) {
   field("duration", test.duration);
 }
 
+template <class Pose, class Field>
+void visit_pose(Pose& pose, Field&& field) {
+  field("shift", pose.shift);
+  field("turn", pose.turn);
+  field("duration", pose.duration);
+}
+
 template <class Walk, class Field>
 void visit_walk(Walk& walk, Field&& field) {
   field("steps", walk.steps);
@@ -95,6 +102,9 @@ std::string input_text(const Command& c, int parameter_owner, int parameter_plac
     case CommandType::kJointTest:
       visit_joint_test(c.joint_test, Write{&out});
       break;
+    case CommandType::kPose:
+      visit_pose(c.pose, Write{&out});
+      break;
     case CommandType::kSetParameter:
       out["owner"] = parameter_owner;
       out["place"] = parameter_place;
@@ -113,6 +123,7 @@ bool read_input(const json& in, Command* c, int* parameter_owner, int* parameter
     if (c->type == CommandType::kMode) c->mode = in.at("mode").get<int>();
     if (c->type == CommandType::kWalk) visit_walk(c->walk, Read{&in});
     if (c->type == CommandType::kJointTest) visit_joint_test(c->joint_test, Read{&in});
+    if (c->type == CommandType::kPose) visit_pose(c->pose, Read{&in});
     if (c->type == CommandType::kFootsteps) {
       c->replace = in.at("replace").get<bool>();
       for (const json& step : in.at("footsteps")) {

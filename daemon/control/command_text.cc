@@ -12,7 +12,8 @@ namespace {
 
 constexpr const char* kNames[] = {
     "arm",    "disarm", "estop", "reset",     "mode",     "walk",      "footsteps",   "pause",
-    "resume", "stop",   "abort", "param.set", "sim.push", "sim.reset", "plugin.swap", "joint.test"};
+    "resume", "stop",   "abort", "param.set", "sim.push", "sim.reset", "plugin.swap", "joint.test",
+    "pose"};
 
 class Writer {
  public:
@@ -68,6 +69,11 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
   if (c.type == CommandType::kJointTest) {
     w.add(R"(,"joint":%d,"amplitude":%.17g,"duration":%.17g)", c.joint_test.joint,
           c.joint_test.amplitude, c.joint_test.duration);
+  }
+  if (c.type == CommandType::kPose) {
+    w.add(R"(,"shift":[%.17g,%.17g,%.17g],"turn":[%.17g,%.17g,%.17g],"duration":%.17g)",
+          c.pose.shift[0], c.pose.shift[1], c.pose.shift[2], c.pose.turn[0], c.pose.turn[1],
+          c.pose.turn[2], c.pose.duration);
   }
   if (!reply.accepted) {
     w.add(R"(,"reason":)");

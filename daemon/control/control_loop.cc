@@ -245,7 +245,7 @@ CommandReply ControlLoop::simulate(const Command& command) {
     std::snprintf(reply.message.data(), reply.message.size(), "%s",
                   "sim reset: this backend is no simulation; start gaitd with --backend simbody");
   } else {
-    pipeline_->reset();
+    pipeline_->reset(options_.arm);
     reply.accepted = true;
   }
   return reply;

@@ -33,6 +33,7 @@ Pipeline::Pipeline(const GaitdModel& model, const Calibration& calibration,
       layers_(std::move(layers), model_),
       gait_(model),
       objectives_(model),
+      pose_(model),
       safety_(model),
       monitor_(model),
       compensation_(model, calibration) {
@@ -157,7 +158,7 @@ bool Pipeline::take_swap_report(SwapReport* report) {
   return true;
 }
 
-void Pipeline::reset() {
+void Pipeline::reset(bool arm) {
   layers_.reset();
   safety_.reset();
   monitor_.reset();
@@ -167,11 +168,12 @@ void Pipeline::reset() {
   data_.variants = variants;
   gait_.reset(data_.robot);
   data_.gait = gait_.state();
-  safety_.arm();
+  if (arm) safety_.arm();
 }
 
 void Pipeline::begin_control() {
   gait_.reset(data_.robot);
+  pose_.reset();
   data_.gait = gait_.state();
   objectives_.reset(data_.robot, data_.gait);
   layers_.reset_controllers();
@@ -196,11 +198,15 @@ bool Pipeline::control(double dt) {
   TickData& d = data_;
   gait_.update(dt, d.robot, d.plan, d.toe_off, d.adjustment);
   d.gait = gait_.state();
-  const bool sound = layers_.plan(d) & layers_.adjust(d) & layers_.toe_off(d);
+  pose_.update(dt, d.gait);
+  const bool planned = layers_.plan(d);
+  pose_.shift_plan(d.gait, d.plan);
+  const bool sound = planned & layers_.adjust(d) & layers_.toe_off(d);
   if (!sound) {
     safety_.raise(kFaultLayer);
     return false;
   }
+  objectives_.set_pose(pose_.height(), pose_.turn(), pose_.turn_rate());
   objectives_.update(dt, d.robot, d.gait, gait_.lift_off(), d.adjustment, d.toe_off, d.objectives);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) d.legs[side] = objectives_.leg(side);
   const bool solved = layers_.control(d);
@@ -216,7 +222,8 @@ CommandReply Pipeline::execute(const Command& command) {
   walking::Refusal refusal;
   const bool needs_control =
       command.type == CommandType::kWalk || command.type == CommandType::kFootsteps ||
-      command.type == CommandType::kPause || command.type == CommandType::kResume;
+      command.type == CommandType::kPause || command.type == CommandType::kResume ||
+      command.type == CommandType::kPose;
   const char* why = needs_control ? safety_.refusal(kRequestWalk, data_) : nullptr;
   if (why != nullptr) return refused(command, data_.time.tick, why);
   const char* note = command_note(command, safety_.state(), gait_.state());
@@ -244,6 +251,9 @@ CommandReply Pipeline::execute(const Command& command) {
       break;
     case CommandType::kFootsteps:
       refusal = gait_.footsteps(command.footsteps.data(), command.footstep_count, command.replace);
+      break;
+    case CommandType::kPose:
+      refusal = pose_.command(command.pose, gait_.state());
       break;
     case CommandType::kPause:
       refusal = gait_.pause();

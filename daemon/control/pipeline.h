@@ -29,8 +29,8 @@ class Pipeline {
   void begin_swap(const SwapOrder& order);
   // What happened to swaps since the last tick, in order, each once.
   bool take_swap_report(SwapReport* report);
-  // Back to the first tick: for the reset of a simulation. Parameters stay.
-  void reset();
+  // Back to the first tick, armed or not: for the reset of a simulation. Parameters stay.
+  void reset(bool arm);
 
   // data().readings must hold the sensors of tick `tick`; data().commands holds the answer after.
   void run(std::int64_t tick);
@@ -59,6 +59,7 @@ class Pipeline {
   LayerChain layers_;
   walking::GaitMachine gait_;
   walking::ObjectiveBuilder objectives_;
+  walking::StancePose pose_;
   Safety safety_;
   SensorMonitor monitor_;
   Compensation compensation_;

@@ -218,7 +218,8 @@ std::unique_ptr<RecordedRobot> RecordedRobot::load(const LogReader& log,
     command.mode = mode;
     r->pipeline_->execute(command);
   }
-  if (replay.value("arm", false)) r->pipeline_->safety().arm();
+  r->arms_itself_ = replay.value("arm", false);
+  if (r->arms_itself_) r->pipeline_->safety().arm();
   return r;
 }
 

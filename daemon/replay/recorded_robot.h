@@ -31,6 +31,7 @@ class RecordedRobot {
   Pipeline& pipeline() { return *pipeline_; }
   LiveParameters& parameters() { return parameters_; }
   const GaitdModel& model() const { return robot_.model; }
+  bool arms_itself() const { return arms_itself_; }
 
  private:
   explicit RecordedRobot(const ReplayOptions& options)
@@ -48,6 +49,7 @@ class RecordedRobot {
                                           std::string* error);
 
   PluginDirectory directory_;
+  bool arms_itself_ = false;
   bool trust_ = false;  // of the paths that the log names
   Settings settings_;
   Robot robot_;

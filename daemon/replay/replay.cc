@@ -90,7 +90,7 @@ bool Player::execute(const Event& event, std::string* error) {
     return false;
   }
   if (command->type == CommandType::kSimReset) {
-    robot_.pipeline().reset();
+    robot_.pipeline().reset(robot_.arms_itself());
   } else if (command->type == CommandType::kSetParameter) {
     command->parameter_index = robot_.parameters().find_row(owner, place);
     if (command->parameter_index >= 0) robot_.pipeline().execute(*command);

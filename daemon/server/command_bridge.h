@@ -112,7 +112,7 @@ using CommandParser = std::function<std::variant<Command, RpcError>(const std::s
                                                                     const nlohmann::json& params)>;
 
 /// Adds the methods that are commands: arm, disarm, reset, mode, walk, footsteps, pause,
-/// resume, stop, abort, sim.push, sim.reset, joint.test. `bridge` must outlive the server.
+/// resume, stop, abort, pose, sim.push, sim.reset, joint.test. `bridge` must outlive the server.
 void add_command_methods(Methods* methods, CommandBridge* bridge, CommandParser parser);
 
 }  // namespace gaitd::daemon

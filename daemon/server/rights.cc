@@ -14,11 +14,11 @@ constexpr MethodRight kRights[] = {
     {"param.get", Role::kObserve},      {"param.list", Role::kObserve},
     {"param.set", Role::kCommand},      {"pause", Role::kCommand},
     {"plugin.list", Role::kObserve},    {"plugin.rollback", Role::kAdminister},
-    {"plugin.swap", Role::kAdminister}, {"reset", Role::kCommand},
-    {"resume", Role::kCommand},         {"sim.push", Role::kAdminister},
-    {"sim.reset", Role::kAdminister},   {"status", Role::kObserve},
-    {"stop", Role::kCommand},           {"version", Role::kObserve},
-    {"walk", Role::kCommand},
+    {"plugin.swap", Role::kAdminister}, {"pose", Role::kCommand},
+    {"reset", Role::kCommand},          {"resume", Role::kCommand},
+    {"sim.push", Role::kAdminister},    {"sim.reset", Role::kAdminister},
+    {"status", Role::kObserve},         {"stop", Role::kCommand},
+    {"version", Role::kObserve},        {"walk", Role::kCommand},
 };
 static_assert(std::ranges::is_sorted(kRights, {}, &MethodRight::method));
 

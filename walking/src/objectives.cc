@@ -239,7 +239,7 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
       .trailing_share = parameters_[Objective::kReachShare],
       .nominal_separation = model_.nominal_foot_separation,
       .largest_drop = parameters_[Objective::kReachDrop] * model_.nominal_com_height};
-  out.height_target = com_height_target(gait, reach);
+  out.height_target = com_height_target(gait, reach) + pose_height_;
   height_.update(dt, out.height_target, kHeightRate);
   const double stiffness = parameters_[Objective::kHeightStiffness];
   const double limit = parameters_[Objective::kHeightAccelerationLimit] * model_.gravity;
@@ -312,8 +312,15 @@ void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot
   if (gait.phase != GAITD_PHASE_STAND) tilt_ *= std::max(0.0, 1.0 - kLevelRate * dt);
   const Eigen::Quaterniond goal = sdk::from_yaw(yaw_.value()) * sdk::exp_so3(tilt_);
   const Eigen::Vector3d rate(0.0, 0.0, yaw_.velocity());
-  add_orientation_task(0, goal, rate, parameters_[Objective::kPelvisStiffness],
-                       parameters_[Objective::kPelvisDampingRatio], pelvis_weight(dt, gait, goal),
+  Eigen::Quaterniond pelvis = goal;
+  Eigen::Vector3d pelvis_rate = rate;
+  if (pose_turn_.w() != 1.0) {
+    const Eigen::Quaterniond facing = sdk::from_yaw(yaw_.value());
+    pelvis = facing * pose_turn_ * facing.conjugate() * goal;
+    pelvis_rate += facing * pose_rate_;
+  }
+  add_orientation_task(0, pelvis, pelvis_rate, parameters_[Objective::kPelvisStiffness],
+                       parameters_[Objective::kPelvisDampingRatio], pelvis_weight(dt, gait, pelvis),
                        out);
   if (model_.chest_body > 0) {
     add_orientation_task(

@@ -17,16 +17,21 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kAny{-kInfinity, kInfinity};
 constexpr Range kPlace{-1e4, 1e4};
 constexpr Range kNotNegative{0, kInfinity};
+constexpr Range kHoist{0.02, 0.2};
 constexpr Range kFriction{0, 10};
 constexpr Range kDelay{0, 0.1};
 
 void read_start(const json& value, std::vector<std::string>* errors, StartConfig* start) {
   JsonReader reader(value, "start", errors);
-  reader.allow({"x", "y", "z", "yaw"});
+  reader.allow({"x", "y", "z", "yaw", "hoist"});
   reader.number("x", kPlace, &start->x);
   reader.number("y", kPlace, &start->y);
   reader.number("z", kPlace, &start->z);
   reader.number("yaw", kAny, &start->yaw);
+  if (!reader.has("hoist")) return;
+  JsonReader hoist(reader.at("hoist"), "start.hoist", errors);
+  hoist.allow({"height"});
+  hoist.number("height", kHoist, &start->hoist.emplace().height);
 }
 
 void read_terrain(const json& value, std::vector<std::string>* errors, TerrainConfig* terrain) {

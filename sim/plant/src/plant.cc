@@ -39,6 +39,7 @@ Plant::Plant(const GaitdModel& model, const Config& config, double period,
   start_ = make_start_state(model_, config, physics_.get());
   physics_->place(start_);
   drives_ = make_drives(model_, config, physics_->joint_inertia());
+  if (config.start.hoist) hoist_.emplace(model_, *config.start.hoist);
   reset();
   for (const Touch& touch : physics_->touches()) {
     if (touch.depth < kDeepestStart) continue;
@@ -58,6 +59,7 @@ void Plant::place(const State& state) {
   drives_->reset();
   truth_.reset();
   physics_->place(state);
+  if (hoist_) hoist_->reset(physics_->bodies());
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const int body = model_.feet[side].force_sensor.body;
     wrench_[side] = sum_foot_wrench(model_, side, physics_->bodies()[body], physics_->touches());
@@ -71,6 +73,7 @@ double Plant::time() const { return static_cast<double>(tick_) * period_; }
 bool Plant::advance(const GaitdJointCommands& commands) {
   if (diverged_) return false;
   drives_->command(commands, step_);
+  if (hoist_) hoist_->command(commands, period_);
   for (int i = 0; i < steps_per_period_; ++i) {
     if (!step()) {
       diverged_ = true;
@@ -104,6 +107,7 @@ bool Plant::step() {
 
 void Plant::update_forces() {
   forces_.clear();
+  if (hoist_) hoist_->add_forces(physics_->bodies(), &forces_);
   for (Push& push : pushes_) {
     // A push that ends within the step leaves its share of the impulse.
     push.force.share = std::min(1.0, push.remaining / config_.time_step);

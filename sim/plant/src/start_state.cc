@@ -36,6 +36,11 @@ State make_start_state(const GaitdModel& model, const Config& config, Physics* p
   };
   state.p_WB = Eigen::Vector3d(config.start.x - middle.x(), config.start.y - middle.y(),
                                height - physics->resting_depth() - lowest);
+  if (config.start.hoist) {
+    state.p_WB.z() = height + config.start.hoist->height - lowest;
+    physics->place(state);
+    return state;
+  }
   // Heights in scenarios are rounded: a hair above the ground is meant to be on it.
   const double written = state.p_WB.z();
   while (!stands()) {

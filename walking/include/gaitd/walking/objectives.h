@@ -39,6 +39,14 @@ class ObjectiveBuilder {
   // Takes the present posture as the start of every reference.
   void reset(const GaitdRobotState& robot, const GaitdGaitState& gait);
 
+  // Where a standing robot holds height and pelvis, against where it would by itself: m; axes of
+  // the heading, rad/s.
+  void set_pose(double height, const Eigen::Quaterniond& turn, const Eigen::Vector3d& rate) {
+    pose_height_ = height;
+    pose_turn_ = turn;
+    pose_rate_ = rate;
+  }
+
   // One tick of `dt` seconds. `lift_off` is where the swing foot left the ground (W).
   void update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
               const GaitdPose& lift_off, const GaitdStepAdjustment& adjustment,
@@ -94,6 +102,9 @@ class ObjectiveBuilder {
   ReferenceFilter height_;
   ReferenceFilter yaw_;
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // rad, held while standing, level in a walk
+  double pose_height_ = 0.0;                         // m
+  Eigen::Quaterniond pose_turn_ = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d pose_rate_ = Eigen::Vector3d::Zero();  // rad/s
   double pelvis_share_ = 1.0;                       // of the weight of the pelvis orientation
   std::array<double, GAITD_MAX_FEET> time_in_contact_{};
   std::array<double, GAITD_MAX_FEET> time_in_toe_off_{};

@@ -47,11 +47,17 @@ struct BodyError {
   Eigen::Vector3d com_offset = Eigen::Vector3d::Zero();  // m, body frame
 };
 
+// A hoist that the robot hangs on, see Hoist.
+struct HoistConfig {
+  double height = 0.1;  // m, of the soles above the start
+};
+
 struct StartConfig {
   double x = 0;  // m, W, middle of the feet
   double y = 0;
   double yaw = 0;           // rad
   std::optional<double> z;  // m, height of the soles; none: ground_z
+  std::optional<HoistConfig> hoist;
 };
 
 struct Config {

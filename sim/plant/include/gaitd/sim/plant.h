@@ -5,12 +5,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gaitd/abi/backend.h"
 #include "gaitd/sim/config.h"
 #include "gaitd/sim/drives.h"
+#include "gaitd/sim/hoist.h"
 #include "gaitd/sim/physics.h"
 #include "gaitd/sim/sensors.h"
 #include "gaitd/sim/truth.h"
@@ -65,6 +67,7 @@ class Plant {
   int steps_per_period_;
   std::unique_ptr<Physics> physics_;
   std::unique_ptr<Drives> drives_;
+  std::optional<Hoist> hoist_;
   Sensors sensors_;
   Truth truth_;
   State start_;

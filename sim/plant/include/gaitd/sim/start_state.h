@@ -10,7 +10,8 @@
 namespace gaitd::sim {
 
 // The nominal posture at rest with a level pelvis: the middle of the soles at x, y and yaw of
-// `config.start`, the lower sole as far below start.z (or the ground) as it sinks in. Leaves
+// `config.start`, the lower sole as far below start.z (or the ground) as it sinks in, or as far
+// above it as it hangs on its hoist. Leaves
 // `physics` somewhere else.
 State make_start_state(const GaitdModel& model, const Config& config, Physics* physics);
 

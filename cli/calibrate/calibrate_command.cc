@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/calibrate/calibrate_command.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/calibrate/calibration_text.h"
+#include "cli/calibrate/live_motions.h"
+#include "cli/failure.h"
+#include "cli/log_damage.h"
+#include "cli/print.h"
+#include "cli/scenario_run.h"
+#include "daemon/config/paths.h"
+#include "daemon/replay/robot_of_log.h"
+
+namespace gaitd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCommand = "calibrate";
+constexpr std::size_t kFewestPostures = 6;
+
+struct Arguments {
+  std::string log;
+  std::string output;
+  std::string motions = "calibration";
+  std::vector<std::string> settings;
+  bool simulate = false;
+  calibrate::Prior prior;
+};
+
+fs::path beside_this_program() {
+  std::error_code ignored;
+  return fs::read_symlink("/proc/self/exe", ignored).parent_path() / "gaitd";
+}
+
+int write(const Context& context, const std::string& file, const std::string& text) {
+  std::error_code ignored;
+  const fs::path folder = fs::path(file).parent_path();
+  if (!folder.empty()) fs::create_directories(folder, ignored);
+  const std::string fresh = file + ".new";
+  std::ofstream out(fresh);
+  out << text;
+  out.close();
+  std::error_code error;
+  if (out) fs::rename(fresh, file, error);
+  if (out && !error) return kDone;
+  fs::remove(fresh, ignored);
+  return fail(context, kFailed, kCommand, file + ": cannot be written; choose a place with -o FILE");
+}
+
+// Beside the robot.yaml of the robot, unless the user says where.
+std::string output_of(const Arguments& arguments, const daemon::Robot& robot) {
+  if (!arguments.output.empty()) return arguments.output;
+  const fs::path folder = fs::path(robot.file).parent_path() / "calibration";
+  return (folder / "measured.yaml").string();
+}
+
+int estimate(const Context& context, const Arguments& arguments, const std::string& file) {
+  std::string error;
+  const auto log = daemon::LogReader::open(file, &error);
+  if (!log) return fail(context, kFailed, kCommand, error);
+  const auto robot = daemon::robot_of_log(*log, nullptr, &error);
+  if (!robot) return fail(context, kFailed, kCommand, file + ": " + error);
+  if (robot->model.imu_count < 1) {
+    return fail(context, kFailed, kCommand, robot->model.name + std::string(": it has no IMU"));
+  }
+  const auto recording = calibrate::read_recording(*log, robot->model, &error);
+  if (!recording) return fail(context, kFailed, kCommand, file + ": " + error);
+  if (recording->postures.size() < kFewestPostures) {
+    return fail(context, kFailed, kCommand,
+                file + ": expected at least " + std::to_string(kFewestPostures) +
+                    " postures in which the robot stands still, got " +
+                    std::to_string(recording->postures.size()) +
+                    "; let it take the postures of the scenario calibration");
+  }
+  calibrate::Result result;
+  result.hanging = static_cast<int>(recording->hanging.size());
+  daemon::Calibration known = robot->calibration;
+  if (result.hanging > 0) {
+    result.feet = calibrate::foot_offsets(robot->model, known, recording->hanging);
+  }
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    if (result.hanging == 0) result.feet[side].value = known.feet[side];
+    known.feet[side] = result.feet[side].value;
+  }
+  result.identified = calibrate::identify(robot->model, known, *recording, arguments.prior);
+  const std::string output = output_of(arguments, *robot);
+  if (const int failed = write(context, output,
+                               calibration_yaml(robot->model, result, fs::path(file).filename()))) {
+    return failed;
+  }
+  if (context.json) {
+    nlohmann::json json = summary_json(robot->model, result);
+    json["file"] = output;
+    add_damage(*log, &json);
+    std::cout << json_text(json);
+  } else {
+    std::cout << summary(robot->model, result) << "written: " << output << "\n";
+  }
+  return tell_damage(kCommand, *log, kDone);
+}
+
+int simulate(const Context& context, const Arguments& arguments) {
+  RunOptions options{beside_this_program(), arguments.settings, {}, false};
+  const RunReport report = run_scenario(arguments.motions, options, Progress());
+  if (!report.pass()) {
+    std::cerr << report_text(report);
+    return fail(context, kFailed, kCommand,
+                arguments.motions + ": the robot did not get through its motions");
+  }
+  return estimate(context, arguments, report.log);
+}
+
+int run(const Context& context, const Arguments& arguments) {
+  if (!arguments.log.empty()) return estimate(context, arguments, arguments.log);
+  if (arguments.simulate) return simulate(context, arguments);
+  if (!arguments.settings.empty()) {
+    return fail(context, kUsage, kCommand, "--set is for --simulate");
+  }
+  std::string log;
+  if (const int failed = play_live(context, arguments.motions, &log)) return failed;
+  return estimate(context, arguments, log);
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App* app, Context* context) {
+  auto* command = app->add_subcommand(
+      "calibrate", "Measure zeros, stiffnesses and foot sensors of a robot by its own motions");
+  command->footer(
+      "The robot hangs on its hoist, disarmed, feet clear of the ground. It moves the joints of its\n"
+      "legs one by one, is armed and lowered, and takes some postures on both feet. What its\n"
+      "encoders, IMU and force sensors say in them must fit together: that gives the calibration,\n"
+      "with standard deviations, and tells what cannot be known without a jig. Exit code 0: the\n"
+      "file is written; 1: refused or failed; 4: the log is damaged.");
+  auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("LOG", arguments->log, "Nothing moves: a log of such motions is looked at (.mcap)")
+      ->type_name("FILE");
+  command->add_flag("--simulate", arguments->simulate,
+                    "With a simulated robot on a private gaitd, in lockstep");
+  command
+      ->add_option("--set", arguments->settings,
+                   "With --simulate: any key of the configuration or the scenario")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->expected(1);
+  command
+      ->add_option("--motions", arguments->motions,
+                   "Scenario whose commands are the motions; by default calibration")
+      ->type_name("NAME|FILE");
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "Where to write; by default calibration/measured.yaml beside robot.yaml")
+      ->type_name("FILE");
+  command
+      ->add_option("--zero-sigma", arguments->prior.zero,
+                   "How wrong the zeros of the encoders may be before, rad, one standard deviation")
+      ->check(CLI::Range(1e-4, 0.2))
+      ->capture_default_str();
+  command
+      ->add_option("--imu-sigma", arguments->prior.accelerometer,
+                   "Likewise bias and mounting of the accelerometer, m/s^2")
+      ->check(CLI::Range(1e-4, 5.0))
+      ->capture_default_str();
+  command->callback([context, arguments] {
+    context->action = [context, arguments] { return run(*context, *arguments); };
+  });
+}
+
+}  // namespace gaitd::cli

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/calibrate/identification.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/dynamics/kinematics.h"
+#include "gaitd/sdk/views.h"
+
+namespace gaitd::calibrate {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+// Standard deviations of what a still robot shows. Stiction leaves torques, so deflections, that
+// the drives do not tell of.
+constexpr double kPlaceSigma = 1e-3;    // m, of one foot against the other
+constexpr double kTurnSigma = 1.2e-3;   // rad, likewise
+constexpr double kForceSigma = 0.012;   // m/s^2, of the averaged IMU
+constexpr double kBalanceSigma = 2e-3;  // m, of the centre of mass against the centre of pressure
+// Of unknowns that are not asked for.
+constexpr double kScaleSigma = 0.01;      // of the force sensors
+constexpr double kPressureSigma = 1e-3;   // m, of a foot's centre of pressure
+constexpr double kRollGive = 8e-4;        // rad/(N m), of a sole in the ground
+constexpr double kPitchGive = 3e-4;
+constexpr double kSinking = 1.5e-6;       // m/N
+constexpr double kAnywhere = 1.0;         // m, rad: where the feet stand
+constexpr double kHuber = 3.0;            // standard deviations beyond which a residual counts less
+constexpr int kIterations = 12;
+constexpr double kShareToKnow = 0.4;      // of the prior, beyond which nothing was learned
+
+constexpr int kResiduals = 11;  // of a posture: place 3, turn 3, IMU 3, balance 2
+
+// Places of the unknowns in one vector.
+struct Layout {
+  std::vector<int> joints;
+  int stances = 0;
+
+  int count() const { return stance(stances); }
+  int joint_count() const { return static_cast<int>(joints.size()); }
+  int zero(int i) const { return i; }
+  int compliance(int i) const { return joint_count() + i; }
+  int accelerometer() const { return 2 * joint_count(); }
+  int chest() const { return accelerometer() + 3; }
+  int scale() const { return chest() + 3; }
+  int pressure(int side) const { return scale() + 2 + 2 * side; }
+  int give() const { return pressure(GAITD_MAX_FEET); }  // roll, pitch, sinking
+  // Place and turn of the right foot in the left one, tilt of the ground under the left one.
+  int stance(int s) const { return give() + 3 + 8 * s; }
+};
+
+Layout layout_of(const GaitdModel& model, const Recording& recording) {
+  Layout layout;
+  for (const GaitdLeg& leg : model.legs) {
+    layout.joints.insert(layout.joints.end(), leg.joints, leg.joints + leg.joint_count);
+  }
+  for (int body = model.chest_body; body > 0;) {
+    const int joint = model.bodies[body].joint;
+    layout.joints.push_back(joint);
+    body = model.joints[joint].parent_body;
+  }
+  for (const Posture& p : recording.postures) {
+    layout.stances = std::max(layout.stances, p.stance + 1);
+  }
+  return layout;
+}
+
+class Problem {
+ public:
+  Problem(const GaitdModel& model, const daemon::Calibration& known, const Recording& recording,
+          const Prior& prior)
+      : model_(model),
+        known_(known),
+        recording_(recording),
+        layout_(layout_of(model, recording)),
+        kinematics_(model) {
+    set_prior(prior);
+  }
+
+  const Layout& layout() const { return layout_; }
+  const VectorXd& mean() const { return mean_; }
+  const VectorXd& sigma() const { return sigma_; }
+
+  // Of every posture, in standard deviations.
+  VectorXd residuals(const VectorXd& x) {
+    VectorXd all(kResiduals * static_cast<Eigen::Index>(recording_.postures.size()));
+    Eigen::Index row = 0;
+    for (const Posture& posture : recording_.postures) {
+      all.segment<kResiduals>(row) = residual(posture, x);
+      row += kResiduals;
+    }
+    return all;
+  }
+
+  MatrixXd jacobian(const VectorXd& x) {
+    MatrixXd j(kResiduals * static_cast<Eigen::Index>(recording_.postures.size()), x.size());
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      const double step = 1e-3 * sigma_[i];
+      VectorXd ahead = x, behind = x;
+      ahead[i] += step;
+      behind[i] -= step;
+      j.col(i) = (residuals(ahead) - residuals(behind)) / (2 * step);
+    }
+    return j;
+  }
+
+  // Starts the feet where the first posture of each stance has them.
+  VectorXd start() {
+    VectorXd x = mean_;
+    for (int s = layout_.stances; s-- > 0;) {
+      for (const Posture& posture : recording_.postures) {
+        if (posture.stance != s) continue;
+        update(posture, x);
+        const Ground left = ground(GAITD_LEFT, posture, x);
+        const Ground right = ground(GAITD_RIGHT, posture, x);
+        x.segment<3>(layout_.stance(s)) = left.R.transpose() * (right.p - left.p);
+        x.segment<3>(layout_.stance(s) + 3) =
+            sdk::log_so3(Quaterniond(left.R.transpose() * right.R));
+        break;
+      }
+    }
+    return x;
+  }
+
+ private:
+  // The ground under a sole, in the pelvis frame.
+  struct Ground {
+    Eigen::Matrix3d R;
+    Vector3d p;
+  };
+  struct Load {  // of the ground on the foot, about the sole, pelvis axes
+    Vector3d moment, force;
+  };
+
+  void set_prior(const Prior& prior) {
+    mean_ = VectorXd::Zero(layout_.count());
+    sigma_ = VectorXd::Constant(layout_.count(), prior.ground);
+    for (int i = 0; i < layout_.joint_count(); ++i) {
+      const double stiffness = known_.joints[layout_.joints[i]].stiffness;
+      sigma_[layout_.zero(i)] = prior.zero;
+      mean_[layout_.compliance(i)] = stiffness > 0 ? 1 / stiffness : 0.0;
+      sigma_[layout_.compliance(i)] = stiffness > 0 ? prior.compliance / stiffness : prior.unknown;
+    }
+    sigma_.segment<3>(layout_.accelerometer()).setConstant(prior.accelerometer);
+    sigma_.segment<3>(layout_.chest()).setConstant(prior.chest_com);
+    sigma_.segment<2>(layout_.scale()).setConstant(kScaleSigma);
+    for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+      sigma_.segment<2>(layout_.pressure(side)).setConstant(kPressureSigma);
+    }
+    sigma_.segment<3>(layout_.give()) << kRollGive, kPitchGive, kSinking;
+    for (int s = 0; s < layout_.stances; ++s) {
+      // Where the feet stand and how they are turned is free; the ground is even and level.
+      sigma_.segment<2>(layout_.stance(s)).setConstant(kAnywhere);
+      sigma_[layout_.stance(s) + 5] = kAnywhere;
+    }
+  }
+
+  void update(const Posture& posture, const VectorXd& x) {
+    VectorXd q = posture.position;
+    for (int i = 0; i < layout_.joint_count(); ++i) {
+      const int joint = layout_.joints[i];
+      q[joint] -= x[layout_.zero(i)] + x[layout_.compliance(i)] * posture.torque[joint];
+    }
+    kinematics_.update(Vector3d::Zero(), Quaterniond::Identity(), Vector6d::Zero(), q,
+                       VectorXd::Zero(q.size()));
+  }
+
+  Load load(int side, const Posture& posture, const VectorXd& x) const {
+    const GaitdFoot& foot = model_.feet[side];
+    const daemon::FootCalibration& own = known_.feet[side];
+    const Eigen::Matrix3d& R = kinematics_.R_WB(foot.body);
+    const Quaterniond turn = sdk::quaternion(foot.force_sensor.orientation);
+    const double scale = 1 - x[layout_.scale() + side];
+    const Vector6d& reading = posture.foot_wrench[side];
+    // Without the foot below the sensor; it is level.
+    const Vector3d weight(0, 0, own.mass * model_.gravity);
+    const Vector3d arm =
+        Vector3d(own.com.data()) - sdk::view(foot.force_sensor.origin);
+    Load l;
+    l.force = scale * (turn * (reading.tail<3>() - Vector3d(own.force.data()))) + weight;
+    l.moment = scale * (turn * (reading.head<3>() - Vector3d(own.moment.data()))) +
+               arm.cross(weight);
+    const Vector3d to_sensor = sdk::view(foot.force_sensor.origin) - sdk::view(foot.sole.origin);
+    l.moment += to_sensor.cross(l.force);
+    const auto off = x.segment<2>(layout_.pressure(side));
+    l.moment += Vector3d(off.x(), off.y(), 0).cross(Vector3d(0, 0, l.force.z()));
+    return {R * l.moment, R * l.force};
+  }
+
+  Ground ground(int side, const Posture& posture, const VectorXd& x) const {
+    const GaitdFoot& foot = model_.feet[side];
+    const Eigen::Matrix3d R =
+        kinematics_.R_WB(foot.body) * sdk::quaternion(foot.sole.orientation).toRotationMatrix();
+    const Load l = load(side, posture, x);
+    const auto give = x.segment<3>(layout_.give());
+    const Vector3d moment = R.transpose() * l.moment;
+    const double force = R.col(2).dot(l.force);
+    // The edge that bears more sinks in more: the sole turns against the moment of the ground.
+    const Vector3d tilt(-give[0] * moment.x(), -give[1] * moment.y(), 0);
+    Ground g;
+    g.R = R * sdk::exp_so3(tilt).toRotationMatrix().transpose();
+    g.p = kinematics_.frame_position(foot.body, sdk::view(foot.sole.origin)) +
+          R.col(2) * (give[2] * force);
+    return g;
+  }
+
+  Eigen::Matrix<double, kResiduals, 1> residual(const Posture& posture, const VectorXd& x) {
+    update(posture, x);
+    const Ground left = ground(GAITD_LEFT, posture, x);
+    const Ground right = ground(GAITD_RIGHT, posture, x);
+    const int s = layout_.stance(posture.stance);
+    Eigen::Matrix<double, kResiduals, 1> r;
+    r.segment<3>(0) =
+        (left.R.transpose() * (right.p - left.p) - x.segment<3>(s)) / kPlaceSigma;
+    const Quaterniond turn(left.R.transpose() * right.R);
+    r.segment<3>(3) =
+        sdk::log_so3(sdk::exp_so3(Vector3d(x.segment<3>(s + 3))).conjugate() * turn) / kTurnSigma;
+    // Level axes, as the ground under the left foot says.
+    const Eigen::Matrix3d level =
+        left.R * sdk::exp_so3(Vector3d(x[s + 6], x[s + 7], 0)).toRotationMatrix().transpose();
+    const GaitdFrame& imu = model_.imus[0];
+    const Eigen::Matrix3d R_imu =
+        kinematics_.R_WB(imu.body) * sdk::quaternion(imu.orientation).toRotationMatrix();
+    r.segment<3>(6) = (posture.specific_force - x.segment<3>(layout_.accelerometer()) -
+                       R_imu.transpose() * level.col(2) * model_.gravity) /
+                      kForceSigma;
+    const int chest = std::max(0, model_.chest_body);
+    const Vector3d com =
+        kinematics_.com() + model_.bodies[chest].mass / model_.total_mass *
+                                (kinematics_.R_WB(chest) * x.segment<3>(layout_.chest()));
+    Vector3d moment = Vector3d::Zero();
+    Vector3d force = Vector3d::Zero();
+    for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+      const Load l = load(side, posture, x);
+      const Vector3d sole = kinematics_.frame_position(model_.feet[side].body,
+                                                       sdk::view(model_.feet[side].sole.origin));
+      moment += l.moment + (sole - com).cross(l.force);
+      force += l.force;
+    }
+    r.segment<2>(9) = (level.transpose() * moment).head<2>() / force.norm() / kBalanceSigma;
+    return r;
+  }
+
+  const GaitdModel model_;
+  const daemon::Calibration known_;
+  const Recording& recording_;
+  const Layout layout_;
+  dynamics::Kinematics kinematics_;
+  VectorXd mean_, sigma_;
+};
+
+// Huber's weights of residuals in standard deviations.
+VectorXd weights(const VectorXd& residuals) {
+  return residuals.unaryExpr(
+      [](double r) { return std::abs(r) <= kHuber ? 1.0 : kHuber / std::abs(r); });
+}
+
+void tell_unobservable(const Prior& prior, Identified* result) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> split(result->zeros.covariance);
+  for (Eigen::Index i = split.eigenvalues().size(); i-- > 0;) {
+    const double sigma = std::sqrt(std::max(0.0, split.eigenvalues()[i]));
+    if (sigma < kShareToKnow * prior.zero) break;
+    const VectorXd v = split.eigenvectors().col(i);
+    result->unobservable.push_back({sigma, {v.data(), v.data() + v.size()}});
+  }
+}
+
+}  // namespace
+
+Identified identify(const GaitdModel& model, const daemon::Calibration& known,
+                    const Recording& recording, const Prior& prior) {
+  Problem problem(model, known, recording, prior);
+  const Layout& layout = problem.layout();
+  const VectorXd information = problem.sigma().cwiseAbs2().cwiseInverse();
+  VectorXd x = problem.start();
+  Eigen::LLT<MatrixXd> normal;
+  VectorXd weight;
+  for (int i = 0; i < kIterations; ++i) {
+    const VectorXd r = problem.residuals(x);
+    weight = weights(r);
+    const MatrixXd j = problem.jacobian(x);
+    MatrixXd n = j.transpose() * weight.asDiagonal() * j;
+    n.diagonal() += information;
+    normal.compute(n);
+    const VectorXd gradient = j.transpose() * weight.cwiseProduct(r) +
+                              information.cwiseProduct(x - problem.mean());
+    x -= normal.solve(gradient);
+  }
+  const VectorXd r = problem.residuals(x);
+  Identified result;
+  result.postures = static_cast<int>(recording.postures.size());
+  // Residuals larger than expected say that what was assumed of the sensors is too good.
+  result.misfit = std::sqrt(weight.cwiseProduct(r.cwiseAbs2()).mean());
+  const double inflation = std::max(1.0, result.misfit * result.misfit);
+  const MatrixXd covariance =
+      normal.solve(MatrixXd::Identity(layout.count(), layout.count())) * inflation;
+  const int n = layout.joint_count();
+  result.zeros.joints = layout.joints;
+  result.zeros.value = x.head(n);
+  result.zeros.covariance = covariance.topLeftCorner(n, n);
+  for (int i = 0; i < n; ++i) {
+    result.compliance.push_back(x[layout.compliance(i)]);
+    result.compliance_sigma.push_back(
+        std::sqrt(covariance(layout.compliance(i), layout.compliance(i))));
+  }
+  result.accelerometer = x.segment<3>(layout.accelerometer());
+  result.chest_com = x.segment<3>(layout.chest());
+  tell_unobservable(prior, &result);
+  return result;
+}
+
+}  // namespace gaitd::calibrate

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/calibrate/live_motions.h"
+
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/ask.h"
+#include "cli/failure.h"
+#include "daemon/config/paths.h"
+#include "daemon/config/scenario.h"
+#include "daemon/config/settings.h"
+
+namespace gaitd::cli {
+namespace {
+
+using nlohmann::json;
+using std::chrono::milliseconds;
+
+constexpr const char* kCommand = "calibrate";
+constexpr double kPatience = 60.0;  // s, for the robot to stand, or to be lowered
+constexpr milliseconds kPoll(20);
+
+json status(RpcClient* client) {
+  const daemon::RpcResult result = client->call("status", nullptr);
+  const json* value = std::get_if<json>(&result);
+  return value != nullptr ? *value : json::object();
+}
+
+// The state that the command leads to; empty: none is waited for.
+std::string state_after(const std::string& method) {
+  if (method == "joint.test") return "disarmed";
+  if (method == "arm" || method == "abort" || method == "stop") return "standing";
+  return "";
+}
+
+bool wait_for(RpcClient* client, const std::string& state, std::string* got) {
+  const auto deadline =
+      std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  do {
+    std::this_thread::sleep_for(kPoll);
+    *got = status(client).value("state", "");
+    if (*got == state) return true;
+  } while (*got != "fault" && std::chrono::steady_clock::now() < deadline);
+  return false;
+}
+
+std::optional<daemon::Scenario> read(const std::string& name, std::string* error) {
+  const auto file = daemon::Paths::detect().scenario(name);
+  if (!file) {
+    *error = name + ": no such scenario";
+    return std::nullopt;
+  }
+  daemon::Issues issues;
+  daemon::Settings settings;
+  auto scenario = daemon::load_scenario(file->string(), &settings, &issues);
+  if (!scenario) *error = issues.error_text();
+  return scenario;
+}
+
+}  // namespace
+
+int play_live(const Context& context, const std::string& name, std::string* log) {
+  std::string error;
+  const auto scenario = read(name, &error);
+  if (!scenario) return fail(context, kFailed, kCommand, error);
+  const auto client = connect(context, kCommand, daemon::Role::kAdminister);
+  if (!client) return kNoDaemon;
+  const json before = status(client.get());
+  const json written = before.value("log", json::object());
+  if (!written.is_object() || !written.value("open", false)) {
+    return fail(context, kFailed, kCommand,
+                "gaitd writes no log, and what it shows there is what is measured; start it with "
+                "`log`, see docs/configuration.md");
+  }
+  *log = written.value("file", "");
+  if (before.value("state", "") != "disarmed") {
+    return fail(context, kFailed, kCommand,
+                "expected a disarmed robot on its hoist, got one that is " +
+                    before.value("state", "") + "; `gaitctl disarm` first");
+  }
+  auto due = std::chrono::steady_clock::now();
+  double last = scenario->commands.empty() ? 0.0 : scenario->commands.front().at;
+  for (const daemon::ScenarioCommand& command : scenario->commands) {
+    due += std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+        std::chrono::duration<double>(command.at - last));
+    last = command.at;
+    std::this_thread::sleep_until(due);
+    if (command.method == "arm") {
+      std::cerr << "arming; lower the hoist until both feet carry the robot and the rope is slack\n";
+    }
+    const daemon::RpcResult result = client->call(command.method, command.params);
+    if (const auto* refused = std::get_if<daemon::RpcError>(&result)) {
+      return fail(context, kCommand, command.method, *refused);
+    }
+    const std::string wanted = state_after(command.method);
+    std::string got;
+    if (!wanted.empty() && !wait_for(client.get(), wanted, &got)) {
+      return fail(context, kFailed, kCommand,
+                  command.method + ": expected the robot to be " + wanted + " after it, got " + got +
+                      "; see `gaitctl status`");
+    }
+    due = std::max(due, std::chrono::steady_clock::now());
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(4));  // the last posture, and the log
+  return kDone;
+}
+
+}  // namespace gaitd::cli

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/calibrate/recording.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+
+namespace gaitd::calibrate {
+namespace {
+
+using daemon::LogReader;
+
+constexpr double kWindow = 0.4;         // s, over which a reading is averaged
+constexpr double kTravel = 4e-3;        // rad that an encoder may move in it, robot at rest
+constexpr double kSlowTravel = 0.08;    // rad, hanging
+constexpr double kNewPosture = 0.02;    // rad, by which one posture differs from the next
+constexpr double kAirborne = 0.1;       // of the weight, on both feet together
+constexpr double kLeastLoad = 0.15;     // of the weight, on each foot that stands
+
+struct Window {
+  explicit Window(int joints)
+      : position(Eigen::VectorXd::Zero(joints)),
+        torque(Eigen::VectorXd::Zero(joints)),
+        lowest(Eigen::VectorXd::Constant(joints, 1e9)),
+        highest(Eigen::VectorXd::Constant(joints, -1e9)) {
+    wrench.fill(Vector6d::Zero());
+  }
+
+  void add(const GaitdSensors& sensors) {
+    for (Eigen::Index j = 0; j < position.size(); ++j) {
+      const GaitdJointSensor& joint = sensors.joints[j];
+      position[j] += joint.position;
+      torque[j] += joint.torque;
+      lowest[j] = std::min(lowest[j], joint.position);
+      highest[j] = std::max(highest[j], joint.position);
+    }
+    force += sdk::view(sensors.imus[0].specific_force);
+    for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+      wrench[side].head<3>() += sdk::view(sensors.feet[side].moment);
+      wrench[side].tail<3>() += sdk::view(sensors.feet[side].force);
+    }
+    ++count;
+  }
+
+  Stillness mean(double time) const {
+    Stillness s{time, position / count, torque / count, force / count, wrench};
+    for (Vector6d& w : s.foot_wrench) w /= count;
+    return s;
+  }
+
+  double count = 0;
+  Eigen::VectorXd position, torque, lowest, highest;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  std::array<Vector6d, GAITD_MAX_FEET> wrench;
+};
+
+// The joints whose stillness counts: those of the legs and of the way to the chest.
+std::vector<int> carrying_joints(const GaitdModel& model) {
+  std::vector<int> joints;
+  for (const GaitdLeg& leg : model.legs) {
+    joints.insert(joints.end(), leg.joints, leg.joints + leg.joint_count);
+  }
+  for (int body = model.chest_body; body > 0;) {
+    const int joint = model.bodies[body].joint;
+    joints.push_back(joint);
+    body = model.joints[joint].parent_body;
+  }
+  return joints;
+}
+
+// Value of the word of an enumeration, -1 if the log has no such word.
+int word_of(const LogReader& log, std::string_view signal, std::string_view word) {
+  const int i = daemon::find_signal(log.signals(), signal);
+  return i < 0 ? -1 : daemon::find_word(log.signals()[i], word);
+}
+
+double largest(const Eigen::VectorXd& values, const std::vector<int>& joints) {
+  double most = 0;
+  for (const int j : joints) most = std::max(most, std::abs(values[j]));
+  return most;
+}
+
+}  // namespace
+
+std::optional<Recording> read_recording(const LogReader& log, const GaitdModel& model,
+                                        std::string* error) {
+  const std::vector<double> time = log.column("time", error);
+  const std::vector<double> phase = log.column("gait/phase", error);
+  const std::vector<double> step = log.column("gait/step_index", error);
+  const std::vector<double> state = log.column("safety/state", error);
+  if (time.empty() || phase.empty() || step.empty() || state.empty()) return std::nullopt;
+  const int standing = word_of(log, "safety/state", "standing");
+  const double weight = model.total_mass * model.gravity;
+  const std::vector<int> carrying = carrying_joints(model);
+  Recording recording;
+  LogReader::SensorsCursor cursor = log.sensors();
+  GaitdSensors sensors;
+  Window window(model.joint_count);
+  double begin = 0;
+  int stance = -1;
+  const auto close = [&](double end) {
+    if (window.count == 0 || end - begin < 0.99 * kWindow) return;
+    const Stillness still = window.mean(0.5 * (begin + end));
+    const double left = still.foot_wrench[GAITD_LEFT][5];
+    const double right = still.foot_wrench[GAITD_RIGHT][5];
+    const double travel = largest(window.highest - window.lowest, carrying);
+    if (std::abs(left) + std::abs(right) < kAirborne * weight && travel < kSlowTravel) {
+      recording.hanging.push_back(still);
+    } else if (stance >= 0 && travel < kTravel && std::min(left, right) > kLeastLoad * weight) {
+      std::vector<Posture>& all = recording.postures;
+      const bool again = !all.empty() && all.back().stance == stance &&
+                         largest(all.back().position - still.position, carrying) < kNewPosture;
+      if (again) all.pop_back();  // it has settled further
+      all.push_back({still, stance});
+    }
+  };
+  while (cursor.next(&sensors)) {
+    const std::size_t row = cursor.row();
+    if (row >= time.size()) break;
+    const bool stands = phase[row] == GAITD_PHASE_STAND && state[row] == standing;
+    const int now = stands ? static_cast<int>(step[row]) : -1;
+    if (now != stance || time[row] - begin >= kWindow) {
+      close(time[row]);
+      window = Window(model.joint_count);
+      begin = time[row];
+      stance = now;
+    }
+    window.add(sensors);
+  }
+  return recording;
+}
+
+}  // namespace gaitd::calibrate

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/log/log_reader.h"
+#include "gaitd/abi/types.h"
+
+namespace gaitd::calibrate {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+// Means of raw readings over a short time in which nothing moves.
+struct Stillness {
+  double time = 0.0;                                // s, of its middle
+  Eigen::VectorXd position;                         // rad, encoders
+  Eigen::VectorXd torque;                           // N m, as the drives say
+  Eigen::Vector3d specific_force;                   // m/s^2, axes of the first IMU
+  std::array<Vector6d, GAITD_MAX_FEET> foot_wrench; // N m, N: moment first; axes of the sensor
+};
+
+// A posture of the robot on both feet, at rest; those with the same `stance` had their feet in the
+// same places.
+struct Posture : Stillness {
+  int stance = 0;
+};
+
+// What a log holds for a calibration.
+struct Recording {
+  std::vector<Posture> postures;
+  std::vector<Stillness> hanging;  // with both feet in the air, slow rather than still
+};
+
+// Nothing, with why in `error`, if the log does not have what it takes.
+std::optional<Recording> read_recording(const daemon::LogReader& log, const GaitdModel& model,
+                                        std::string* error);
+
+}  // namespace gaitd::calibrate
