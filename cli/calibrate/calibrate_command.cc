@@ -94,6 +94,11 @@ int estimate(const Context& context, const Arguments& arguments, const std::stri
     known.feet[side] = result.feet[side].value;
   }
   result.identified = calibrate::identify(robot->model, known, *recording, arguments.prior);
+  for (std::size_t i = 0; i < result.identified.zeros.joints.size(); ++i) {
+    known.joints[result.identified.zeros.joints[i]].zero =
+        result.identified.zeros.value[static_cast<Eigen::Index>(i)];
+  }
+  result.drives = calibrate::drive_errors(robot->model, known, recording->tests);
   const std::string output = output_of(arguments, *robot);
   if (const int failed = write(context, output,
                                calibration_yaml(robot->model, result, fs::path(file).filename()))) {

@@ -82,6 +82,11 @@ std::string calibration_yaml(const GaitdModel& model, const Result& result,
     if (compliance > 1 / kLargestStiffness) {
       text += format(", stiffness: %.0f", std::max(kLeastStiffness, 1 / compliance));
     }
+    const DriveErrors& drive = result.drives[static_cast<std::size_t>(zeros.joints[i])];
+    if (drive.measured) {
+      text += format(", torque_bias: %.2f, coulomb: %.2f, viscous: %.2f", drive.bias, drive.coulomb,
+                     drive.viscous);
+    }
     text += format("}  # +-%.5f\n", sigma_of(zeros, i));
   }
   text += "feet:\n";
@@ -120,6 +125,12 @@ std::string summary(const GaitdModel& model, const Result& result) {
       text += format("   stiffness %6.0f N m/rad +-%.0f %%", 1 / compliance,
                      100 * found.compliance_sigma[i] / compliance);
     }
+    const DriveErrors& drive = result.drives[static_cast<std::size_t>(zeros.joints[i])];
+    if (drive.measured) {
+      text += format("   bias %+5.1f N m +-%.1f, friction %.1f N m +-%.1f and %.1f N m s/rad +-%.1f",
+                     drive.bias, drive.bias_sigma, drive.coulomb, drive.coulomb_sigma,
+                     drive.viscous, drive.viscous_sigma);
+    }
     text += "\n";
   }
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
@@ -148,6 +159,15 @@ nlohmann::json summary_json(const GaitdModel& model, const Result& result) {
         {"zero_sigma", sigma_of(found.zeros, i)},
         {"compliance", found.compliance[i]},
         {"compliance_sigma", found.compliance_sigma[i]}};
+    const DriveErrors& drive = result.drives[static_cast<std::size_t>(found.zeros.joints[i])];
+    if (!drive.measured) continue;
+    joints[model.joints[found.zeros.joints[i]].name].update(
+        {{"torque_bias", drive.bias},
+         {"torque_bias_sigma", drive.bias_sigma},
+         {"coulomb", drive.coulomb},
+         {"coulomb_sigma", drive.coulomb_sigma},
+         {"viscous", drive.viscous},
+         {"viscous_sigma", drive.viscous_sigma}});
   }
   json sums = json::array();
   for (const Unobservable& sum : found.unobservable) {

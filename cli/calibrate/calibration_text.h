@@ -4,7 +4,9 @@
 #include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
+#include "cli/calibrate/drive_errors.h"
 #include "cli/calibrate/foot_offsets.h"
 #include "cli/calibrate/identification.h"
 #include "gaitd/abi/types.h"
@@ -15,6 +17,7 @@ namespace gaitd::calibrate {
 struct Result {
   Identified identified;
   std::array<FootOffset, GAITD_MAX_FEET> feet;
+  std::vector<DriveErrors> drives;  // one for each joint of the model
   int hanging = 0;  // readings in the air
 };
 

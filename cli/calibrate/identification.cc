@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gaitd/dynamics/kinematics.h"
+#include "gaitd/dynamics/dynamics.h"
 #include "gaitd/sdk/views.h"
 
 namespace gaitd::calibrate {
@@ -18,10 +18,9 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// Standard deviations of what a still robot shows. Stiction leaves torques, so deflections, that
-// the drives do not tell of.
-constexpr double kPlaceSigma = 1e-3;    // m, of one foot against the other
-constexpr double kTurnSigma = 1.2e-3;   // rad, likewise
+// Standard deviations of what a still robot shows.
+constexpr double kPlaceSigma = 5e-4;    // m, of one foot against the other
+constexpr double kTurnSigma = 5e-4;     // rad, likewise
 constexpr double kForceSigma = 0.012;   // m/s^2, of the averaged IMU
 constexpr double kBalanceSigma = 2e-3;  // m, of the centre of mass against the centre of pressure
 // Of unknowns that are not asked for.
@@ -79,21 +78,27 @@ class Problem {
         known_(known),
         recording_(recording),
         layout_(layout_of(model, recording)),
-        kinematics_(model) {
+        dynamics_(model) {
     set_prior(prior);
+    for (const Posture& posture : recording.postures) torques_.push_back(posture.torque);
   }
 
   const Layout& layout() const { return layout_; }
   const VectorXd& mean() const { return mean_; }
   const VectorXd& sigma() const { return sigma_; }
 
+  // What bends the joints is what the contact forces and the weight ask of them. The drives do not
+  // know of their friction, the force sensors tell.
+  void balance(const VectorXd& x) {
+    for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i] = static_torque(i, x);
+  }
+
   // Of every posture, in standard deviations.
   VectorXd residuals(const VectorXd& x) {
-    VectorXd all(kResiduals * static_cast<Eigen::Index>(recording_.postures.size()));
-    Eigen::Index row = 0;
-    for (const Posture& posture : recording_.postures) {
-      all.segment<kResiduals>(row) = residual(posture, x);
-      row += kResiduals;
+    const std::size_t count = recording_.postures.size();
+    VectorXd all(kResiduals * static_cast<Eigen::Index>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      all.segment<kResiduals>(kResiduals * static_cast<Eigen::Index>(i)) = residual(i, x);
     }
     return all;
   }
@@ -114,9 +119,10 @@ class Problem {
   VectorXd start() {
     VectorXd x = mean_;
     for (int s = layout_.stances; s-- > 0;) {
-      for (const Posture& posture : recording_.postures) {
+      for (std::size_t i = 0; i < recording_.postures.size(); ++i) {
+        const Posture& posture = recording_.postures[i];
         if (posture.stance != s) continue;
-        update(posture, x);
+        update(i, x);
         const Ground left = ground(GAITD_LEFT, posture, x);
         const Ground right = ground(GAITD_RIGHT, posture, x);
         x.segment<3>(layout_.stance(s)) = left.R.transpose() * (right.p - left.p);
@@ -161,20 +167,40 @@ class Problem {
     }
   }
 
-  void update(const Posture& posture, const VectorXd& x) {
-    VectorXd q = posture.position;
+  void update(std::size_t index, const VectorXd& x) {
+    VectorXd q = recording_.postures[index].position;
     for (int i = 0; i < layout_.joint_count(); ++i) {
       const int joint = layout_.joints[i];
-      q[joint] -= x[layout_.zero(i)] + x[layout_.compliance(i)] * posture.torque[joint];
+      q[joint] -= x[layout_.zero(i)] + x[layout_.compliance(i)] * torques_[index][joint];
     }
-    kinematics_.update(Vector3d::Zero(), Quaterniond::Identity(), Vector6d::Zero(), q,
-                       VectorXd::Zero(q.size()));
+    dynamics_.update(Vector3d::Zero(), Quaterniond::Identity(), Vector6d::Zero(), q,
+                     VectorXd::Zero(q.size()));
+  }
+
+  VectorXd static_torque(std::size_t index, const VectorXd& x) {
+    const Posture& posture = recording_.postures[index];
+    update(index, x);
+    const Eigen::Matrix3d level = ground(GAITD_LEFT, posture, x).R.transpose();
+    std::array<dynamics::ExternalWrench, GAITD_MAX_FEET> wrenches;
+    for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+      const Load l = load(side, posture, x);
+      wrenches[side].body = model_.feet[side].body;
+      wrenches[side].p_BF = sdk::view(model_.feet[side].sole.origin);
+      wrenches[side].wrench << level * l.moment, level * l.force;
+    }
+    VectorXd q = posture.position;
+    for (int i = 0; i < layout_.joint_count(); ++i) q[layout_.joints[i]] -= x[layout_.zero(i)];
+    dynamics_.update(Vector3d::Zero(), Quaterniond(level), Vector6d::Zero(), q,
+                     VectorXd::Zero(q.size()));
+    VectorXd torque(dynamics_.velocity_size());
+    dynamics_.inverse_dynamics(VectorXd::Zero(dynamics_.velocity_size()), wrenches, torque);
+    return torque.tail(q.size());
   }
 
   Load load(int side, const Posture& posture, const VectorXd& x) const {
     const GaitdFoot& foot = model_.feet[side];
     const daemon::FootCalibration& own = known_.feet[side];
-    const Eigen::Matrix3d& R = kinematics_.R_WB(foot.body);
+    const Eigen::Matrix3d& R = dynamics_.R_WB(foot.body);
     const Quaterniond turn = sdk::quaternion(foot.force_sensor.orientation);
     const double scale = 1 - x[layout_.scale() + side];
     const Vector6d& reading = posture.foot_wrench[side];
@@ -196,7 +222,7 @@ class Problem {
   Ground ground(int side, const Posture& posture, const VectorXd& x) const {
     const GaitdFoot& foot = model_.feet[side];
     const Eigen::Matrix3d R =
-        kinematics_.R_WB(foot.body) * sdk::quaternion(foot.sole.orientation).toRotationMatrix();
+        dynamics_.R_WB(foot.body) * sdk::quaternion(foot.sole.orientation).toRotationMatrix();
     const Load l = load(side, posture, x);
     const auto give = x.segment<3>(layout_.give());
     const Vector3d moment = R.transpose() * l.moment;
@@ -205,13 +231,14 @@ class Problem {
     const Vector3d tilt(-give[0] * moment.x(), -give[1] * moment.y(), 0);
     Ground g;
     g.R = R * sdk::exp_so3(tilt).toRotationMatrix().transpose();
-    g.p = kinematics_.frame_position(foot.body, sdk::view(foot.sole.origin)) +
+    g.p = dynamics_.frame_position(foot.body, sdk::view(foot.sole.origin)) +
           R.col(2) * (give[2] * force);
     return g;
   }
 
-  Eigen::Matrix<double, kResiduals, 1> residual(const Posture& posture, const VectorXd& x) {
-    update(posture, x);
+  Eigen::Matrix<double, kResiduals, 1> residual(std::size_t index, const VectorXd& x) {
+    const Posture& posture = recording_.postures[index];
+    update(index, x);
     const Ground left = ground(GAITD_LEFT, posture, x);
     const Ground right = ground(GAITD_RIGHT, posture, x);
     const int s = layout_.stance(posture.stance);
@@ -226,19 +253,19 @@ class Problem {
         left.R * sdk::exp_so3(Vector3d(x[s + 6], x[s + 7], 0)).toRotationMatrix().transpose();
     const GaitdFrame& imu = model_.imus[0];
     const Eigen::Matrix3d R_imu =
-        kinematics_.R_WB(imu.body) * sdk::quaternion(imu.orientation).toRotationMatrix();
+        dynamics_.R_WB(imu.body) * sdk::quaternion(imu.orientation).toRotationMatrix();
     r.segment<3>(6) = (posture.specific_force - x.segment<3>(layout_.accelerometer()) -
                        R_imu.transpose() * level.col(2) * model_.gravity) /
                       kForceSigma;
     const int chest = std::max(0, model_.chest_body);
     const Vector3d com =
-        kinematics_.com() + model_.bodies[chest].mass / model_.total_mass *
-                                (kinematics_.R_WB(chest) * x.segment<3>(layout_.chest()));
+        dynamics_.com() + model_.bodies[chest].mass / model_.total_mass *
+                                (dynamics_.R_WB(chest) * x.segment<3>(layout_.chest()));
     Vector3d moment = Vector3d::Zero();
     Vector3d force = Vector3d::Zero();
     for (int side = 0; side < GAITD_MAX_FEET; ++side) {
       const Load l = load(side, posture, x);
-      const Vector3d sole = kinematics_.frame_position(model_.feet[side].body,
+      const Vector3d sole = dynamics_.frame_position(model_.feet[side].body,
                                                        sdk::view(model_.feet[side].sole.origin));
       moment += l.moment + (sole - com).cross(l.force);
       force += l.force;
@@ -251,7 +278,8 @@ class Problem {
   const daemon::Calibration known_;
   const Recording& recording_;
   const Layout layout_;
-  dynamics::Kinematics kinematics_;
+  dynamics::Dynamics dynamics_;
+  std::vector<VectorXd> torques_;  // of each posture, N m
   VectorXd mean_, sigma_;
 };
 
@@ -282,6 +310,7 @@ Identified identify(const GaitdModel& model, const daemon::Calibration& known,
   Eigen::LLT<MatrixXd> normal;
   VectorXd weight;
   for (int i = 0; i < kIterations; ++i) {
+    problem.balance(x);
     const VectorXd r = problem.residuals(x);
     weight = weights(r);
     const MatrixXd j = problem.jacobian(x);

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
 
 #include "gaitd/sdk/views.h"
 
@@ -17,6 +20,9 @@ constexpr double kSlowTravel = 0.08;    // rad, hanging
 constexpr double kNewPosture = 0.02;    // rad, by which one posture differs from the next
 constexpr double kAirborne = 0.1;       // of the weight, on both feet together
 constexpr double kLeastLoad = 0.15;     // of the weight, on each foot that stands
+
+constexpr double kSampling = 5e-3;      // s, between the samples of a joint test
+constexpr std::size_t kFewSamples = 20;
 
 struct Window {
   explicit Window(int joints)
@@ -75,6 +81,27 @@ int word_of(const LogReader& log, std::string_view signal, std::string_view word
   return i < 0 ? -1 : daemon::find_word(log.signals()[i], word);
 }
 
+// Joint that is tested from each tick on, by tick.
+std::map<std::int64_t, int> tested_joints(const LogReader& log, int joint_count) {
+  std::map<std::int64_t, int> joints;
+  for (const daemon::Event& event : log.events()) {
+    const auto text = nlohmann::json::parse(event.text, nullptr, false);
+    if (!text.is_object() || text.value("command", "") != "joint.test") continue;
+    const int joint = text.value("joint", -1);
+    if (text.value("accepted", false) && joint >= 0 && joint < joint_count) {
+      joints[event.tick] = joint;
+    }
+  }
+  return joints;
+}
+
+JointTest::Sample sample_of(const GaitdSensors& sensors, int joint, double time, int joints) {
+  JointTest::Sample sample{time, Eigen::VectorXd(joints), sensors.joints[joint].torque,
+                           sdk::view(sensors.imus[0].specific_force)};
+  for (int j = 0; j < joints; ++j) sample.position[j] = sensors.joints[j].position;
+  return sample;
+}
+
 double largest(const Eigen::VectorXd& values, const std::vector<int>& joints) {
   double most = 0;
   for (const int j : joints) most = std::max(most, std::abs(values[j]));
@@ -91,6 +118,8 @@ std::optional<Recording> read_recording(const LogReader& log, const GaitdModel& 
   const std::vector<double> state = log.column("safety/state", error);
   if (time.empty() || phase.empty() || step.empty() || state.empty()) return std::nullopt;
   const int standing = word_of(log, "safety/state", "standing");
+  const int testing = word_of(log, "safety/state", "testing");
+  const std::map<std::int64_t, int> joints = tested_joints(log, model.joint_count);
   const double weight = model.total_mass * model.gravity;
   const std::vector<int> carrying = carrying_joints(model);
   Recording recording;
@@ -115,9 +144,26 @@ std::optional<Recording> read_recording(const LogReader& log, const GaitdModel& 
       all.push_back({still, stance});
     }
   };
+  bool tested = false;
   while (cursor.next(&sensors)) {
     const std::size_t row = cursor.row();
     if (row >= time.size()) break;
+    const bool tests = state[row] == testing && !joints.empty();
+    if (tests) {
+      if (!tested) {
+        const auto next = joints.upper_bound(sensors.tick);
+        if (next != joints.begin()) recording.tests.push_back({std::prev(next)->second, {}});
+      }
+      if (!recording.tests.empty()) {
+        JointTest& test = recording.tests.back();
+        const bool due =
+            test.samples.empty() || time[row] > test.samples.back().time + 0.99 * kSampling;
+        if (due) {
+          test.samples.push_back(sample_of(sensors, test.joint, time[row], model.joint_count));
+        }
+      }
+    }
+    tested = tests;
     const bool stands = phase[row] == GAITD_PHASE_STAND && state[row] == standing;
     const int now = stands ? static_cast<int>(step[row]) : -1;
     if (now != stance || time[row] - begin >= kWindow) {
@@ -128,6 +174,8 @@ std::optional<Recording> read_recording(const LogReader& log, const GaitdModel& 
     }
     window.add(sensors);
   }
+  std::erase_if(recording.tests,
+                [](const JointTest& test) { return test.samples.size() < kFewSamples; });
   return recording;
 }
 

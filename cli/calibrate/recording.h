@@ -29,8 +29,21 @@ struct Posture : Stillness {
   int stance = 0;
 };
 
+// One joint moves, the others are off and hang.
+struct JointTest {
+  struct Sample {
+    double time;                     // s
+    Eigen::VectorXd position;        // rad, encoders
+    double torque;                   // N m, of that joint
+    Eigen::Vector3d specific_force;  // m/s^2
+  };
+  int joint = 0;
+  std::vector<Sample> samples;  // evenly, at least 20 of them
+};
+
 // What a log holds for a calibration.
 struct Recording {
+  std::vector<JointTest> tests;
   std::vector<Posture> postures;
   std::vector<Stillness> hanging;  // with both feet in the air, slow rather than still
 };

@@ -12,6 +12,9 @@ namespace {
 
 constexpr Bounds kZero = {-0.2, 0.2, "rad"};
 constexpr Bounds kStiffness = {500.0, 1e7, "N m/rad"};
+constexpr Bounds kTorque = {-1e3, 1e3, "N m"};
+constexpr Bounds kFriction = {0.0, 1e3, "N m"};
+constexpr Bounds kViscous = {0.0, 1e3, "N m s/rad"};
 
 void read_joints(MapReader map, const GaitdModel& model, Calibration* calibration) {
   std::vector<std::string> names;
@@ -21,11 +24,17 @@ void read_joints(MapReader map, const GaitdModel& model, Calibration* calibratio
     MapReader figures(entry.value, path, map.issues());
     const auto zero = figures.number("zero", kZero);
     const auto stiffness = figures.number("stiffness", kStiffness);
+    const auto bias = figures.number("torque_bias", kTorque);
+    const auto coulomb = figures.number("coulomb", kFriction);
+    const auto viscous = figures.number("viscous", kViscous);
     figures.finish();
     for (const int joint : joints_like(entry, path, names, map.issues())) {
       JointCalibration& to = calibration->joints[joint];
       to.zero = zero.value_or(to.zero);
       to.stiffness = stiffness.value_or(to.stiffness);
+      to.torque_bias = bias.value_or(to.torque_bias);
+      to.coulomb = coulomb.value_or(to.coulomb);
+      to.viscous = viscous.value_or(to.viscous);
     }
   }
 }

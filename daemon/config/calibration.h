@@ -14,6 +14,10 @@ namespace gaitd::daemon {
 struct JointCalibration {
   double zero = 0.0;       // rad (m): what the encoder shows at zero of the model
   double stiffness = 0.0;  // N m/rad (N/m), between encoder and link; 0: rigid
+  // What the drive does beside the torque that it reports: bias - friction at the link.
+  double torque_bias = 0.0;  // N m
+  double coulomb = 0.0;      // N m, friction that does not grow with the rate
+  double viscous = 0.0;      // N m s/rad, and what does
 };
 
 struct FootCalibration {

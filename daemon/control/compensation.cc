@@ -14,6 +14,9 @@ namespace {
 // that one bad torque sensor does not move a joint (see docs/decisions/compensation.md).
 constexpr double kTorqueBandwidth = 20.0;  // Hz
 constexpr double kLargestBend = 0.1;       // rad
+// In which friction turns round with the rate that the link is to have. The Stribeck speed of real
+// joints is 0.02 to 0.15 rad/s; a step there would make the drive chatter while it stands.
+constexpr double kTurnRate = 0.08;  // rad/s
 
 }  // namespace
 
@@ -21,7 +24,8 @@ Compensation::Compensation(const GaitdModel& model, const Calibration& calibrati
     : model_(model), calibration_(calibration) {
   for (int i = 0; i < model.joint_count; ++i) {
     const JointCalibration& joint = calibration.joints[i];
-    used_ = used_ || joint.zero != 0.0 || joint.stiffness > 0.0;
+    used_ = used_ || joint.zero != 0.0 || joint.stiffness > 0.0 || joint.torque_bias != 0.0 ||
+            joint.coulomb > 0.0 || joint.viscous > 0.0;
   }
   for (const FootCalibration& foot : calibration.feet) {
     used_ = used_ || foot.mass > 0.0 || foot.force != std::array<double, 3>{} ||
@@ -36,8 +40,15 @@ double Compensation::bend(int joint, double torque) const {
   return std::clamp(torque / stiffness, -kLargestBend, kLargestBend);
 }
 
+// N m, that do not arrive at a link that is to turn at `rate` (rad/s).
+double Compensation::lost(int joint, double rate) const {
+  const JointCalibration& own = calibration_.joints[joint];
+  return own.coulomb * std::tanh(rate / kTurnRate) + own.viscous * rate - own.torque_bias;
+}
+
 void Compensation::joint(double gain, double dt, int index, GaitdJointSensor& sensor) {
   const JointCalibration& own = calibration_.joints[index];
+  sensor.torque += own.torque_bias;
   const double before = bend(index, torque_[index]);
   torque_[index] += (known_ ? gain : 1.0) * (sensor.torque - torque_[index]);
   const double now = bend(index, torque_[index]);
@@ -76,6 +87,9 @@ void Compensation::commands(TickData& d) const {
   for (int i = 0; i < model_.joint_count; ++i) {
     GaitdJointCommand& command = d.commands.joints[i];
     command.position += calibration_.joints[i].zero + bend(i, command.torque);
+    if (command.mode != GAITD_JOINT_MODE_TORQUE) continue;
+    const double limit = model_.joints[i].effort_limit;
+    command.torque = std::clamp(command.torque + lost(i, command.velocity), -limit, limit);
   }
 }
 

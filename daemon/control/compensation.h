@@ -13,7 +13,8 @@ namespace gaitd::daemon {
 /// An encoder sits on the side of the drive: what bends between it and the link is not in its
 /// reading, and looks like a zero error that changes with the load. A force sensor carries the foot
 /// below it. `sensors` turns readings into those that a rigid robot without errors would give,
-/// `commands` turns references for the links into references for the encoders.
+/// `commands` turns references for the links into references for the encoders, and adds to the
+/// torque what the drive will lose on the way to the link.
 class Compensation {
  public:
   Compensation(const GaitdModel& model, const Calibration& calibration);
@@ -28,6 +29,7 @@ class Compensation {
 
  private:
   double bend(int joint, double torque) const;
+  double lost(int joint, double rate) const;
   void joint(double gain, double dt, int index, GaitdJointSensor& sensor);
   void foot(int side, const GaitdRobotState& robot, GaitdFootForceSensor& sensor) const;
 
