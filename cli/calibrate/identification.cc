@@ -167,12 +167,18 @@ class Problem {
     }
   }
 
-  void update(std::size_t index, const VectorXd& x) {
+  // rad, of the links.
+  VectorXd angles(std::size_t index, const VectorXd& x) const {
     VectorXd q = recording_.postures[index].position;
     for (int i = 0; i < layout_.joint_count(); ++i) {
       const int joint = layout_.joints[i];
       q[joint] -= x[layout_.zero(i)] + x[layout_.compliance(i)] * torques_[index][joint];
     }
+    return q;
+  }
+
+  void update(std::size_t index, const VectorXd& x) {
+    const VectorXd q = angles(index, x);
     dynamics_.update(Vector3d::Zero(), Quaterniond::Identity(), Vector6d::Zero(), q,
                      VectorXd::Zero(q.size()));
   }
@@ -188,8 +194,7 @@ class Problem {
       wrenches[side].p_BF = sdk::view(model_.feet[side].sole.origin);
       wrenches[side].wrench << level * l.moment, level * l.force;
     }
-    VectorXd q = posture.position;
-    for (int i = 0; i < layout_.joint_count(); ++i) q[layout_.joints[i]] -= x[layout_.zero(i)];
+    const VectorXd q = angles(index, x);
     dynamics_.update(Vector3d::Zero(), Quaterniond(level), Vector6d::Zero(), q,
                      VectorXd::Zero(q.size()));
     VectorXd torque(dynamics_.velocity_size());

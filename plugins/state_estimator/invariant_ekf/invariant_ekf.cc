@@ -31,6 +31,8 @@ constexpr double kPushStanding = 0.6;     // m/s^2 that only a push makes
 constexpr double kPushWalking = 3.0;
 
 // Standard deviation of one sample, from a density.
+constexpr double kHoistNoise = 0.05;  // m/sqrt(Hz), by which a robot on its hoist moves about
+
 double per_sample(double density, double dt) { return density / std::sqrt(dt); }
 
 }  // namespace
@@ -70,6 +72,8 @@ void InvariantEkf::reset() {
   rate_.setZero();
   specific_force_.setZero();
   last_cop_.setZero();
+  time_unsupported_ = 0.0;
+  hangs_ = false;
   for (Foot& foot : feet_) {
     foot.trusted = false;
     foot.time_above = 0.0;
@@ -116,6 +120,8 @@ void InvariantEkf::set_state(const GaitdStateEstimatorState& s) {
   filter_.velocity = view(s.pelvis_velocity);
   place_ = {};
   at_pelvis_ = true;
+  time_unsupported_ = 0.0;
+  hangs_ = false;
   set_covariance(filter_.position, false);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     feet_[side].contact = s.contact[side];
@@ -307,8 +313,25 @@ void InvariantEkf::update_trust(const GaitdStateEstimatorInput& in) {
   }
 }
 
+// The frame itself is a point that stays about where it is.
+void InvariantEkf::hold_on_hoist(double dt) {
+  const double sigma = per_sample(kHoistNoise, dt);
+  const int here = index(GAITD_LEFT, kToe);
+  if (filter_.has_point(here)) {
+    filter_.correct_point(here, Eigen::Vector3d::Zero(), sigma);
+  } else {
+    filter_.add_point(here, Eigen::Vector3d::Zero(), kHoistNoise);
+  }
+}
+
 void InvariantEkf::correct(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints) {
   update_joint_kinematics(joints);
+  const bool carried = feet_[GAITD_LEFT].trusted || feet_[GAITD_RIGHT].trusted;
+  time_unsupported_ = carried ? 0.0 : time_unsupported_ + in.time.period;
+  const bool hung = hangs_;
+  hangs_ = time_unsupported_ > sdk::kLongestFlight;
+  if (hung && !hangs_) filter_.remove_point(index(GAITD_LEFT, kToe));
+  if (hangs_) return hold_on_hoist(in.time.period);
   const double sigma = per_sample(p_[P::kKinematicNoise], in.time.period);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const bool only_toe = in.gait->footholds[side].contact == GAITD_CONTACT_TOE ||

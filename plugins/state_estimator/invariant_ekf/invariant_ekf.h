@@ -108,6 +108,7 @@ class InvariantEkf {
   };
 
   static constexpr int index(int side, Point point) { return 2 * side + point; }
+  void hold_on_hoist(double dt);
 
   bool read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void read_forces(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
@@ -132,6 +133,8 @@ class InvariantEkf {
   double weight_;  // N
   sdk::Parameters<P> p_{kParameters};
   dynamics::Kinematics kinematics_;
+  double time_unsupported_ = 0.0;  // s, for which no foot is trusted
+  bool hangs_ = false;             // on a hoist
   RightInvariantFilter filter_;  // axes of the pelvis, origin of the IMU in use
   int imu_ = 0;
   sdk::ImuPlace place_;  // of that IMU

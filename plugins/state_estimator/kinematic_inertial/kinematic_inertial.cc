@@ -36,6 +36,7 @@ constexpr double kShakingPole = 50.0;  // 1/s: what the drives shake the IMU by 
 constexpr double kStill = 0.2;
 constexpr double kLargestDrift = 0.01;  // rad/s, taken for a bias
 constexpr double kStillTime = 0.2;      // s
+constexpr double kHoistPole = 1.0;      // 1/s, with which a robot on its hoist is held in its place
 
 double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * hertz * dt); }
 
@@ -80,6 +81,7 @@ void KinematicInertial::reset() {
   accelerometer_bias_.setZero();
   balance_bias_.setZero();
   feet_ = {};
+  time_unsupported_ = 0.0;
 }
 
 void KinematicInertial::get_state(GaitdStateEstimatorState& s) const {
@@ -106,6 +108,7 @@ void KinematicInertial::set_state(const GaitdStateEstimatorState& s) {
   gyro_bias_ = view(s.gyro_bias);
   balance_bias_ = view(s.accelerometer_bias);
   accelerometer_bias_.setZero();
+  time_unsupported_ = 0.0;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     Foot& foot = feet_[side];
     foot = {.normal_force = foot.normal_force};
@@ -424,10 +427,18 @@ void KinematicInertial::update_position(const GaitdStateEstimatorInput& in, doub
     correction += f.normal_force * (f.anchor - sole_point(side, f.anchored_point));
     total += f.normal_force;
   }
-  if (total <= 0.0) return;
-  // sole_point() still belongs to the position before this tick's prediction.
-  correction = correction / total - dt * velocity_W_;
-  const double pole = p_[P::kPositionRate];
+  double pole = p_[P::kPositionRate];
+  if (total > 0.0) {
+    time_unsupported_ = 0.0;
+    // sole_point() still belongs to the position before this tick's prediction.
+    correction = correction / total - dt * velocity_W_;
+  } else {
+    if (time_unsupported_ <= 0.0) hung_at_ = position_;
+    time_unsupported_ += dt;
+    if (time_unsupported_ < sdk::kLongestFlight) return;
+    correction = hung_at_ - position_;
+    pole = kHoistPole;
+  }
   position_ += 3.0 * pole * dt * correction;
   velocity_W_ += 3.0 * pole * pole * dt * correction;
   accelerometer_bias_ -= pole * pole * pole * dt * (orientation_.conjugate() * correction);

@@ -43,6 +43,10 @@ inline Vector6d sole_wrench(const GaitdFoot& foot, const GaitdFootForceSensor& s
   return wrench;
 }
 
+/// s. A robot that nothing has carried for longer hangs on its hoist: it stays about where it is,
+/// which an estimator can hold on to.
+inline constexpr double kLongestFlight = 0.5;
+
 /// Does the specific force of an IMU (m/s^2) show where up is? A robot that falls, or is just being
 /// set down, shows something else: it has to be that of gravity, and the feet have to carry the
 /// robot, or it must have lasted, as on a hoist.
