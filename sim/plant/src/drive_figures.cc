@@ -86,6 +86,18 @@ std::string class_names() {
   return names;
 }
 
+void read_elasticity(JsonReader* reader, DriveFigures* figures) {
+  if (!reader->has("elasticity")) return;
+  const json& name = reader->at("elasticity");
+  const auto* found = std::find_if(std::begin(kElasticities), std::end(kElasticities),
+                                   [&](const char* known) { return name == known; });
+  if (found == std::end(kElasticities)) {
+    reader->error(reader->path("elasticity"), "measured, hips or joints", name);
+    return;
+  }
+  figures->elasticity = static_cast<Elasticity>(found - std::begin(kElasticities));
+}
+
 }  // namespace
 
 // Legs of Atlas are extrapolated from the friction that was identified on its arms (7 to 12 N m,
@@ -205,22 +217,6 @@ bool find_drive_class(const std::string& name, DriveFigures* figures) {
   }
   return true;
 }
-
-namespace {
-
-void read_elasticity(JsonReader* reader, DriveFigures* figures) {
-  if (!reader->has("elasticity")) return;
-  const json& name = reader->at("elasticity");
-  const auto* found = std::find_if(std::begin(kElasticities), std::end(kElasticities),
-                                   [&](const char* known) { return name == known; });
-  if (found == std::end(kElasticities)) {
-    reader->error(reader->path("elasticity"), "measured, hips or joints", name);
-    return;
-  }
-  figures->elasticity = static_cast<Elasticity>(found - std::begin(kElasticities));
-}
-
-}  // namespace
 
 DriveFigures read_drive_figures(const json& map, const std::string& path,
                                 std::vector<std::string>* errors) {
