@@ -119,6 +119,31 @@ TEST(Config, SensorsAreAClassOrFiguresOrBoth) {
                 "sensors.noise.gyro_bias", "sensors.noise.imu_delay", "sensors.noise.lost_burst"}));
 }
 
+TEST(Config, DrivesAreAClassOrFiguresOfOne) {
+  std::vector<std::string> errors;
+  const auto drives = [&](const std::string& model) {
+    return parse_config(R"({"terrain": {"ground_z": 0}, "actuators": {"model": )" + model + "}}",
+                        test::block_model(), 0.001, &errors)
+        .drives;
+  };
+  EXPECT_FALSE(drives(R"("nominal")"));
+  EXPECT_EQ(drives(R"("harmonic")")->elasticity, Elasticity::kJoints);
+  const auto mixed = drives(R"({"class": "hydraulic", "elasticity": "hips", "backlash": [0, 0.01],
+                                "hip_damping": 2, "lost_commands": 0.1, "cogging": 0.01})");
+  EXPECT_TRUE(errors.empty()) << errors[0];
+  EXPECT_EQ(mixed->elasticity, Elasticity::kHips);
+  EXPECT_EQ(mixed->backlash.high(), 0.01);
+  EXPECT_EQ(mixed->hip_damping, 2);
+  EXPECT_EQ(mixed->lost_commands.low(), 0.1);
+  EXPECT_EQ(mixed->cogging, 0.01);
+  EXPECT_EQ(mixed->stiffness, DriveFigures::hydraulic().stiffness);
+  drives(R"({"class": "hydraulic", "elasticity": "knees", "backlash": -1, "cogging": [0, 1],
+             "lost_command_burst": 0})");
+  ASSERT_EQ(errors.size(), 4u);
+  EXPECT_EQ(errors[0],
+            "actuators.model.elasticity: expected measured, hips or joints, got \"knees\"");
+}
+
 TEST(Config, TextThatIsNoJsonAndTerrainWithoutGroundAreRefused) {
   EXPECT_EQ(errors_of("{").size(), 1u);
   EXPECT_EQ(errors_of("[1]")[0].rfind("configuration: expected an object", 0), 0u);

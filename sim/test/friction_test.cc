@@ -5,10 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "gaitd/sim/random.h"
@@ -117,6 +119,14 @@ TEST_P(EveryStep, BreaksAwayWhereItShould) {
     }
     EXPECT_NEAR(torque, c.torque, 0.01 * c.torque) << c.share << " " << c.presliding;
     EXPECT_NEAR(peak, c.peak, 0.01 * c.peak) << c.share << " " << c.presliding;
+  }
+}
+
+TEST_P(EveryStep, HoldsItsStaticFrictionUnderASlowRamp) {
+  for (const double share : {0.0, 0.9}) {
+    Joint joint(reference(share), GetParam());
+    while (joint.v < 0.02 && joint.time < 20) joint.step(joint.time);
+    EXPECT_NEAR(joint.time, 14.99, 0.01 * 14.99) << share;
   }
 }
 
@@ -230,6 +240,77 @@ TEST(Friction, NeverGivesEnergyUnderImpacts) {
       ASSERT_GE(now, dissipated - 1e-9) << "step " << i;
       dissipated = now;
     }
+  }
+}
+
+// Where two joints with a common inertia are after three seconds of sines, every 10 ms; the solver
+// takes each step around two rates.
+std::vector<Eigen::Vector2d> coupled_motion(double h) {
+  Eigen::Matrix2d mass;
+  mass << 1, 0.4, 0.4, 0.7;
+  Friction friction[2] = {Friction(reference()), Friction(reference())};
+  Eigen::Vector2d q = Eigen::Vector2d::Zero(), v = q;
+  std::vector<Eigen::Vector2d> motion;
+  const auto every = std::llround(0.01 / h);
+  for (long i = 1; i <= 300 * every; ++i) {
+    const double t = static_cast<double>(i) * h;
+    const Eigen::Vector2d torque(22 * std::sin(7.3 * t) + 8 * std::sin(19 * t),
+                                 18 * std::sin(9.1 * t + 1) - 9 * std::sin(23 * t));
+    Eigen::Vector2d u = v;
+    for (int k = 0; k < 2; ++k) friction[k].begin_step(h, v[k], 0);
+    for (int iterate = 0; iterate < 2; ++iterate) {
+      Eigen::Matrix2d matrix = mass;
+      Eigen::Vector2d right = mass * v + h * torque;
+      for (int k = 0; k < 2; ++k) {
+        if (iterate > 0) friction[k].linearise(u[k]);
+        matrix(k, k) += h * friction[k].slope();
+        right[k] -= h * friction[k].constant();
+      }
+      u = matrix.ldlt().solve(right);
+    }
+    v = u;
+    q += h * v;
+    for (int k = 0; k < 2; ++k) friction[k].end_step(v[k]);
+    if (i % every == 0) motion.push_back(q);
+  }
+  return motion;
+}
+
+// A law that does not stick is wrong by as much as the joints move.
+TEST(Friction, ErrorsOfCoupledJointsHalveWithTheStep) {
+  const std::vector<Eigen::Vector2d> exact = coupled_motion(5e-6);
+  double size = 0;
+  for (const Eigen::Vector2d& q : exact) size = std::max(size, q.cwiseAbs().maxCoeff());
+  EXPECT_GT(size, 0.1);
+  double before = 0;
+  for (const auto& [h, share] :
+       {std::pair(1e-3, 0.032), std::pair(5e-4, 0.016), std::pair(2.5e-4, 0.008)}) {
+    const std::vector<Eigen::Vector2d> found = coupled_motion(h);
+    double worst = 0;
+    for (size_t i = 0; i < exact.size(); ++i) {
+      worst = std::max(worst, (found[i] - exact[i]).cwiseAbs().maxCoeff());
+    }
+    EXPECT_LT(worst, share * size) << h;
+    if (before > 0) {
+      EXPECT_NEAR(worst / before, 0.5, 0.15) << h;
+    }
+    before = worst;
+  }
+}
+
+TEST(Friction, NeverGivesEnergyWhileTheLoadVaries) {
+  RandomStream random(2, RandomPurpose::kFriction);
+  FrictionLaw law = reference();
+  law.load_share = 0.06;
+  Joint joint(law, 5e-4, 2);
+  double dissipated = 0, torque = 0, load = 0;
+  for (int i = 0; i < 40000; ++i) {
+    if (i % 40 == 0) torque = 18 * random.normal();
+    if (i % 25 == 0) load = 100 * random.normal();
+    joint.step(torque, load);
+    const double now = joint.work - joint.friction().energy();
+    ASSERT_GE(now, dissipated - 1e-9) << "step " << i;
+    dissipated = now;
   }
 }
 

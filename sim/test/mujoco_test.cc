@@ -91,9 +91,7 @@ TEST(Mujoco, JointInertiaIsThatOfSimbody) {
 }
 
 // In the air there is no contact to disagree about: the same falling, swinging robot.
-TEST(Mujoco, AFreeRobotMovesAsInSimbody) {
-  const GaitdModel model = atlas_model();
-  const Config config = test::flat_config(model);
+void expect_to_fly_alike(const GaitdModel& model, const Config& config) {
   MujocoPlant mujoco(model, config);
   Plant simbody(model, config, 0.001, SimbodyPhysics::make);
   State state;
@@ -109,6 +107,22 @@ TEST(Mujoco, AFreeRobotMovesAsInSimbody) {
   EXPECT_LT((mujoco.state().p_WB - simbody.state().p_WB).norm(), 2e-3);
   EXPECT_LT(mujoco.state().R_WB.angularDistance(simbody.state().R_WB), 5e-3);
   EXPECT_LT((mujoco.state().q - simbody.state().q).cwiseAbs().maxCoeff(), 1e-2);
+}
+
+TEST(Mujoco, AFreeRobotMovesAsInSimbody) {
+  const GaitdModel model = atlas_model();
+  expect_to_fly_alike(model, test::flat_config(model));
+}
+
+TEST(Mujoco, WithPlayAndSpringsInItsJointsToo) {
+  const GaitdModel model = atlas_model();
+  for (const char* name : kDriveClasses) {
+    SCOPED_TRACE(name);
+    Config config = test::flat_config(model);
+    config.drives.emplace();
+    ASSERT_TRUE(find_drive_class(name, &*config.drives));
+    expect_to_fly_alike(model, config);
+  }
 }
 
 TEST(Mujoco, GainsFarBeyondWhatAnExplicitStepTakesAreStable) {

@@ -2,11 +2,11 @@
 #include "gaitd/sim/drive_figures.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
-#include "gaitd/sim/random.h"
 #include "json_reader.h"
 
 namespace gaitd::sim {
@@ -14,6 +14,7 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double kArcMinute = std::numbers::pi / (180 * 60);
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct FixedKey {
@@ -34,6 +35,7 @@ const FixedKey kFixedKeys[] = {
     {"viscous_share", &DriveFigures::viscous_share, {0, 10}},
     {"supply_torque", &DriveFigures::supply_torque, {0, 100}},
     {"torque_noise", &DriveFigures::torque_noise, {0, 1}},
+    {"cogging", &DriveFigures::cogging, {0, 1}},
     {"bias_limit", &DriveFigures::bias_limit, {0, 1e4}},
     {"derating_start", &DriveFigures::derating_start, {0, 100}},
     {"derating_end", &DriveFigures::derating_end, {0, 100}},
@@ -41,6 +43,7 @@ const FixedKey kFixedKeys[] = {
     {"stiffness", &DriveFigures::stiffness, {0, kInfinity}},
     {"hip_yaw_stiffness", &DriveFigures::hip_yaw_stiffness, {0, kInfinity}},
     {"hip_roll_stiffness", &DriveFigures::hip_roll_stiffness, {0, kInfinity}},
+    {"hip_damping", &DriveFigures::hip_damping, {0, 1000}},
     {"armature_base", &DriveFigures::armature_base, {0, 100}},
     {"armature_factor", &DriveFigures::armature_factor, {0, 100}},
     {"armature_power", &DriveFigures::armature_power, {0, 4}},
@@ -56,40 +59,43 @@ const DrawnKey kDrawnKeys[] = {
     {"outside_share", &DriveFigures::outside_share, {0, 1}},
     {"bandwidth", &DriveFigures::bandwidth, {0, 1e4}},
     {"command_delay", &DriveFigures::command_delay, {0, 0.1}},
+    {"command_jitter", &DriveFigures::command_jitter, {0, 0.1}},
+    {"command_jitter_tail", &DriveFigures::command_jitter_tail, {0, 0.1}},
+    {"lost_commands", &DriveFigures::lost_commands, {0, 1}},
+    {"lost_command_burst", &DriveFigures::lost_command_burst, {1, 100}},
     {"scale_error", &DriveFigures::scale_error, {-0.9, 10}},
     {"bias", &DriveFigures::bias, {-1, 1}},
     {"dead_band", &DriveFigures::dead_band, {0, 1}},
     {"velocity_coupling", &DriveFigures::velocity_coupling, {0, 10}},
+    {"cogging_periods", &DriveFigures::cogging_periods, {0, 1e5}},
     {"stiffness_scale", &DriveFigures::stiffness_scale, {0, 100, true}},
+    {"spring_damping", &DriveFigures::spring_damping, {0, 10}},
+    {"backlash", &DriveFigures::backlash, {0, 0.2}},
     {"armature_scale", &DriveFigures::armature_scale, {0, 100}},
 };
 
-enum class LegJoint { kNone, kHipYaw, kHipRoll };
-
-// The joints of a leg before the knee that do not swing it forwards.
-LegJoint leg_joint(const GaitdModel& model, int joint) {
-  for (const GaitdLeg& leg : model.legs) {
-    for (int i = 0; i < leg.joint_count && leg.joints[i] != leg.knee; ++i) {
-      if (leg.joints[i] != joint || joint == leg.hip_pitch) continue;
-      return std::abs(model.joints[joint].axis[2]) > 0.7 ? LegJoint::kHipYaw : LegJoint::kHipRoll;
-    }
-  }
-  return LegJoint::kNone;
-}
-
-double nominal_stiffness(const GaitdModel& model, const DriveFigures& figures, int joint) {
-  const LegJoint place = leg_joint(model, joint);
-  if (place == LegJoint::kHipYaw && figures.hip_yaw_stiffness > 0) return figures.hip_yaw_stiffness;
-  if (place == LegJoint::kHipRoll && figures.hip_roll_stiffness > 0) {
-    return figures.hip_roll_stiffness;
-  }
-  return figures.stiffness;
+// As the sensors of `lab`: what good EtherCAT leaves.
+void set_ethercat(DriveFigures* figures) {
+  figures->command_jitter = 5e-5;
+  figures->lost_commands = 1e-5;
 }
 
 std::string class_names() {
   std::string names;
   for (const char* name : kDriveClasses) names += (names.empty() ? "" : ", ") + std::string(name);
   return names;
+}
+
+void read_elasticity(JsonReader* reader, DriveFigures* figures) {
+  if (!reader->has("elasticity")) return;
+  const json& name = reader->at("elasticity");
+  const auto* found = std::find_if(std::begin(kElasticities), std::end(kElasticities),
+                                   [&](const char* known) { return name == known; });
+  if (found == std::end(kElasticities)) {
+    reader->error(reader->path("elasticity"), "measured, hips or joints", name);
+    return;
+  }
+  figures->elasticity = static_cast<Elasticity>(found - std::begin(kElasticities));
 }
 
 }  // namespace
@@ -123,8 +129,11 @@ DriveFigures DriveFigures::hydraulic() {
   f.hip_yaw_stiffness = 7000;
   f.hip_roll_stiffness = 10000;
   f.stiffness_scale = Draw::log_uniform(0.7, 1.7);
+  f.backlash = Draw::uniform(0, 4 * kArcMinute);  // rod ends of cylinders: 1 to 3
+  f.spring_damping = Draw::uniform(0.03, 0.1);    // for those who ask for springs
   f.armature_base = 0.05;
   f.armature_scale = Draw::uniform(0.2, 2);
+  set_ethercat(&f);
   return f;
 }
 
@@ -151,9 +160,16 @@ DriveFigures DriveFigures::harmonic() {
   f.derating_end = 1.5;
   f.stiffness = 15000;
   f.stiffness_scale = Draw::uniform(0.67, 1.33);
+  // TALOS bends in two axes of the hip behind its drives, with 15000 N m/rad and this damping; the
+  // rotors are as heavy as links, so the gears of the other joints are springs, too.
+  f.elasticity = Elasticity::kJoints;
+  f.hip_damping = 2;
+  f.spring_damping = Draw::uniform(0.03, 0.1);
+  f.backlash = Draw::uniform(0, 2 * kArcMinute);  // lost motion of such gears
   f.armature_factor = 1.5e-2;
   f.armature_power = 0.8;
   f.armature_scale = Draw::log_uniform(0.7, 2.5);
+  set_ethercat(&f);
   return f;
 }
 
@@ -174,9 +190,18 @@ DriveFigures DriveFigures::quasi_direct() {
   f.torque_noise = 0.005;
   f.scale_error = Draw::uniform(-0.08, 0.08);
   f.bias = Draw::uniform(-0.005, 0.005);
-  f.derating_end = 1.57;
+  f.cogging = 0.005;
+  // Estimate: gears of 14.3 to 22.5 (Unitree G1) times the 42 magnets of motors of this size.
+  f.cogging_periods = Draw::uniform(600, 945);
+  f.derating_end = 1.57;  // knees of Unitree: 22.6 to 35.5 and 14.5 to 22.7 rad/s
+  f.backlash =
+      Draw::uniform(4 * kArcMinute, 25 * kArcMinute);  // PULSE115-60: 13; Go1 is trained for 275
   f.armature_factor = 2.5e-4;
   f.armature_scale = Draw::log_uniform(0.4, 2.2);
+  // CAN, as the sensors of `rough`.
+  f.command_jitter_tail = 3e-4;
+  f.lost_commands = 1e-3;
+  f.lost_command_burst = Draw::uniform(2, 5);
   return f;
 }
 
@@ -197,7 +222,7 @@ DriveFigures read_drive_figures(const json& map, const std::string& path,
                                 std::vector<std::string>* errors) {
   DriveFigures figures;
   JsonReader reader(map, path, errors);
-  std::vector<std::string> keys = {"class"};
+  std::vector<std::string> keys = {"class", "elasticity"};
   for (const FixedKey& key : kFixedKeys) keys.emplace_back(key.name);
   for (const DrawnKey& key : kDrawnKeys) keys.emplace_back(key.name);
   reader.allow(keys);
@@ -205,61 +230,10 @@ DriveFigures read_drive_figures(const json& map, const std::string& path,
   if (!name.is_string() || !find_drive_class(name.get<std::string>(), &figures)) {
     reader.error(reader.path("class"), class_names(), name);
   }
+  read_elasticity(&reader, &figures);
   for (const FixedKey& key : kFixedKeys) reader.number(key.name, key.range, &(figures.*key.figure));
   for (const DrawnKey& key : kDrawnKeys) reader.draw(key.name, key.range, &(figures.*key.figure));
   return figures;
-}
-
-DrawnDrives draw_drives(const GaitdModel& model, const DriveFigures& figures, uint64_t seed) {
-  RandomStream friction(seed, RandomPurpose::kFriction);
-  RandomStream elasticity(seed, RandomPurpose::kElasticity);
-  RandomStream torque(seed, RandomPurpose::kTorqueErrors);
-  RandomStream armature(seed, RandomPurpose::kArmature);
-  RandomStream timing(seed, RandomPurpose::kDriveTiming);
-  DrawnDrives drawn;
-  drawn.command_delay = figures.command_delay.sample(&timing);
-  for (int j = 0; j < model.joint_count; ++j) {
-    const GaitdJoint& joint = model.joints[j];
-    const double limit = joint.effort_limit;
-    JointDrive drive;
-    FrictionLaw law;
-    law.coulomb = (figures.coulomb_base + figures.coulomb_share * limit) *
-                  figures.coulomb_scale.sample(&friction);
-    law.static_ratio = figures.static_ratio.sample(&friction);
-    law.stribeck_speed = figures.stribeck_speed.sample(&friction);
-    law.viscous = (figures.viscous_base + figures.viscous_share * limit) *
-                  figures.viscous_scale.sample(&friction);
-    law.load_share = figures.load_share.sample(&friction);
-    law.presliding = figures.presliding.sample(&friction);
-    drive.friction = law.scaled(figures.outside_share.sample(&friction));
-    drive.stiffness =
-        nominal_stiffness(model, figures, j) * figures.stiffness_scale.sample(&elasticity);
-    drive.bandwidth = figures.bandwidth.sample(&torque);
-    drive.scale_error = figures.scale_error.sample(&torque);
-    drive.bias = figures.bias.sample(&torque) * limit;
-    if (figures.bias_limit > 0) {
-      drive.bias = std::clamp(drive.bias, -figures.bias_limit, figures.bias_limit);
-    }
-    drive.dead_band = figures.dead_band.sample(&torque) * limit;
-    drive.velocity_coupling = figures.velocity_coupling.sample(&torque) * limit;
-    const double scale = figures.armature_scale.sample(&armature);
-    drive.armature = joint.rotor_inertia;
-    if (drive.armature == 0) {
-      drive.armature = scale * (figures.armature_base +
-                                figures.armature_factor * std::pow(limit, figures.armature_power));
-    }
-    drawn.joints.push_back(drive);
-  }
-  return drawn;
-}
-
-GaitdModel with_armature(const GaitdModel& model, const DriveFigures& figures, uint64_t seed) {
-  GaitdModel result = model;
-  const DrawnDrives drawn = draw_drives(model, figures, seed);
-  for (int j = 0; j < model.joint_count; ++j) {
-    result.joints[j].rotor_inertia = drawn.joints[static_cast<size_t>(j)].armature;
-  }
-  return result;
 }
 
 }  // namespace gaitd::sim

@@ -20,7 +20,8 @@ NominalDrives::NominalDrives(const GaitdModel& model, const ActuatorFigures& fig
       seed_(seed),
       filter_gain_(1),
       drives_(static_cast<size_t>(model.joint_count)),
-      queue_(std::llround(figures.command_delay / time_step)),
+      delay_steps_(std::llround(figures.command_delay / time_step)),
+      queue_(delay_steps_),
       random_(seed, RandomPurpose::kTorque),
       torque_(Eigen::VectorXd::Zero(model.joint_count)),
       readings_{torque_, torque_} {

@@ -38,7 +38,7 @@ Plant::Plant(const GaitdModel& model, const Config& config, double period,
       truth_(model_) {
   start_ = make_start_state(model_, config, physics_.get());
   physics_->place(start_);
-  drives_ = make_drives(model_, config, physics_->joint_inertia());
+  drives_ = make_drives(model, config, physics_->joint_inertia());
   if (config.start.hoist) hoist_.emplace(model_, *config.start.hoist);
   reset();
   for (const Touch& touch : physics_->touches()) {

@@ -7,32 +7,58 @@
 
 namespace gaitd::sim {
 
+namespace {
+
+// An engine solves a step five times at most. The law must not change after the last of them.
+constexpr int kMaxRevisions = 4;
+
+// kg m^2, that the friction holds.
+double moved(const JointDrive& own, double inertia) {
+  return own.own_rotor() ? inertia + own.armature : inertia;
+}
+
+TransmissionFigures transmission(const JointDrive& own, double inertia) {
+  TransmissionFigures figures;
+  figures.inertia = own.armature;
+  figures.backlash = own.backlash;
+  if (!own.spring) return figures;
+  const double together = own.armature * inertia / (own.armature + inertia);
+  figures.stiffness = own.stiffness;
+  figures.damping = own.hip_damping > 0
+                        ? own.hip_damping
+                        : 2 * own.spring_damping * std::sqrt(own.stiffness * together);
+  return figures;
+}
+
+}  // namespace
+
 RealDrives::RealDrives(const GaitdModel& model, const DriveFigures& figures,
                        const Eigen::VectorXd& inertia, double time_step, uint64_t seed)
     : model_(model),
       figures_(figures),
       time_step_(time_step),
       seed_(seed),
-      queue_(0),
+      bus_(0, {}, time_step, seed),
       random_(seed, RandomPurpose::kTorque),
       torque_(Eigen::VectorXd::Zero(model.joint_count)),
       readings_{torque_, torque_} {
   const DrawnDrives drawn = draw_drives(model, figures, seed);
-  queue_ = CommandQueue(std::llround(drawn.command_delay / time_step));
+  bus_ = CommandBus(drawn.command_delay, drawn.commands, time_step, seed);
   for (int j = 0; j < model.joint_count; ++j) {
     const JointDrive& own = drawn.joints[static_cast<size_t>(j)];
     FrictionLaw law = own.friction;
-    law.inertia = inertia[j];
-    drives_.emplace_back(own, law);
+    law.inertia = moved(own, inertia[j]);
+    drives_.emplace_back(own, law, transmission(own, inertia[j]));
   }
 }
 
 void RealDrives::reset() {
   for (Drive& drive : drives_) {
     drive.friction.reset();
-    drive.filtered = drive.torque = drive.through = 0;
+    drive.transmission.reset();
+    drive.filtered = drive.torque = drive.ripple = drive.through = 0;
   }
-  queue_.reset();
+  bus_.reset();
   random_ = RandomStream(seed_, RandomPurpose::kTorque);
   torque_.setZero();
   readings_.torque.setZero();
@@ -81,9 +107,18 @@ double RealDrives::limited(const GaitdJoint& joint, double torque, double rate) 
   return std::clamp(torque, rate < 0 ? -driving : -limit, rate > 0 ? driving : limit);
 }
 
+// The mean over the step: a fast motor passes many periods in it.
+double RealDrives::cogging(const Drive& drive, double angle, double rate) const {
+  if (drive.own.cogging == 0) return 0;
+  const double half = 0.5 * time_step_ * rate * drive.own.cogging_periods;
+  const double mean = std::abs(half) > 1e-9 ? std::sin(half) / half : 1;
+  const double middle = drive.own.cogging_periods * angle + half + drive.own.cogging_phase;
+  return drive.own.cogging * mean * std::sin(middle);
+}
+
 void RealDrives::begin_step(int64_t step, const JointMotion& motion) {
-  const GaitdJointCommands& active = queue_.at(step);
-  revised_ = false;
+  const GaitdJointCommands& active = bus_.at(step);
+  revisions_ = 0;
   for (int j = 0; j < model_.joint_count; ++j) {
     const GaitdJoint& joint = model_.joints[j];
     Drive& drive = drives_[static_cast<size_t>(j)];
@@ -92,28 +127,60 @@ void RealDrives::begin_step(int64_t step, const JointMotion& motion) {
     drive.filtered = follow(drive, wanted, limit);
     double torque = (1 + drive.own.scale_error) * drive.filtered + drive.own.bias;
     if (figures_.torque_noise > 0) torque += figures_.torque_noise * limit * random_.normal();
-    drive.torque = limited(joint, torque, motion.rate[j]);
-    drive.friction.begin_step(time_step_, motion.rate[j], drive.through);
+    Transmission& transmission = drive.transmission;
+    const bool own_rotor = drive.own.own_rotor();
+    const double rate = own_rotor ? transmission.rotor_rate(motion.rate[j]) : motion.rate[j];
+    drive.torque = limited(joint, torque, rate);
+    const double angle = motion.position[j] + transmission.deflection();
+    drive.ripple = cogging(drive, angle, rate);
+    drive.friction.begin_step(time_step_, rate, drive.through);
+    if (!own_rotor) continue;
+    transmission.begin_step(time_step_, motion.rate[j]);
+    transmission.drive(drive.rotor_constant(), drive.rotor_slope());
+    transmission.touch(motion.rate[j]);
   }
 }
 
 bool RealDrives::revise(const Eigen::VectorXd& u) {
-  if (revised_) return false;
-  revised_ = true;
+  if (revisions_ >= kMaxRevisions) return false;
+  const bool first = revisions_++ == 0;
+  bool changed = first;
   for (int j = 0; j < model_.joint_count; ++j) {
-    drives_[static_cast<size_t>(j)].friction.linearise(u[j]);
+    Drive& drive = drives_[static_cast<size_t>(j)];
+    Transmission& transmission = drive.transmission;
+    if (!drive.own.own_rotor()) {
+      if (first) drive.friction.linearise(u[j]);
+      continue;
+    }
+    const bool other_flank = transmission.touch(u[j]);
+    changed |= other_flank;
+    if (!first && !other_flank) continue;
+    drive.friction.linearise(transmission.rotor_rate_after(u[j]));
+    transmission.drive(drive.rotor_constant(), drive.rotor_slope());
   }
-  return true;
+  return changed;
 }
 
 void RealDrives::end_step(const Eigen::VectorXd& u) {
   for (int j = 0; j < model_.joint_count; ++j) {
     Drive& drive = drives_[static_cast<size_t>(j)];
-    const double friction = drive.friction.end_step(u[j]);
-    drive.through = drive.torque - drive.own.velocity_coupling * u[j];
-    torque_[j] = drive.through - friction;
+    const bool own_rotor = drive.own.own_rotor();
+    const double rate = own_rotor ? drive.transmission.rotor_rate_after(u[j]) : u[j];
+    const double friction = drive.friction.end_step(rate);
+    drive.through = drive.torque + drive.ripple - drive.own.velocity_coupling * rate;
+    const double turning = drive.through - friction;
+    torque_[j] = turning;
+    double deflection = 0;
+    if (own_rotor) {
+      torque_[j] = drive.transmission.constant() - drive.transmission.slope() * u[j];
+      drive.transmission.end_step(u[j]);
+      deflection = drive.transmission.deflection();
+    }
+    // Bending follows the torque of the drive: the blow of a flank is over before it bends
+    // anything.
+    if (!drive.own.spring && drive.own.stiffness > 0) deflection += turning / drive.own.stiffness;
     readings_.torque[j] = (drive.torque - drive.own.bias) / (1 + drive.own.scale_error);
-    readings_.deflection[j] = drive.own.stiffness > 0 ? torque_[j] / drive.own.stiffness : 0.0;
+    readings_.deflection[j] = deflection;
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "gaitd/sim/sensor_figure_keys.h"
 #include "read_sensor_figures.h"
 
 namespace gaitd::sim {
@@ -13,53 +14,7 @@ using nlohmann::json;
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kGravity = 9.81;  // m/s^2
 
-struct Key {
-  const char* name;
-  Range range;
-  Draw SensorFigures::*figure;
-};
-
-constexpr Range kShare{0, 1};
-constexpr Range kDelay{0, 0.1};
-
-constexpr Key kKeys[] = {
-    {"joint_zero", {-1, 1}, &SensorFigures::joint_zero},
-    {"encoder_bits", {0, 48}, &SensorFigures::encoder_bits},
-    {"encoder_noise", {0, 1}, &SensorFigures::encoder_noise},
-    {"velocity_filter", {0, 1e5}, &SensorFigures::velocity_filter},
-    {"spike_rate", {0, 100}, &SensorFigures::spike_rate},
-    {"spike_size", {0, 10}, &SensorFigures::spike_size},
-    {"gyro_noise", {0, 10}, &SensorFigures::gyro_noise},
-    {"gyro_bias", {0, 10}, &SensorFigures::gyro_bias},
-    {"gyro_walk", {0, 1}, &SensorFigures::gyro_walk},
-    {"gyro_g_sensitivity", {0, 1}, &SensorFigures::gyro_g_sensitivity},
-    {"accelerometer_noise", {0, 100}, &SensorFigures::accelerometer_noise},
-    {"accelerometer_bias", {0, 100}, &SensorFigures::accelerometer_bias},
-    {"imu_scale", {0, 0.5}, &SensorFigures::imu_scale},
-    {"imu_misalignment", {0, 1}, &SensorFigures::imu_misalignment},
-    {"imu_filter", {0, 1e5}, &SensorFigures::imu_filter},
-    {"strike_vibration", {0, 1e4}, &SensorFigures::strike_vibration},
-    {"strike_rotation", {0, 1e4}, &SensorFigures::strike_rotation},
-    {"strike_frequency", {0, 1e3}, &SensorFigures::strike_frequency},
-    {"force_noise", {0, 1e4}, &SensorFigures::force_noise},
-    {"force_offset", {0, 1e4}, &SensorFigures::force_offset},
-    {"force_drift", {0, 1e4}, &SensorFigures::force_drift},
-    {"force_jump", {0, 1e4}, &SensorFigures::force_jump},
-    {"force_jump_share", kShare, &SensorFigures::force_jump_share},
-    {"force_scale", {0, 0.5}, &SensorFigures::force_scale},
-    {"force_crosstalk", {0, 0.5}, &SensorFigures::force_crosstalk},
-    {"force_crosstalk_pair", {0, 0.5}, &SensorFigures::force_crosstalk_pair},
-    {"moment_noise", {0, 1e4}, &SensorFigures::moment_noise},
-    {"moment_offset", {0, 1e4}, &SensorFigures::moment_offset},
-    {"foot_inertia", kShare, &SensorFigures::foot_inertia},
-    {"joint_delay", kDelay, &SensorFigures::joint_delay},
-    {"imu_delay", kDelay, &SensorFigures::imu_delay},
-    {"foot_delay", kDelay, &SensorFigures::foot_delay},
-    {"jitter", kDelay, &SensorFigures::jitter},
-    {"jitter_tail", kDelay, &SensorFigures::jitter_tail},
-    {"lost_frames", kShare, &SensorFigures::lost_frames},
-    {"lost_burst", {1, 100}, &SensorFigures::lost_burst},
-};
+Range range(const SensorFigureKey& key) { return {key.minimum, key.maximum}; }
 
 }  // namespace
 
@@ -78,8 +33,8 @@ void read_sensor_figures(const json& value, const std::string& path,
     return;
   }
   JsonReader map(value, path, errors);
-  std::vector<std::string> names = {"class", "stamp", "delay"};
-  for (const Key& key : kKeys) names.push_back(key.name);
+  std::vector<std::string> names = {"class", "stamp", kSensorDelayKey.name};
+  for (const SensorFigureKey& key : kSensorFigureKeys) names.emplace_back(key.name);
   map.allow(names);
   if (map.has("class")) {
     const json& name = map.at("class");
@@ -97,12 +52,14 @@ void read_sensor_figures(const json& value, const std::string& path,
     }
     figures->arrival_stamps = stamp == "arrival";
   }
-  if (map.has("delay")) {
+  if (map.has(kSensorDelayKey.name)) {
     Draw delay;
-    map.draw("delay", kDelay, &delay);
+    map.draw(kSensorDelayKey.name, range(kSensorDelayKey), &delay);
     figures->set_delay(delay);
   }
-  for (const Key& key : kKeys) map.draw(key.name, key.range, &(figures->*key.figure));
+  for (const SensorFigureKey& key : kSensorFigureKeys) {
+    map.draw(key.name, range(key), &(figures->*key.figure));
+  }
 }
 
 std::optional<SensorFigures> SensorFigures::find(std::string_view name) {

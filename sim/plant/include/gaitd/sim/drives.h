@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "gaitd/abi/types.h"
 #include "gaitd/sim/config.h"
@@ -50,30 +49,8 @@ class Drives {
   virtual const DriveReadings& readings() const = 0;
 };
 
-// The commands on their way to the drives.
-class CommandQueue {
- public:
-  explicit CommandQueue(int64_t delay_steps) : delay_steps_(delay_steps) {}
-
-  void reset();
-  void push(const GaitdJointCommands& commands, int64_t step) {
-    waiting_.push_back({step + delay_steps_, commands});
-  }
-  // The commands that hold in plant step `step`.
-  const GaitdJointCommands& at(int64_t step);
-
- private:
-  struct Waiting {
-    int64_t step;
-    GaitdJointCommands commands;
-  };
-  int64_t delay_steps_;
-  std::vector<Waiting> waiting_;  // oldest first
-  GaitdJointCommands active_{};
-};
-
-// Those of `config`. `inertia`: kg m^2 that each joint moves, n; the bristles of the friction are
-// damped for it.
+// Those of `config` for the robot `model`. `inertia`: kg m^2 that each joint moves in the physics
+// engine, n; friction and springs are damped for it.
 std::unique_ptr<Drives> make_drives(const GaitdModel& model, const Config& config,
                                     const Eigen::VectorXd& inertia);
 

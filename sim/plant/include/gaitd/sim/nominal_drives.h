@@ -5,6 +5,7 @@
 #ifndef GAITD_SIM_NOMINAL_DRIVES_H_
 #define GAITD_SIM_NOMINAL_DRIVES_H_
 
+#include "gaitd/sim/command_bus.h"
 #include "gaitd/sim/drives.h"
 #include "gaitd/sim/random.h"
 
@@ -18,7 +19,7 @@ class NominalDrives : public Drives {
 
   void reset() override;
   void command(const GaitdJointCommands& commands, int64_t step) override {
-    queue_.push(commands, step);
+    queue_.push(commands, step + delay_steps_);
   }
   void begin_step(int64_t step, const JointMotion& motion) override;
   double constant(int j) const override { return drives_[static_cast<size_t>(j)].constant; }
@@ -54,6 +55,7 @@ class NominalDrives : public Drives {
   std::vector<double> effort_limit_;
   std::vector<double> velocity_limit_;
   std::vector<Drive> drives_;
+  int64_t delay_steps_;
   CommandQueue queue_;
   RandomStream random_;
   Eigen::VectorXd torque_;

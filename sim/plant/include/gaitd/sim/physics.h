@@ -47,7 +47,7 @@ class Physics {
   // One time step under `forces` and the laws of `drives`, which begin_step() has set: joint j gets
   // constant(j) - slope(j) u, u being its rate *after* the step, so slope enters the inertia of the
   // step (JointLaw adds the joint's own damping and its stops). Asks revise() at least once and
-  // solves again while it wants to, a few times at most; calls end_step() once. False, with state()
+  // solves again while it wants to, four times at most; calls end_step() once. False, with state()
   // as it was: the result is not finite.
   virtual bool step(std::span<const BodyForce> forces, Drives* drives) = 0;
 

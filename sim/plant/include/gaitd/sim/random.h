@@ -32,6 +32,10 @@ enum class RandomPurpose : uint64_t {
   kTorqueErrors = 22,
   kDriveTiming = 23,
   kArmature = 24,
+  kCommandTiming = 25,
+  kBacklash = 26,
+  kSpringDamping = 27,
+  kCogging = 28,
 };
 
 class RandomStream {

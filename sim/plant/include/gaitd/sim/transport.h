@@ -13,6 +13,7 @@
 
 #include "gaitd/abi/types.h"
 #include "gaitd/sim/draw.h"
+#include "gaitd/sim/frame_timing.h"
 #include "gaitd/sim/random.h"
 #include "gaitd/sim/sensor_figures.h"
 
@@ -43,19 +44,16 @@ class Transport {
  private:
   int delay_steps(double delay) const;
 
-  SensorFigures figures_;
+  bool arrival_stamps_;
   Draw delay_range_;
   double time_step_;
   int steps_per_period_;
   uint64_t seed_;
   uint64_t index_;
+  FrameTiming timing_;
   int longest_;
 
-  double delay_ = 0;        // s
-  double jitter_ = 0;       // s
-  double tail_ = 0;         // s
-  double loss_chance_ = 0;  // that frames begin to be lost
-  int lost_ = 0;            // frames still to lose
+  double delay_ = 0;  // s
   int64_t step_ = 0;
   int64_t arrival_ = 0;  // control tick at which it came
   RandomStream stream_;
