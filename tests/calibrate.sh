@@ -1,0 +1,46 @@
+# A robot whose zeros, stiffnesses, friction and force sensors are wrong measures itself on its hoist and on
+# its feet, and walks with that as straight as a robot without errors. What it found is compared with what
+# the simulation drew.
+source "$(dirname "$0")/common.sh"
+cd "$scratch"
+robot=(--set actuators.model=hydraulic --set sensors.noise=lab --set seed=2)
+
+gaitctl run calibration --log calibration.mcap "${robot[@]}" --set calibration=hydraulic >run.txt 2>&1 ||
+  { cat run.txt; fail "the motions of the calibration"; }
+gaitctl --json calibrate calibration.mcap -o measured.yaml >found.json || fail "no calibration"
+"$GAITD_BUILD/tests/drawn_robot" calibration.mcap >drawn.json
+python3 - <<'PY' || fail "the calibration is not that of the robot"
+import json, math
+found, drawn = json.load(open("found.json")), json.load(open("drawn.json"))
+names = list(found["joints"])
+def left(values):  # without the sums that are said not to be observable
+    for s in found["unobservable"]:
+        k = [s["coefficients"][n] for n in names]
+        dot = sum(a * b for a, b in zip(k, values))
+        values = [v - dot * a for v, a in zip(values, k)]
+    return math.degrees(math.sqrt(sum(v * v for v in values) / (len(names) - len(found["unobservable"]))))
+before = left([drawn[n]["zero"] for n in names])
+after = left([found["joints"][n]["zero"] - drawn[n]["zero"] for n in names])
+print(f"zeros: {before:.2f} deg before, {after:.2f} deg after, "
+      f"{len(names) - len(found['unobservable'])} of {len(names)} sums; misfit {found['misfit']:.2f}")
+assert after < 0.4 and len(names) - len(found["unobservable"]) >= 7
+for n in names:
+    if "_leg_" not in n: continue
+    j, d = found["joints"][n], drawn[n]
+    assert abs(j["torque_bias"] - d["bias"]) < 4, (n, j, d)
+    assert abs(j["coulomb"] - d["coulomb"]) < 0.35 * d["coulomb"] + 1, (n, j, d)
+    assert abs(j["viscous"] - d["viscous"]) < 12, (n, j, d)
+PY
+
+# The bounds of this scenario are those of nominal drives.
+gaitctl run straight-0.35 --log walk.mcap "${robot[@]}" --set calibration="$PWD/measured.yaml" >walk.txt 2>&1 || true
+grep -q '^verdict' walk.txt || { cat walk.txt; fail "no verdict"; }
+grep -Eq 'FAIL +(no_fall|steps_taken|toe_off|final|icp_error|stance_knee_mean|foot_slip|played)' walk.txt &&
+  { cat walk.txt; fail "the walk of a calibrated robot"; }
+grep -E '^ +(icp_error_rms|stance_knee_mean) ' walk.txt
+gaitctl log replay walk.mcap >replay.txt 2>&1 || { cat replay.txt; fail "its replay"; }
+
+# A log that holds no such motions.
+gaitctl calibrate walk.mcap -o nothing.yaml >refused.txt 2>&1 && fail "a walk was taken for a calibration"
+grep -q 'postures in which the robot stands still' refused.txt || { cat refused.txt; fail "no advice"; }
+[[ ! -e nothing.yaml ]] || fail "a file was written all the same"
