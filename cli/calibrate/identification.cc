@@ -327,6 +327,11 @@ Identified identify(const GaitdModel& model, const daemon::Calibration& known,
     x -= normal.solve(gradient);
   }
   const VectorXd r = problem.residuals(x);
+  if (getenv("CAL_DEBUG")) for (std::size_t i = 0; i < recording.postures.size(); ++i) {
+    fprintf(stderr, "t %6.1f s %d ", recording.postures[i].time, recording.postures[i].stance);
+    for (int k = 0; k < 11; ++k) fprintf(stderr, " %6.2f", r[11 * (Eigen::Index)i + k]);
+    fprintf(stderr, " z %.0f %.0f\n", recording.postures[i].foot_wrench[0][5], recording.postures[i].foot_wrench[1][5]);
+  }
   Identified result;
   result.postures = static_cast<int>(recording.postures.size());
   // Residuals larger than expected say that what was assumed of the sensors is too good.

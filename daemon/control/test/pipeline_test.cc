@@ -71,7 +71,7 @@ TEST(Pipeline, SameInputsGiveTheSameBitsAndSoAfterAReset) {
                        sizeof(GaitdJointCommands)) == 0;
   };
   EXPECT_TRUE(same());
-  b.pipeline->reset();
+  b.pipeline->reset(true);
   EXPECT_EQ(b.state(), SafetyState::kReadying);
   b.tick = 0;
   b.walk = std::make_unique<SampleWalk>(atlas());
