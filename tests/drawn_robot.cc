@@ -21,13 +21,13 @@ int main(int argc, char** argv) {
     return 1;
   }
   std::vector<std::string> errors;
-  const sim::Config config = sim::parse_config(log->metadata_value("world").value_or("{}"),
-                                               robot->model, 0.001, &errors);
+  const sim::Config config =
+      sim::parse_config(log->metadata_value("world").value_or("{}"), robot->model, 0.001, &errors);
   sim::RandomStream zero(config.seed, sim::RandomPurpose::kJointZero);
   nlohmann::json result;
-  const sim::DrawnDrives drives =
-      config.drives ? sim::draw_drives(robot->model, *config.drives, config.seed)
-                    : sim::DrawnDrives{};
+  const sim::DrawnDrives drives = config.drives
+                                      ? sim::draw_drives(robot->model, *config.drives, config.seed)
+                                      : sim::DrawnDrives{};
   for (int j = 0; j < robot->model.joint_count; ++j) {
     nlohmann::json& joint = result[robot->model.joints[j].name];
     joint["zero"] = config.sensors.joint_zero.sample(&zero);

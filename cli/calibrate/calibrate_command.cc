@@ -55,7 +55,8 @@ int write(const Context& context, const std::string& file, const std::string& te
   if (out) fs::rename(fresh, file, error);
   if (out && !error) return kDone;
   fs::remove(fresh, ignored);
-  return fail(context, kFailed, kCommand, file + ": cannot be written; choose a place with -o FILE");
+  return fail(context, kFailed, kCommand,
+              file + ": cannot be written; choose a place with -o FILE");
 }
 
 // Beside the robot.yaml of the robot, unless the user says where.
@@ -143,14 +144,16 @@ void add_calibrate_command(CLI::App* app, Context* context) {
   auto* command = app->add_subcommand(
       "calibrate", "Measure zeros, stiffnesses and foot sensors of a robot by its own motions");
   command->footer(
-      "The robot hangs on its hoist, disarmed, feet clear of the ground. It moves the joints of its\n"
+      "The robot hangs on its hoist, disarmed, feet clear of the ground. It moves the joints of "
+      "its\n"
       "legs one by one, is armed and lowered, and takes some postures on both feet. What its\n"
       "encoders, IMU and force sensors say in them must fit together: that gives the calibration,\n"
       "with standard deviations, and tells what cannot be known without a jig. Exit code 0: the\n"
       "file is written; 1: refused or failed; 4: the log is damaged.");
   auto arguments = std::make_shared<Arguments>();
   command
-      ->add_option("LOG", arguments->log, "Nothing moves: a log of such motions is looked at (.mcap)")
+      ->add_option("LOG", arguments->log,
+                   "Nothing moves: a log of such motions is looked at (.mcap)")
       ->type_name("FILE");
   command->add_flag("--simulate", arguments->simulate,
                     "With a simulated robot on a private gaitd, in lockstep");

@@ -57,9 +57,8 @@ std::string sum_text(const GaitdModel& model, const Zeros& zeros, const Unobserv
 
 // What would tell: the joint that the sum holds most of.
 std::string help_text(const GaitdModel& model, const Zeros& zeros, const Unobservable& sum) {
-  const auto most = std::max_element(
-      sum.coefficients.begin(), sum.coefficients.end(),
-      [](double a, double b) { return std::abs(a) < std::abs(b); });
+  const auto most = std::max_element(sum.coefficients.begin(), sum.coefficients.end(),
+                                     [](double a, double b) { return std::abs(a) < std::abs(b); });
   const auto i = static_cast<std::size_t>(most - sum.coefficients.begin());
   return std::string("hold ") + model.joints[zeros.joints[i]].name +
          " at a stop or in a jig of known angle, or measure how the IMU is mounted";
@@ -71,9 +70,9 @@ std::string calibration_yaml(const GaitdModel& model, const Result& result,
                              const std::string& source) {
   const Identified& found = result.identified;
   const Zeros& zeros = found.zeros;
-  std::string text =
-      "# Measured by gaitctl calibrate on " + source + ".\nschema: gaitd.calibration/1\nrobot: " +
-      std::string(model.name) + "\njoints:\n";
+  std::string text = "# Measured by gaitctl calibrate on " + source +
+                     ".\nschema: gaitd.calibration/1\nrobot: " + std::string(model.name) +
+                     "\njoints:\n";
   for (std::size_t i = 0; i < zeros.joints.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const double zero = std::clamp(zeros.value[k], -kLargestZero, kLargestZero);
@@ -117,9 +116,9 @@ std::string summary(const GaitdModel& model, const Result& result) {
   std::string text = format("%d postures, %d readings in the air; misfit %.2f (1: as expected)\n",
                             found.postures, result.hanging, found.misfit);
   for (std::size_t i = 0; i < zeros.joints.size(); ++i) {
-    text += format("  %-12s zero %+7.3f deg +-%.3f", model.joints[zeros.joints[i]].name,
-                   zeros.value[static_cast<Eigen::Index>(i)] / kDegree,
-                   sigma_of(zeros, i) / kDegree);
+    text +=
+        format("  %-12s zero %+7.3f deg +-%.3f", model.joints[zeros.joints[i]].name,
+               zeros.value[static_cast<Eigen::Index>(i)] / kDegree, sigma_of(zeros, i) / kDegree);
     const double compliance = found.compliance[i];
     if (compliance > 1 / kLargestStiffness) {
       text += format("   stiffness %6.0f N m/rad +-%.0f %%", 1 / compliance,
@@ -127,9 +126,10 @@ std::string summary(const GaitdModel& model, const Result& result) {
     }
     const DriveErrors& drive = result.drives[static_cast<std::size_t>(zeros.joints[i])];
     if (drive.measured) {
-      text += format("   bias %+5.1f N m +-%.1f, friction %.1f N m +-%.1f and %.1f N m s/rad +-%.1f",
-                     drive.bias, drive.bias_sigma, drive.coulomb, drive.coulomb_sigma,
-                     drive.viscous, drive.viscous_sigma);
+      text +=
+          format("   bias %+5.1f N m +-%.1f, friction %.1f N m +-%.1f and %.1f N m s/rad +-%.1f",
+                 drive.bias, drive.bias_sigma, drive.coulomb, drive.coulomb_sigma, drive.viscous,
+                 drive.viscous_sigma);
     }
     text += "\n";
   }
@@ -187,9 +187,12 @@ nlohmann::json summary_json(const GaitdModel& model, const Result& result) {
                           {"force_sigma", result.feet[side].force_sigma.maxCoeff()},
                           {"moment_sigma", result.feet[side].moment_sigma.maxCoeff()}};
   }
-  return {{"postures", found.postures}, {"hanging", result.hanging},
-          {"misfit", found.misfit},     {"joints", joints},
-          {"feet", feet},               {"unobservable", sums}};
+  return {{"postures", found.postures},
+          {"hanging", result.hanging},
+          {"misfit", found.misfit},
+          {"joints", joints},
+          {"feet", feet},
+          {"unobservable", sums}};
 }
 
 }  // namespace gaitd::calibrate

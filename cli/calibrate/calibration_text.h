@@ -18,7 +18,7 @@ struct Result {
   Identified identified;
   std::array<FootOffset, GAITD_MAX_FEET> feet;
   std::vector<DriveErrors> drives;  // one for each joint of the model
-  int hanging = 0;  // readings in the air
+  int hanging = 0;                  // readings in the air
 };
 
 // A file of schema gaitd.calibration/1, with what is known of it as comments and covariance.

@@ -57,8 +57,8 @@ double needed(dynamics::Dynamics* dynamics, const GaitdModel& model, int joint,
   const VectorXd still = VectorXd::Zero(motion.position.size());
   dynamics->update(Vector3d::Zero(), Quaterniond::Identity(), Vector6d::Zero(), motion.position,
                    still);
-  const Vector3d up = (dynamics->R_WB(imu.body) *
-                       (sdk::quaternion(imu.orientation) * specific_force)).normalized();
+  const Vector3d up =
+      (dynamics->R_WB(imu.body) * (sdk::quaternion(imu.orientation) * specific_force)).normalized();
   dynamics->update(Vector3d::Zero(), Quaterniond::FromTwoVectors(up, Vector3d::UnitZ()),
                    Vector6d::Zero(), motion.position, motion.rate);
   VectorXd vdot = VectorXd::Zero(dynamics->velocity_size());
@@ -90,9 +90,8 @@ std::vector<DriveErrors> drive_errors(const GaitdModel& model, const daemon::Cal
       const double rate = motion.rate[test.joint];
       if (std::abs(rate) < kLeastRate) continue;
       for (int k = 0; k < model.joint_count; ++k) motion.position[k] -= known.joints[k].zero;
-      const double excess =
-          test.samples[i].torque -
-          needed(&dynamics, model, test.joint, motion, test.samples[i].specific_force);
+      const double excess = test.samples[i].torque - needed(&dynamics, model, test.joint, motion,
+                                                            test.samples[i].specific_force);
       const Vector4d row(-1, std::copysign(1.0, rate), rate, motion.acceleration[test.joint]);
       normal[j] += weight * row * row.transpose();
       right[j] += weight * row * excess;
@@ -103,10 +102,9 @@ std::vector<DriveErrors> drive_errors(const GaitdModel& model, const daemon::Cal
     if (!errors[j].measured) continue;
     const Eigen::LLT<Eigen::Matrix4d> solver(normal[j]);
     const Vector4d x = solver.solve(right[j]);
-    const Vector4d sigma =
-        solver.solve(Eigen::Matrix4d::Identity()).diagonal().cwiseSqrt();
-    errors[j] = {true,     x[0],     sigma[0], std::max(0.0, x[1]),
-                 sigma[1], std::max(0.0, x[2]), sigma[2]};
+    const Vector4d sigma = solver.solve(Eigen::Matrix4d::Identity()).diagonal().cwiseSqrt();
+    errors[j] = {true,    x[0], sigma[0], std::max(0.0, x[1]), sigma[1], std::max(0.0, x[2]),
+                 sigma[2]};
   }
   return errors;
 }

@@ -43,8 +43,9 @@ std::array<Vector3d, GAITD_MAX_FEET> gravity_in_sensors(const GaitdModel& model,
   kinematics->update(Vector3d::Zero(), Quaterniond::Identity(), Vector6d::Zero(), q,
                      Eigen::VectorXd::Zero(q.size()));
   const GaitdFrame& imu = model.imus[0];
-  const Vector3d down = -(kinematics->R_WB(imu.body) *
-                          (sdk::quaternion(imu.orientation) * still.specific_force)).normalized();
+  const Vector3d down =
+      -(kinematics->R_WB(imu.body) * (sdk::quaternion(imu.orientation) * still.specific_force))
+           .normalized();
   std::array<Vector3d, GAITD_MAX_FEET> gravity;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdFrame& sensor = model.feet[side].force_sensor;

@@ -19,9 +19,9 @@ struct FootOffset {
   double mass_sigma = 0.0;                                 // kg
 };
 
-// From readings of a robot that hangs and turns its feet: offset plus the weight of the foot, in the
-// direction that the IMU and the joints tell. `known` is the start, and stays where the recording
-// says nothing.
+// From readings of a robot that hangs and turns its feet: offset plus the weight of the foot, in
+// the direction that the IMU and the joints tell. `known` is the start, and stays where the
+// recording says nothing.
 std::array<FootOffset, GAITD_MAX_FEET> foot_offsets(const GaitdModel& model,
                                                     const daemon::Calibration& known,
                                                     const std::vector<Stillness>& hanging);

@@ -24,15 +24,15 @@ constexpr double kTurnSigma = 5e-4;     // rad, likewise
 constexpr double kForceSigma = 0.012;   // m/s^2, of the averaged IMU
 constexpr double kBalanceSigma = 2e-3;  // m, of the centre of mass against the centre of pressure
 // Of unknowns that are not asked for.
-constexpr double kScaleSigma = 0.01;      // of the force sensors
-constexpr double kPressureSigma = 1e-3;   // m, of a foot's centre of pressure
-constexpr double kRollGive = 8e-4;        // rad/(N m), of a sole in the ground
+constexpr double kScaleSigma = 0.01;     // of the force sensors
+constexpr double kPressureSigma = 1e-3;  // m, of a foot's centre of pressure
+constexpr double kRollGive = 8e-4;       // rad/(N m), of a sole in the ground
 constexpr double kPitchGive = 3e-4;
-constexpr double kSinking = 1.5e-6;       // m/N
-constexpr double kAnywhere = 1.0;         // m, rad: where the feet stand
-constexpr double kHuber = 3.0;            // standard deviations beyond which a residual counts less
+constexpr double kSinking = 1.5e-6;  // m/N
+constexpr double kAnywhere = 1.0;    // m, rad: where the feet stand
+constexpr double kHuber = 3.0;       // standard deviations beyond which a residual counts less
 constexpr int kIterations = 12;
-constexpr double kShareToKnow = 0.4;      // of the prior, beyond which nothing was learned
+constexpr double kShareToKnow = 0.4;  // of the prior, beyond which nothing was learned
 
 constexpr int kResiduals = 11;  // of a posture: place 3, turn 3, IMU 3, balance 2
 
@@ -211,12 +211,11 @@ class Problem {
     const Vector6d& reading = posture.foot_wrench[side];
     // Without the foot below the sensor; it is level.
     const Vector3d weight(0, 0, own.mass * model_.gravity);
-    const Vector3d arm =
-        Vector3d(own.com.data()) - sdk::view(foot.force_sensor.origin);
+    const Vector3d arm = Vector3d(own.com.data()) - sdk::view(foot.force_sensor.origin);
     Load l;
     l.force = scale * (turn * (reading.tail<3>() - Vector3d(own.force.data()))) + weight;
-    l.moment = scale * (turn * (reading.head<3>() - Vector3d(own.moment.data()))) +
-               arm.cross(weight);
+    l.moment =
+        scale * (turn * (reading.head<3>() - Vector3d(own.moment.data()))) + arm.cross(weight);
     const Vector3d to_sensor = sdk::view(foot.force_sensor.origin) - sdk::view(foot.sole.origin);
     l.moment += to_sensor.cross(l.force);
     const auto off = x.segment<2>(layout_.pressure(side));
@@ -248,8 +247,7 @@ class Problem {
     const Ground right = ground(GAITD_RIGHT, posture, x);
     const int s = layout_.stance(posture.stance);
     Eigen::Matrix<double, kResiduals, 1> r;
-    r.segment<3>(0) =
-        (left.R.transpose() * (right.p - left.p) - x.segment<3>(s)) / kPlaceSigma;
+    r.segment<3>(0) = (left.R.transpose() * (right.p - left.p) - x.segment<3>(s)) / kPlaceSigma;
     const Quaterniond turn(left.R.transpose() * right.R);
     r.segment<3>(3) =
         sdk::log_so3(sdk::exp_so3(Vector3d(x.segment<3>(s + 3))).conjugate() * turn) / kTurnSigma;
@@ -265,13 +263,13 @@ class Problem {
     const int chest = std::max(0, model_.chest_body);
     const Vector3d com =
         dynamics_.com() + model_.bodies[chest].mass / model_.total_mass *
-                                (dynamics_.R_WB(chest) * x.segment<3>(layout_.chest()));
+                              (dynamics_.R_WB(chest) * x.segment<3>(layout_.chest()));
     Vector3d moment = Vector3d::Zero();
     Vector3d force = Vector3d::Zero();
     for (int side = 0; side < GAITD_MAX_FEET; ++side) {
       const Load l = load(side, posture, x);
       const Vector3d sole = dynamics_.frame_position(model_.feet[side].body,
-                                                       sdk::view(model_.feet[side].sole.origin));
+                                                     sdk::view(model_.feet[side].sole.origin));
       moment += l.moment + (sole - com).cross(l.force);
       force += l.force;
     }
@@ -322,16 +320,11 @@ Identified identify(const GaitdModel& model, const daemon::Calibration& known,
     MatrixXd n = j.transpose() * weight.asDiagonal() * j;
     n.diagonal() += information;
     normal.compute(n);
-    const VectorXd gradient = j.transpose() * weight.cwiseProduct(r) +
-                              information.cwiseProduct(x - problem.mean());
+    const VectorXd gradient =
+        j.transpose() * weight.cwiseProduct(r) + information.cwiseProduct(x - problem.mean());
     x -= normal.solve(gradient);
   }
   const VectorXd r = problem.residuals(x);
-  if (getenv("CAL_DEBUG")) for (std::size_t i = 0; i < recording.postures.size(); ++i) {
-    fprintf(stderr, "t %6.1f s %d ", recording.postures[i].time, recording.postures[i].stance);
-    for (int k = 0; k < 11; ++k) fprintf(stderr, " %6.2f", r[11 * (Eigen::Index)i + k]);
-    fprintf(stderr, " z %.0f %.0f\n", recording.postures[i].foot_wrench[0][5], recording.postures[i].foot_wrench[1][5]);
-  }
   Identified result;
   result.postures = static_cast<int>(recording.postures.size());
   // Residuals larger than expected say that what was assumed of the sensors is too good.

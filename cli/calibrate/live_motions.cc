@@ -37,8 +37,7 @@ std::string state_after(const std::string& method) {
 }
 
 bool wait_for(RpcClient* client, const std::string& state, std::string* got) {
-  const auto deadline =
-      std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
   do {
     std::this_thread::sleep_for(kPoll);
     *got = status(client).value("state", "");
@@ -89,7 +88,8 @@ int play_live(const Context& context, const std::string& name, std::string* log)
     last = command.at;
     std::this_thread::sleep_until(due);
     if (command.method == "arm") {
-      std::cerr << "arming; lower the hoist until both feet carry the robot and the rope is slack\n";
+      std::cerr
+          << "arming; lower the hoist until both feet carry the robot and the rope is slack\n";
     }
     const daemon::RpcResult result = client->call(command.method, command.params);
     if (const auto* refused = std::get_if<daemon::RpcError>(&result)) {
@@ -99,8 +99,8 @@ int play_live(const Context& context, const std::string& name, std::string* log)
     std::string got;
     if (!wanted.empty() && !wait_for(client.get(), wanted, &got)) {
       return fail(context, kFailed, kCommand,
-                  command.method + ": expected the robot to be " + wanted + " after it, got " + got +
-                      "; see `gaitctl status`");
+                  command.method + ": expected the robot to be " + wanted + " after it, got " +
+                      got + "; see `gaitctl status`");
     }
     due = std::max(due, std::chrono::steady_clock::now());
   }

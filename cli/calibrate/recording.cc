@@ -14,14 +14,15 @@ namespace {
 
 using daemon::LogReader;
 
-constexpr double kWindow = 0.4;         // s, over which a reading is averaged
-constexpr double kTravel = 4e-3;        // rad that an encoder may move in it, robot at rest
-constexpr double kSlowTravel = 0.08;    // rad, hanging
-constexpr double kNewPosture = 0.02;    // rad, by which one posture differs from the next
-constexpr double kAirborne = 0.1;       // of the weight, on both feet together
-constexpr double kLeastLoad = 0.15;     // of the weight, on each foot that stands
+constexpr double kWindow = 0.4;       // s, over which a reading is averaged
+constexpr double kTravel = 4e-3;      // rad that an encoder may move in it, robot at rest
+constexpr double kSlowTravel = 0.08;  // rad, hanging
+constexpr double kNewPosture = 0.02;  // rad, by which one posture differs from the next
+constexpr double kAirborne = 0.1;     // of the weight, on both feet together
+constexpr double kLeastLoad = 0.15;   // of the weight, on each foot that stands
+constexpr double kWholeLoad = 0.93;   // of the weight, on both: no rope carries any of it
 
-constexpr double kSampling = 5e-3;      // s, between the samples of a joint test
+constexpr double kSampling = 5e-3;  // s, between the samples of a joint test
 constexpr std::size_t kFewSamples = 20;
 
 struct Window {
@@ -136,7 +137,8 @@ std::optional<Recording> read_recording(const LogReader& log, const GaitdModel& 
     const double travel = largest(window.highest - window.lowest, carrying);
     if (std::abs(left) + std::abs(right) < kAirborne * weight && travel < kSlowTravel) {
       recording.hanging.push_back(still);
-    } else if (stance >= 0 && travel < kTravel && std::min(left, right) > kLeastLoad * weight) {
+    } else if (stance >= 0 && travel < kTravel && std::min(left, right) > kLeastLoad * weight &&
+               left + right > kWholeLoad * weight) {
       std::vector<Posture>& all = recording.postures;
       const bool again = !all.empty() && all.back().stance == stance &&
                          largest(all.back().position - still.position, carrying) < kNewPosture;

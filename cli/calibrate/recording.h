@@ -16,11 +16,11 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 // Means of raw readings over a short time in which nothing moves.
 struct Stillness {
-  double time = 0.0;                                // s, of its middle
-  Eigen::VectorXd position;                         // rad, encoders
-  Eigen::VectorXd torque;                           // N m, as the drives say
-  Eigen::Vector3d specific_force;                   // m/s^2, axes of the first IMU
-  std::array<Vector6d, GAITD_MAX_FEET> foot_wrench; // N m, N: moment first; axes of the sensor
+  double time = 0.0;                                 // s, of its middle
+  Eigen::VectorXd position;                          // rad, encoders
+  Eigen::VectorXd torque;                            // N m, as the drives say
+  Eigen::Vector3d specific_force;                    // m/s^2, axes of the first IMU
+  std::array<Vector6d, GAITD_MAX_FEET> foot_wrench;  // N m, N: moment first; axes of the sensor
 };
 
 // A posture of the robot on both feet, at rest; those with the same `stance` had their feet in the

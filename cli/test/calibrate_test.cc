@@ -73,8 +73,9 @@ class WrongRobot {
     const double weight = model.total_mass * model.gravity;
     const Vector3d com = dynamics_.com();
     const Vector3d between = place[1] - place[0];
-    const double share = std::clamp((com - place[0]).head<2>().dot(between.head<2>()) /
-                                        between.head<2>().squaredNorm(), 0.2, 0.8);
+    const double share = std::clamp(
+        (com - place[0]).head<2>().dot(between.head<2>()) / between.head<2>().squaredNorm(), 0.2,
+        0.8);
     const Vector3d off = Vector3d(com.x(), com.y(), 0) - place[0] - share * between;
     std::array<dynamics::ExternalWrench, GAITD_MAX_FEET> wrenches;
     Posture posture;
@@ -88,8 +89,8 @@ class WrongRobot {
       const Vector3d moment = (place[side] + off - sensor).cross(force);
       wrenches[side] = {foot.body, sdk::view(foot.force_sensor.origin), {}};
       wrenches[side].wrench << moment, force;
-      const Quaterniond axes = Quaterniond(dynamics_.R_WB(foot.body)) *
-                               sdk::quaternion(foot.force_sensor.orientation);
+      const Quaterniond axes =
+          Quaterniond(dynamics_.R_WB(foot.body)) * sdk::quaternion(foot.force_sensor.orientation);
       posture.foot_wrench[side] << axes.conjugate() * moment, axes.conjugate() * force;
     }
     VectorXd torque(dynamics_.velocity_size());
@@ -124,8 +125,8 @@ class WrongRobot {
     dynamics_.frame_jacobian(foot.body, at, jacobian);
     Eigen::Matrix<double, 6, 6> leg;
     for (int i = 0; i < 6; ++i) leg.col(i) = jacobian.col(6 + model.legs[side].joints[i]);
-    const Vector6d step = leg.transpose() *
-                          (leg * leg.transpose() + 1e-8 * Eigen::Matrix<double, 6, 6>::Identity())
+    const Vector6d step =
+        leg.transpose() * (leg * leg.transpose() + 1e-8 * Eigen::Matrix<double, 6, 6>::Identity())
                               .ldlt()
                               .solve(error);
     for (int i = 0; i < 6; ++i) (*q)[model.legs[side].joints[i]] += std::clamp(step[i], -0.2, 0.2);
@@ -167,7 +168,8 @@ double error_of(const Identified& found, const VectorXd& zero) {
     const Eigen::Map<const VectorXd> v(sum.coefficients.data(), n);
     error -= v.dot(error) * v;
   }
-  return error.norm() / std::sqrt(static_cast<double>(n) - static_cast<double>(found.unobservable.size()));
+  return error.norm() /
+         std::sqrt(static_cast<double>(n) - static_cast<double>(found.unobservable.size()));
 }
 
 TEST(Identification, FindsTheZerosOfARobotThatStandsInManyPostures) {
@@ -197,7 +199,8 @@ TEST(Identification, TellsStiffnessFromZero) {
         << atlas().joints[found.zeros.joints[i]].name;
   }
   const auto knee = std::find(found.zeros.joints.begin(), found.zeros.joints.end(),
-                              atlas().legs[GAITD_LEFT].knee) - found.zeros.joints.begin();
+                              atlas().legs[GAITD_LEFT].knee) -
+                    found.zeros.joints.begin();
   EXPECT_LT(found.compliance_sigma[static_cast<std::size_t>(knee)] * 12000, 0.15);
 }
 
@@ -237,9 +240,9 @@ TEST(FootOffsets, OffsetAndWeightOfAFootThatTurnsInTheAir) {
     still.specific_force = robot.gravity_in_imu();
     for (int side = 0; side < GAITD_MAX_FEET; ++side) {
       const GaitdFrame& sensor = model.feet[side].force_sensor;
-      const Vector3d weight = sdk::quaternion(sensor.orientation).conjugate() *
-                              (robot.dynamics().R_WB(sensor.body).transpose() *
-                               Vector3d(0, 0, -mass * model.gravity));
+      const Vector3d weight =
+          sdk::quaternion(sensor.orientation).conjugate() *
+          (robot.dynamics().R_WB(sensor.body).transpose() * Vector3d(0, 0, -mass * model.gravity));
       const Vector3d arm = com - sdk::view(sensor.origin);
       still.foot_wrench[side] << moment + arm.cross(weight), force + weight;
     }
@@ -277,10 +280,9 @@ TEST(DriveErrors, FrictionAndBiasOfAJointThatSwings) {
       vdot.tail(a.size()) = a;
       VectorXd torque(vdot.size());
       robot.dynamics().inverse_dynamics(vdot, {}, torque);
-      const double reported = torque[6 + knee] - kBias + kViscous * v[knee] +
-                              std::copysign(kCoulomb, v[knee]);
-      const VectorXd noise =
-          VectorXd::NullaryExpr(q.size(), [&] { return 1e-4 * robot.normal(); });
+      const double reported =
+          torque[6 + knee] - kBias + kViscous * v[knee] + std::copysign(kCoulomb, v[knee]);
+      const VectorXd noise = VectorXd::NullaryExpr(q.size(), [&] { return 1e-4 * robot.normal(); });
       test.samples.push_back({t, q + noise, reported, robot.gravity_in_imu()});
     }
     tests.push_back(test);

@@ -54,7 +54,8 @@ void check_covariance(MapReader map, const GaitdModel& model) {
   const std::vector<NodePtr> names = map.list("joints", 1, GAITD_MAX_JOINTS);
   for (const NodePtr& name : names) {
     const std::string text = name->kind == NodeKind::kScalar ? name->text : "";
-    if (joint_index(model, text) < 0) map.fail("joints", "joints of the robot", describe(*name), "");
+    if (joint_index(model, text) < 0)
+      map.fail("joints", "joints of the robot", describe(*name), "");
   }
   const std::vector<NodePtr> rows = map.list("zeros", 0, GAITD_MAX_JOINTS);
   bool square = rows.size() == names.size();

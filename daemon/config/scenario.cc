@@ -113,12 +113,8 @@ nlohmann::json Scenario::simulator_config() const {
                           {"z", start.position[2]},
                           {"yaw", start.yaw}};
   if (!hoist.is_null()) place["hoist"] = hoist;
-  return {{"start", place},
-          {"seed", seed},
-          {"terrain", terrain},
-          {"sensors", sensors},
-          {"actuators", actuators},
-          {"model_error", model_error}};
+  return {{"start", place},     {"seed", seed},           {"terrain", terrain},
+          {"sensors", sensors}, {"actuators", actuators}, {"model_error", model_error}};
 }
 
 std::optional<Scenario> load_scenario(const std::string& file, Settings* settings, Issues* issues) {
@@ -152,8 +148,8 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
   scenario.actuators = read_actuators(root.map("actuators"));
   scenario.model_error = read_model_error(root.map("model_error"));
   scenario.commands = read_scenario_commands(&root, scenario.duration);
-  const CommandedSteps steps = check_commands(
-      scenario.commands, scenario.mode, !scenario.hoist.is_null(), &found);
+  const CommandedSteps steps =
+      check_commands(scenario.commands, scenario.mode, !scenario.hoist.is_null(), &found);
   scenario.disturbances = read_disturbances(&root, scenario.duration, steps);
   MapReader expect = root.map("expect");
   scenario.expect = read_expectations(expect);

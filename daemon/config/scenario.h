@@ -48,7 +48,7 @@ struct Scenario {
   std::string robot;      // a name or the path of a robot.yaml
   double duration = 0.0;  // s, simulated
   std::uint64_t seed = 1;
-  GaitdStart start{};  // middle of the feet
+  GaitdStart start{};    // middle of the feet
   nlohmann::json hoist;  // start.hoist as written; null: it stands
   Location start_where;
   int mode = GAITD_MODE_STAND;

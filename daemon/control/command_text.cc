@@ -10,10 +10,10 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr const char* kNames[] = {
-    "arm",    "disarm", "estop", "reset",     "mode",     "walk",      "footsteps",   "pause",
-    "resume", "stop",   "abort", "param.set", "sim.push", "sim.reset", "plugin.swap", "joint.test",
-    "pose"};
+constexpr const char* kNames[] = {"arm",        "disarm",    "estop",    "reset",     "mode",
+                                  "walk",       "footsteps", "pause",    "resume",    "stop",
+                                  "abort",      "param.set", "sim.push", "sim.reset", "plugin.swap",
+                                  "joint.test", "pose"};
 
 class Writer {
  public:

@@ -318,6 +318,27 @@ TEST(ImuPlace, IsThatOfTheKinematics) {
   }
 }
 
+// Nothing carries it for a minute: with what is wrong in the IMU it would be kilometres away.
+TYPED_TEST(StateEstimator, HoldsOnToARobotOnItsHoist) {
+  Bench<TypeParam> b(0.0, kNominal);
+  b.accelerometer_bias = {0.05, -0.05, 0.03};
+  b.run_for(2.0);
+  b.share[0] = b.share[1] = 0.0;
+  b.balanced = false;
+  b.check = [&b] {
+    ASSERT_LT(b.tilt_error(), 0.03) << b.time();
+    ASSERT_LT(b.velocity_error(), 0.1) << b.time();
+    ASSERT_LT(b.position_error(), 0.2) << b.time();
+  };
+  b.run_for(60.0);
+  b.check = nullptr;
+  b.share[0] = b.share[1] = 0.5;
+  b.balanced = true;
+  b.run_for(3.0);
+  EXPECT_LT(b.velocity_error(), 0.02);
+  EXPECT_LT(b.tilt_error(), 0.01);
+}
+
 TYPED_TEST(StateEstimator, FindsARobotThatStandsStill) {
   Bench<TypeParam> b(0.0, {});
   const Errors e = errors_of(b, 3.0);

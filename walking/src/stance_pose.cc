@@ -11,11 +11,11 @@
 namespace gaitd::walking {
 namespace {
 
-constexpr double kMargin = 0.03;       // m, of the ICP to the edge of the feet
-constexpr double kLargestDrop = 0.15;  // of the nominal height of the centre of mass
-constexpr double kLargestTilt = 0.2;   // rad, roll and pitch
-constexpr double kLargestYaw = 0.3;    // rad
-constexpr double kLeaving = 0.8;       // s, in which a walk takes the robot back
+constexpr double kMargin = 0.03;      // m, of the ICP to the edge of the feet
+constexpr double kLargestDrop = 0.1;  // of the nominal height of the centre of mass
+constexpr double kLargestTilt = 0.2;  // rad, roll and pitch
+constexpr double kLargestYaw = 0.3;   // rad
+constexpr double kLeaving = 0.8;      // s, in which a walk takes the robot back
 
 Eigen::Quaterniond heading_of(const GaitdGaitState& gait) {
   return sdk::quaternion(
@@ -37,7 +37,8 @@ Refusal StancePose::command(const PoseCommand& pose, const GaitdGaitState& gait)
     return refuse("pose: pelvis.z %.3f m, %.3f to 0 expected", pose.shift[2], lowest);
   }
   if (pose.shift[2] < 0.0 && gait.mode == GAITD_MODE_WALK_STRAIGHT) {
-    return refuse("pose: pelvis.z: straight legs have no height of their own; `gaitctl mode stand`");
+    return refuse(
+        "pose: pelvis.z: straight legs have no height of their own; `gaitctl mode stand`");
   }
   const char* const names[] = {"roll", "pitch", "yaw"};
   for (int i = 0; i < 3; ++i) {
@@ -51,9 +52,10 @@ Refusal StancePose::command(const PoseCommand& pose, const GaitdGaitState& gait)
   const Eigen::Vector2d goal = rest + turned(heading_of(gait), pose.shift[0], pose.shift[1]);
   const double inside = support_polygon(model_, gait).inside_distance(goal);
   if (!(inside >= kMargin)) {
-    return refuse("pose: pelvis.x %.3f, y %.3f m: the centre of mass would be %.3f m inside the "
-                  "edge of the feet, at least %.2f expected",
-                  pose.shift[0], pose.shift[1], inside, kMargin);
+    return refuse(
+        "pose: pelvis.x %.3f, y %.3f m: the centre of mass would be %.3f m inside the "
+        "edge of the feet, at least %.2f expected",
+        pose.shift[0], pose.shift[1], inside, kMargin);
   }
   std::array<double, kAxes> to;
   std::copy(pose.shift, pose.shift + 3, to.begin());

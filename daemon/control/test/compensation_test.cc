@@ -62,6 +62,29 @@ TEST_F(CompensationTest, TheLinkIsBehindItsMotorByTorqueOverStiffness) {
   EXPECT_NEAR(joint().velocity, 0.0, 1e-6);
 }
 
+TEST_F(CompensationTest, FrictionIsMadeUpForWithTheRateThatTheLinkIsToHave) {
+  calibration_.joints[kJoint] = {.torque_bias = 3.0, .coulomb = 10.0, .viscous = 20.0};
+  Compensation compensation(atlas(), calibration_);
+  GaitdJointCommand& command = data_->commands.joints[kJoint];
+  const auto torque_at = [&](double rate, int mode = GAITD_JOINT_MODE_TORQUE) {
+    command = {};
+    command.mode = mode;
+    command.torque = 5.0;
+    command.velocity = rate;
+    compensation.commands(*data_);
+    return command.torque;
+  };
+  EXPECT_NEAR(torque_at(0.0), 5.0 - 3.0, 1e-12);
+  EXPECT_NEAR(torque_at(1.0), 5.0 - 3.0 + 10.0 + 20.0, 1e-6);
+  EXPECT_NEAR(torque_at(-1.0), 5.0 - 3.0 - 10.0 - 20.0, 1e-6);
+  EXPECT_NEAR(torque_at(1e-3) - torque_at(0.0), 1e-3 * (20.0 + 10.0 / 0.08), 1e-4) << "no step";
+  EXPECT_EQ(torque_at(1.0, GAITD_JOINT_MODE_DAMPING), 5.0) << "a drive that only damps is let be";
+  EXPECT_EQ(torque_at(1e6), atlas().joints[kJoint].effort_limit);
+  // The layers get the torque that arrives, but for friction.
+  read(&compensation, 0.0, 40.0, 1);
+  EXPECT_EQ(joint().torque, 43.0);
+}
+
 TEST_F(CompensationTest, ABadTorqueSensorMovesAJointByABoundedAngle) {
   calibration_.joints[kJoint] = {.zero = 0.0, .stiffness = 1000.0};
   Compensation compensation(atlas(), calibration_);

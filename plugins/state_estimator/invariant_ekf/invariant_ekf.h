@@ -135,7 +135,7 @@ class InvariantEkf {
   dynamics::Kinematics kinematics_;
   double time_unsupported_ = 0.0;  // s, for which no foot is trusted
   bool hangs_ = false;             // on a hoist
-  RightInvariantFilter filter_;  // axes of the pelvis, origin of the IMU in use
+  RightInvariantFilter filter_;    // axes of the pelvis, origin of the IMU in use
   int imu_ = 0;
   sdk::ImuPlace place_;  // of that IMU
 

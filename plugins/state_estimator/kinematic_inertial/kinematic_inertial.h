@@ -148,13 +148,13 @@ class KinematicInertial {
   std::array<double, GAITD_MAX_JOINTS> joint_rate_{};                // rad/s, observed
   Eigen::Quaterniond orientation_ = Eigen::Quaterniond::Identity();  // pelvis in W
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();               // pelvis, W
-  Eigen::Vector3d hung_at_ = Eigen::Vector3d::Zero();  // m, where no foot carried it any more
-  double time_unsupported_ = 0.0;                      // s, since then
-  Eigen::Vector3d velocity_W_ = Eigen::Vector3d::Zero();             // pelvis, W
-  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();                   // rad/s, pelvis frame
-  Eigen::Vector3d imu_rate_ = Eigen::Vector3d::Zero();   // rad/s, of the IMU against the pelvis
-  Eigen::Vector3d turn_ = Eigen::Vector3d::Zero();       // rad/s, by which the attitude turned
-  Eigen::Vector3d gyro_bias_ = Eigen::Vector3d::Zero();  // pelvis frame
+  Eigen::Vector3d hung_at_ = Eigen::Vector3d::Zero();     // m, where no foot carried it any more
+  double time_unsupported_ = 0.0;                         // s, since then
+  Eigen::Vector3d velocity_W_ = Eigen::Vector3d::Zero();  // pelvis, W
+  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();        // rad/s, pelvis frame
+  Eigen::Vector3d imu_rate_ = Eigen::Vector3d::Zero();    // rad/s, of the IMU against the pelvis
+  Eigen::Vector3d turn_ = Eigen::Vector3d::Zero();        // rad/s, by which the attitude turned
+  Eigen::Vector3d gyro_bias_ = Eigen::Vector3d::Zero();   // pelvis frame
   Eigen::Vector3d accelerometer_bias_ = Eigen::Vector3d::Zero();  // pelvis frame
   Eigen::Vector3d balance_bias_ = Eigen::Vector3d::Zero();        // likewise, by the balance
   Eigen::Vector3d specific_force_ = Eigen::Vector3d::Zero();      // at the IMU, pelvis axes

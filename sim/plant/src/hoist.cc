@@ -62,9 +62,7 @@ void Hoist::reset(Bodies bodies) {
 }
 
 void Hoist::command(const GaitdJointCommands& commands, double period) {
-  const auto holds = [](const GaitdJointCommand& c) {
-    return c.mode == GAITD_JOINT_MODE_TORQUE;
-  };
+  const auto holds = [](const GaitdJointCommand& c) { return c.mode == GAITD_JOINT_MODE_TORQUE; };
   const bool held = commands.joint_count > 0 &&
                     std::all_of(commands.joints, commands.joints + commands.joint_count, holds);
   held_ = held ? held_ + period : 0;
@@ -91,8 +89,7 @@ void Hoist::add_forces(Bodies bodies, std::vector<BodyForce>* forces) const {
     const double longer = stretch(rope, bodies);
     if (longer <= 0) continue;
     const Eigen::Vector3d held = chest.point(rope.point);
-    const Eigen::Vector3d up =
-        (rope.hook - Eigen::Vector3d(0, 0, lowered_) - held).normalized();
+    const Eigen::Vector3d up = (rope.hook - Eigen::Vector3d(0, 0, lowered_) - held).normalized();
     const Eigen::Vector3d velocity = chest.velocity(held);
     const double away = -velocity.dot(up);
     const double pull = std::max(0.0, stiffness_ * longer + damping_ * away);

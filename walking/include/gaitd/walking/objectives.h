@@ -102,10 +102,10 @@ class ObjectiveBuilder {
   ReferenceFilter height_;
   ReferenceFilter yaw_;
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // rad, held while standing, level in a walk
-  double pose_height_ = 0.0;                         // m
+  double pose_height_ = 0.0;                        // m
   Eigen::Quaterniond pose_turn_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d pose_rate_ = Eigen::Vector3d::Zero();  // rad/s
-  double pelvis_share_ = 1.0;                       // of the weight of the pelvis orientation
+  double pelvis_share_ = 1.0;                            // of the weight of the pelvis orientation
   std::array<double, GAITD_MAX_FEET> time_in_contact_{};
   std::array<double, GAITD_MAX_FEET> time_in_toe_off_{};
   bool impedance_given_ = false;

@@ -39,12 +39,12 @@ class Hoist {
   const GaitdModel model_;
   HoistConfig config_;
   int chest_;
-  double stiffness_;        // N/m, of one rope
-  double damping_;          // N s/m, along it
-  double swing_damping_;    // N s/m, across it
+  double stiffness_;      // N/m, of one rope
+  double damping_;        // N s/m, along it
+  double swing_damping_;  // N s/m, across it
   std::array<Rope, 2> ropes_;
-  double lowered_ = 0;      // m
-  double held_ = 0;         // s, for which the drives hold every joint
+  double lowered_ = 0;  // m
+  double held_ = 0;     // s, for which the drives hold every joint
 };
 
 }  // namespace gaitd::sim
