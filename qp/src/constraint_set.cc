@@ -3,17 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "kernels.h"
 
 namespace gaitd::qp {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
-
 ConstraintSet::ConstraintSet(const Dimensions& max) {
   const int rows = max.equalities + max.inequalities;
   normals_ = Eigen::VectorXd::Zero(rows * kernels::padded(max.unknowns));
@@ -49,7 +42,7 @@ ConstraintSet::Check ConstraintSet::load_rows(const MatrixView& m, int first) {
   double rest = 0.0;
   for (int j = 0; j < n_; ++j) {
     const double* source = m.column(j);
-    if (!kernels::all_finite(count, source)) rest = kInfinity;
+    if (!kernels::all_finite(count, source)) rest = kernels::kInfinity;
     for (int i = 0; i < count; ++i) target[i * ld_ + j] = source[i];
   }
   for (int i = 0; i < count; ++i) {
@@ -62,10 +55,11 @@ ConstraintSet::Check ConstraintSet::load_sides(const VectorView& lower, const Ve
                                                int first, int count) {
   Check result = Check::ok;
   for (int i = 0; i < count; ++i) {
-    const double low = lower.size() > 0 ? lower[i] : -kInfinity;
-    const double high = upper.size() > 0 ? upper[i] : kInfinity;
+    const double low = lower.size() > 0 ? lower[i] : -kernels::kInfinity;
+    const double high = upper.size() > 0 ? upper[i] : kernels::kInfinity;
     if (std::isnan(low) || std::isnan(high)) return Check::non_finite;
-    if (low > high || low == kInfinity || high == -kInfinity) result = Check::infeasible;
+    if (low > high || low == kernels::kInfinity || high == -kernels::kInfinity)
+      result = Check::infeasible;
     lower_[first + i] = low;
     upper_[first + i] = high;
   }
@@ -79,8 +73,8 @@ ConstraintSet::Check ConstraintSet::finish_rows(double tolerance) {
     if (length == 0.0) {
       if (lower_[id] > tolerance || upper_[id] < -tolerance) return Check::infeasible;
       length_[id] = 1.0;
-      lower_[id] = -kInfinity;
-      upper_[id] = kInfinity;
+      lower_[id] = -kernels::kInfinity;
+      upper_[id] = kernels::kInfinity;
       continue;
     }
     const double inverse = 1.0 / length;

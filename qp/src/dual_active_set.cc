@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "kernels.h"
 
 namespace gaitd::qp {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // A normal counts as dependent when less than this part of it, in the metric of H⁻¹, is new. A
 // guessed constraint has to be better than that: it must not spoil the start.
 constexpr double kDependent = 1e-9;
@@ -220,7 +218,7 @@ DualActiveSet::Outcome DualActiveSet::add(Candidate candidate, int max_iteration
     const bool dependent = qr_.full() || !(curvature > kDependent * kDependent * squared);
     const int size = qr_.size();
 
-    double dual_step = kInfinity;
+    double dual_step = kernels::kInfinity;
     int blocking = -1;
     const double threshold = kDirection * std::max(1.0, max_abs(size, r_.data()));
     for (int k = fixed_; k < size; ++k) {
@@ -232,7 +230,7 @@ DualActiveSet::Outcome DualActiveSet::add(Candidate candidate, int max_iteration
         blocking = k;
       }
     }
-    const double full_step = dependent ? kInfinity : violation / curvature;
+    const double full_step = dependent ? kernels::kInfinity : violation / curvature;
     if (dependent && blocking < 0) {
       if (contradicts(candidate.id, candidate.sign, tolerance)) return Outcome::infeasible;
       state_[candidate.id] = kExcluded;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <limits>
 
 namespace gaitd::qp::kernels {
 
@@ -12,6 +13,7 @@ namespace gaitd::qp::kernels {
 
 using Vec4 = double __attribute__((vector_size(32)));
 inline constexpr int kWidth = 4;
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 inline Vec4 load(const double* p) {
   Vec4 v;

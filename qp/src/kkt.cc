@@ -3,14 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "kernels.h"
 
 namespace gaitd::qp {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // std::max drops a NaN second argument; a judge must not.
 double max_keep_nan(double a, double b) { return (b > a || std::isnan(b)) ? b : a; }
@@ -29,7 +26,7 @@ struct TwoSided {
     if (multiplier == 0.0) return;
     const double distance = multiplier > 0.0 ? upper - value : value - lower;
     const double size = std::abs(multiplier);
-    if (distance == kInfinity) {
+    if (distance == kernels::kInfinity) {
       dual_sign = max_keep_nan(dual_sign, size);
     } else {
       complementarity = max_keep_nan(complementarity, size * std::abs(distance));
@@ -37,7 +34,7 @@ struct TwoSided {
   }
 };
 
-double max_abs(int n, const double* v) {
+double max_abs_keep_nan(int n, const double* v) {
   double result = 0.0;
   for (int i = 0; i < n; ++i) result = max_keep_nan(result, std::abs(v[i]));
   return result;
@@ -75,7 +72,7 @@ KktResiduals KktJudge::evaluate(const Problem& problem, const Point& point) {
   const double quadratic = kernels::dot(n, x, s);
   const double linear = kernels::dot(n, problem.g.data(), x);
   objective_ = 0.5 * quadratic + linear;
-  double dual_scale = max_keep_nan(max_abs(n, s), max_abs(n, problem.g.data()));
+  double dual_scale = max_keep_nan(max_abs_keep_nan(n, s), max_abs_keep_nan(n, problem.g.data()));
   kernels::axpy(n, 1.0, problem.g.data(), s);
 
   std::fill_n(eq, p, 0.0);
@@ -93,21 +90,22 @@ KktResiduals KktJudge::evaluate(const Problem& problem, const Point& point) {
   }
 
   KktResiduals result;
-  result.absolute.stationarity = max_abs(n, s);
-  double equality_scale = max_keep_nan(max_abs(p, eq), max_abs(p, problem.b.data()));
+  result.absolute.stationarity = max_abs_keep_nan(n, s);
+  double equality_scale =
+      max_keep_nan(max_abs_keep_nan(p, eq), max_abs_keep_nan(p, problem.b.data()));
   if (p > 0) kernels::axpy(p, -1.0, problem.b.data(), eq);
-  result.absolute.primal_equality = max_abs(p, eq);
+  result.absolute.primal_equality = max_abs_keep_nan(p, eq);
 
   TwoSided sides;
-  const double row_scale = 1.0 + max_abs(m, cx);
+  const double row_scale = 1.0 + max_abs_keep_nan(m, cx);
   for (int i = 0; i < m; ++i) {
-    const double lower = problem.l.size() > 0 ? problem.l[i] : -kInfinity;
-    const double upper = problem.u.size() > 0 ? problem.u[i] : kInfinity;
+    const double lower = problem.l.size() > 0 ? problem.l[i] : -kernels::kInfinity;
+    const double upper = problem.u.size() > 0 ? problem.u[i] : kernels::kInfinity;
     sides.add(cx[i], lower, upper, point.z[i], row_scale);
   }
   for (int i = 0; i < n; ++i) {
-    const double lower = problem.lb.size() > 0 ? problem.lb[i] : -kInfinity;
-    const double upper = problem.ub.size() > 0 ? problem.ub[i] : kInfinity;
+    const double lower = problem.lb.size() > 0 ? problem.lb[i] : -kernels::kInfinity;
+    const double upper = problem.ub.size() > 0 ? problem.ub[i] : kernels::kInfinity;
     sides.add(x[i], lower, upper, point.w[i], 1.0 + std::abs(x[i]));
   }
   result.absolute.primal_inequality = sides.primal;

@@ -27,12 +27,14 @@ can_links() {
 
 # Whoever is woken by a frame waits until the sender has sent them all, instead of a switch each.
 batch() { exec chrt --batch 0 "$@"; }
+# Before a gaitd in real time, which waits for nobody: every command is answered at once.
+at_once() { exec chrt --fifo 90 "$@"; }
 
 # start_robot NAME ARGUMENTS...: the fake robot, which leaves NAME.json when it ends.
 start_robot() {
   local said='' end=$((SECONDS + 60)) report=$scratch/$1.json
   shift
-  batch gaitd-fake-robot --report "$report" --stall-time "${stall_time:-60}" \
+  "${robot_runs:-batch}" gaitd-fake-robot --report "$report" --stall-time "${stall_time:-60}" \
     --patience "${patience:-30}" "$@" >"$scratch/robot.txt" 2>&1 &
   robot=$!
   until { read -r said <"$scratch/robot.txt" && [[ $said == ready ]]; } 2>/dev/null; do
@@ -47,9 +49,10 @@ stop_robot() {
   wait "$robot" || fail "the fake robot ended with $?"
 }
 
-# start_gaitd ARGUMENTS...: in lockstep with the fake robot, ready when it answers.
+# start_gaitd ARGUMENTS...: in lockstep with the fake robot unless $clock is realtime; ready when it
+# answers.
 start_gaitd() {
-  batch gaitd --backend socketcan --clock lockstep --set log.enabled=false \
+  batch gaitd --backend socketcan --clock "${clock:-lockstep}" --set log.enabled=false \
     --set socketcan.lockstep_timeout="${patience:-30}" \
     --set safety.ready_duration=0.5 "$@" >"$scratch/gaitd.txt" 2>&1 &
   gaitd=$!

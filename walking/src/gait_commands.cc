@@ -12,7 +12,7 @@ namespace gaitd::walking {
 namespace {
 
 // Feet this close to side by side need no closing step (m).
-constexpr double kClosedGap = 0.03;
+constexpr double kNoClosingStep = 0.03;
 
 }  // namespace
 
@@ -195,7 +195,7 @@ Refusal GaitMachine::stop() {
   GaitdPose standing = state_.footholds[side].pose;
   standing.position[2] -= height_offset_;
   const double gap = (sdk::view(standing.position) - sdk::view(step.pose.position)).norm();
-  if (kept > 0 && gap < kClosedGap) {
+  if (kept > 0 && gap < kNoClosingStep) {
     publish_footsteps();
     changed();
     return {};

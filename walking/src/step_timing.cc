@@ -23,7 +23,7 @@ constexpr double kWorth = 0.1;
 constexpr double kSwingWeight = 10.0;
 // Relative step of the differences.
 constexpr double kDifference = 0.01;
-constexpr double kTolerance = 1e-4;  // m
+constexpr double kSmallExcess = 1e-4;  // m
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Where a foot is, seen from the CoM: in the frame of its heading, with the legs' own distance
@@ -120,7 +120,8 @@ StepTiming::Changes StepTiming::solve(const GaitdGaitState& gait, const Eigen::V
   }
   set_phases(gait);
   Excess excess = evaluate(com, limits, changes);
-  for (int iteration = 0; iteration < kIterations && excess.maxCoeff() > kTolerance; ++iteration) {
+  for (int iteration = 0; iteration < kIterations && excess.maxCoeff() > kSmallExcess;
+       ++iteration) {
     H_.setZero();
     g_.setZero();
     C_.setZero();

@@ -11,7 +11,7 @@ namespace gaitd::walking {
 namespace {
 
 // Largest speed of a quintic from rest to rest, per way / time.
-constexpr double kPeak = 1.875;
+constexpr double kPeakSpeed = 1.875;
 
 // m, seen from above, without what the feet stand apart anyway.
 double way(const GaitdPose& stance, const GaitdPose& foot, double separation) {
@@ -73,8 +73,9 @@ Refusal SwingLimits::check(const GaitdFootstep& step, const GaitdPose& stance,
   const Angles end = angles(leg, ahead, hip_above(touchdown, ahead));
   const double half = 0.5 * step.swing_duration;
   const double knee =
-      kPeak * std::max(std::abs(middle.knee - begin.knee), std::abs(middle.knee - end.knee)) / half;
-  const double hip = kPeak * std::abs(end.hip - begin.hip) / step.swing_duration;
+      kPeakSpeed * std::max(std::abs(middle.knee - begin.knee), std::abs(middle.knee - end.knee)) /
+      half;
+  const double hip = kPeakSpeed * std::abs(end.hip - begin.hip) / step.swing_duration;
   const bool is_knee = knee / leg.knee_speed > hip / leg.hip_speed;
   const double speed = is_knee ? knee : hip;
   const double limit = is_knee ? leg.knee_speed : leg.hip_speed;

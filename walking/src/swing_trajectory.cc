@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kShortest = 0.01;  // s, of one polynomial
 constexpr double kBrisk = 30.0;     // m/s^2, to reach a foothold that moved after the arrival
-constexpr double kPeak =
+constexpr double kPeakAcceleration =
     5.77;  // largest acceleration of a quintic from rest to rest, per way / time^2
 constexpr double kOnset = 0.05;  // s
 
@@ -112,7 +112,7 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   // A foothold that moves late is reached in its own time, and at touchdown at the latest.
   const Eigen::Vector3d end = sdk::view(to.pose.position);
   const double move = (end - now.position).head<2>().norm();
-  const double needed = std::sqrt(kPeak * move / kBrisk);
+  const double needed = std::sqrt(kPeakAcceleration * move / kBrisk);
   arrive_ = std::max({blend(1.0, parameters[Swing::kDropArrive], drop) * duration_,
                       std::min(leave_ + needed, duration_), leave_ + kShortest});
   level_ = std::max(blend(1.0, parameters[Swing::kRiseLevel], rise) * duration_, t + kShortest);
