@@ -32,6 +32,8 @@ Refusal StancePose::command(const PoseCommand& pose, const GaitdGaitState& gait)
   if (gait.phase != GAITD_PHASE_STAND || gait.footstep_count > 0) {
     return refuse("pose: the robot walks; wait until it stands, or `gaitctl stop`");
   }
+  const bool finite = sdk::view(pose.shift).allFinite() && sdk::view(pose.turn).allFinite();
+  if (!finite || !(pose.duration > 0.0)) return refuse("pose: numbers expected");
   const double lowest = -kLargestDrop * model_.nominal_com_height;
   if (pose.shift[2] > 0.0 || pose.shift[2] < lowest) {
     return refuse("pose: pelvis.z %.3f m, %.3f to 0 expected", pose.shift[2], lowest);

@@ -63,7 +63,7 @@ TEST_F(CompensationTest, TheLinkIsBehindItsMotorByTorqueOverStiffness) {
 }
 
 TEST_F(CompensationTest, FrictionIsMadeUpForWithTheRateThatTheLinkIsToHave) {
-  calibration_.joints[kJoint] = {.torque_bias = 3.0, .coulomb = 10.0, .viscous = 20.0};
+  calibration_.joints[kJoint] = {.torque_bias = 3.0, .coulomb = 4.0, .viscous = 6.0};
   Compensation compensation(atlas(), calibration_);
   GaitdJointCommand& command = data_->commands.joints[kJoint];
   const auto torque_at = [&](double rate, int mode = GAITD_JOINT_MODE_TORQUE) {
@@ -75,9 +75,9 @@ TEST_F(CompensationTest, FrictionIsMadeUpForWithTheRateThatTheLinkIsToHave) {
     return command.torque;
   };
   EXPECT_NEAR(torque_at(0.0), 5.0 - 3.0, 1e-12);
-  EXPECT_NEAR(torque_at(1.0), 5.0 - 3.0 + 10.0 + 20.0, 1e-6);
-  EXPECT_NEAR(torque_at(-1.0), 5.0 - 3.0 - 10.0 - 20.0, 1e-6);
-  EXPECT_NEAR(torque_at(1e-3) - torque_at(0.0), 1e-3 * (20.0 + 10.0 / 0.08), 1e-4) << "no step";
+  EXPECT_NEAR(torque_at(1.0), 5.0 - 3.0 + 4.0 + 6.0, 1e-6);
+  EXPECT_NEAR(torque_at(-1.0), 5.0 - 3.0 - 4.0 - 6.0, 1e-6);
+  EXPECT_NEAR(torque_at(1e-3) - torque_at(0.0), 1e-3 * (6.0 + 4.0 / 0.08), 1e-4) << "no step";
   EXPECT_EQ(torque_at(1.0, GAITD_JOINT_MODE_DAMPING), 5.0) << "a drive that only damps is let be";
   EXPECT_EQ(torque_at(1e6), atlas().joints[kJoint].effort_limit);
   // The layers get the torque that arrives, but for friction.
