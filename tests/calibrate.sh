@@ -40,6 +40,40 @@ grep -Eq 'FAIL +(no_fall|steps_taken|toe_off|final|icp_error|stance_knee_mean|fo
 grep -E '^ +(icp_error_rms|stance_knee_mean) ' walk.txt
 gaitctl log replay walk.mcap >replay.txt 2>&1 || { cat replay.txt; fail "its replay"; }
 
+# On a running gaitd, with fewer motions: the robot hangs, is armed, lowered and moved.
+cat >hanging.yaml <<'YAML'
+schema: gaitd.scenario/1
+name: hanging
+robot: atlas
+duration: 600
+start: {hoist: {height: 0.05}}
+terrain: {ground_z: 0.0}
+YAML
+{
+  sed -n '/^schema/,/^commands:/p' hanging.yaml | sed 's/name: hanging/name: short/; s/duration: 600/duration: 60/'
+  echo 'mode: walk-bent'
+  echo 'commands:'
+  echo '  - {at: 0.5, joint.test: {joint: l_leg_aky, amplitude: 0.2, duration: 1.5}}'
+  echo '  - {at: 2.5, arm: true}'
+  at=7.0
+  for pose in 'z: -0.05' 'yaw: 0.2, z: -0.02' 'yaw: -0.2, y: 0.05' 'roll: 0.1, y: -0.05' 'pitch: 0.15, x: 0.03' \
+    'pitch: -0.15, x: -0.03, z: -0.06' 'roll: -0.1' 'y: 0.05'; do
+    echo "  - {at: $at, pose: {pelvis: {$pose}, duration: 0.8}}"
+    at=$(awk "BEGIN { print $at + 2.5 }")
+  done
+  echo "  - {at: $at, pose: {pelvis: {}}}"
+} >short.yaml
+gaitd --scenario hanging.yaml --clock realtime --log "$PWD/live.mcap" >"$scratch/gaitd.txt" 2>&1 &
+daemon=$!
+for _ in $(seq 100); do gaitctl status >status.txt 2>&1 && break || sleep 0.1; done
+grep -q '^state *disarmed' status.txt || { cat status.txt; fail "a robot on its hoist comes up disarmed"; }
+gaitctl calibrate --motions "$PWD/short.yaml" -o live.yaml || fail "the calibration of a running robot"
+grep -q 'l_leg_aky.*coulomb' live.yaml || { cat live.yaml; fail "no friction of the joint that was swung"; }
+gaitctl calibrate --motions "$PWD/short.yaml" -o again.yaml 2>refused.txt && fail "an armed robot was calibrated"
+grep -q 'disarmed robot on its hoist' refused.txt || { cat refused.txt; fail "no advice"; }
+kill -TERM "$daemon" && wait "$daemon" || true
+daemon=
+
 # A log that holds no such motions.
 gaitctl calibrate walk.mcap -o nothing.yaml >refused.txt 2>&1 && fail "a walk was taken for a calibration"
 grep -q 'postures in which the robot stands still' refused.txt || { cat refused.txt; fail "no advice"; }

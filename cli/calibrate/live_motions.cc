@@ -9,6 +9,7 @@
 
 #include "cli/ask.h"
 #include "cli/failure.h"
+#include "daemon/config/command_parse.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/scenario.h"
 #include "daemon/config/settings.h"
@@ -34,6 +35,14 @@ std::string state_after(const std::string& method) {
   if (method == "joint.test") return "disarmed";
   if (method == "arm" || method == "abort" || method == "stop") return "standing";
   return "";
+}
+
+// The short forms of scenarios (`arm: true`, `mode: walk-bent`) as params of a request.
+json params_of(const daemon::ScenarioCommand& command) {
+  if (command.params.is_boolean()) return nullptr;
+  if (command.params.is_string()) return {{command.method, command.params}};
+  if (command.params.is_array()) return {{"footsteps", command.params}};
+  return command.params;
 }
 
 bool wait_for(RpcClient* client, const std::string& state, std::string* got) {
@@ -80,6 +89,11 @@ int play_live(const Context& context, const std::string& name, std::string* log)
                 "expected a disarmed robot on its hoist, got one that is " +
                     before.value("state", "") + "; `gaitctl disarm` first");
   }
+  const std::string mode(daemon::mode_name(scenario->mode));
+  const daemon::RpcResult chosen = client->call("mode", {{"mode", mode}});
+  if (const auto* refused = std::get_if<daemon::RpcError>(&chosen)) {
+    return fail(context, kCommand, "mode", *refused);
+  }
   auto due = std::chrono::steady_clock::now();
   double last = scenario->commands.empty() ? 0.0 : scenario->commands.front().at;
   for (const daemon::ScenarioCommand& command : scenario->commands) {
@@ -91,7 +105,7 @@ int play_live(const Context& context, const std::string& name, std::string* log)
       std::cerr
           << "arming; lower the hoist until both feet carry the robot and the rope is slack\n";
     }
-    const daemon::RpcResult result = client->call(command.method, command.params);
+    const daemon::RpcResult result = client->call(command.method, params_of(command));
     if (const auto* refused = std::get_if<daemon::RpcError>(&result)) {
       return fail(context, kCommand, command.method, *refused);
     }
