@@ -188,6 +188,10 @@ PoolEnd make_calibrations(const Campaign& campaign, const std::vector<CampaignRu
   const auto finish = [&](const ChildPool::End& end, std::string*) {
     const Calibration& calibration = wanted[static_cast<std::size_t>(end.number)];
     if (!accept(calibration, end.status, fresh(calibration))) {
+      // Half a gigabyte each.
+      if (static_cast<int>(failures->size()) >= campaign.keep_logs) {
+        fs::remove(beside(calibration, ".mcap"), ignored);
+      }
       (*failures)[calibration.file.string()] = reason(calibration, end.status);
     }
     ++finished;

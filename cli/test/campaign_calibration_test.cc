@@ -164,6 +164,9 @@ TEST_F(CampaignCalibrationTest, TellsWhyOneFails) {
   const std::vector<std::string> names = calibrations();
   ASSERT_EQ(names.size(), 2u);
   EXPECT_EQ(names[0].substr(23), ".mcap");
+  campaign_.keep_logs = 0;
+  ASSERT_EQ(make(), PoolEnd::kDone);
+  EXPECT_EQ(calibrations().size(), 1u);
   measures("kill -9 $$");
   ASSERT_EQ(make(), PoolEnd::kDone);
   ASSERT_EQ(failures_.size(), 1u);
