@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "cli/campaign_calibration.h"
 #include "cli/campaign_groups.h"
 #include "cli/campaign_plot.h"
 #include "cli/campaign_search.h"
@@ -33,16 +34,6 @@ using daemon::NodeKind;
 using daemon::NodePtr;
 
 constexpr std::size_t kMaxRuns = 1000000;
-
-// A path is meant from the folder of the campaign, where there is such a file.
-std::string scenario_from(const std::string& campaign_file, const std::string& scenario) {
-  const fs::path beside = fs::path(campaign_file).parent_path() / scenario;
-  std::error_code error;
-  if (scenario.ends_with(".yaml") && fs::is_regular_file(beside, error)) {
-    return beside.lexically_normal().string();
-  }
-  return scenario;
-}
 
 // Kinds of which each seed draws a scenario of its own.
 void read_gauntlet(MapReader* root, Campaign* campaign) {
@@ -183,6 +174,15 @@ std::string draw_value(const CampaignDraw& draw, std::uint64_t seed) {
 
 }  // namespace
 
+std::string scenario_from(const std::string& campaign_file, const std::string& scenario) {
+  const fs::path beside = fs::path(campaign_file).parent_path() / scenario;
+  std::error_code error;
+  if (scenario.ends_with(".yaml") && fs::is_regular_file(beside, error)) {
+    return beside.lexically_normal().string();
+  }
+  return scenario;
+}
+
 std::optional<Campaign> load_campaign(const std::string& file, Issues* issues) {
   const std::size_t errors = issues->error_count();
   const NodePtr node = daemon::load_yaml_file(file, issues);
@@ -208,6 +208,7 @@ std::optional<Campaign> load_campaign(const std::string& file, Issues* issues) {
   read_success_min(&root, &campaign);
   read_groups(&root, &campaign);
   campaign.keep_logs = static_cast<int>(root.integer("keep_logs", 0, 1000000).value_or(10));
+  read_calibrate(&root, &campaign);
   check_keys(&root, campaign);
   root.finish();
   std::size_t runs = campaign.scenarios.size() * campaign.seeds.size();

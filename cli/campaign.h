@@ -64,6 +64,8 @@ struct Campaign {
   std::vector<CampaignTarget> targets;
   std::vector<std::vector<std::string>> groups;  ///< settings by which the summary counts
   int keep_logs = 10;                            ///< of the worst runs
+  /// Scenario whose motions measure the robot of each seed that plays with a calibration; "": none.
+  std::string motions;
 };
 
 /// One run of a campaign. Runs with the same cell differ in nothing but the seed.
@@ -78,6 +80,9 @@ struct CampaignRun {
 
 /// Nothing when there is any error; all of them go to `issues`.
 std::optional<Campaign> load_campaign(const std::string& file, daemon::Issues* issues);
+
+/// The scenario that a campaign names: a path is meant from its folder, where there is such a file.
+std::string scenario_from(const std::string& campaign_file, const std::string& scenario);
 
 /// KEY=VALUE of everything that this value of a setting stands for.
 std::vector<std::string> assignments(const Campaign& campaign, const std::string& key,

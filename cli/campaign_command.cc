@@ -6,8 +6,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -16,7 +14,9 @@
 #include <thread>
 
 #include "cli/campaign.h"
+#include "cli/campaign_calibration.h"
 #include "cli/campaign_plot.h"
+#include "cli/campaign_progress.h"
 #include "cli/campaign_results.h"
 #include "cli/campaign_runner.h"
 #include "cli/campaign_search.h"
@@ -30,7 +30,6 @@ namespace gaitd::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 constexpr int kInterrupted = 130;  // as a shell reports a program that SIGINT ended
 
@@ -40,52 +39,6 @@ struct Arguments {
   std::vector<std::string> settings;
   int jobs = 0;
   bool trust = false;
-};
-
-std::string duration_text(double seconds) {
-  char text[32];
-  const auto whole = static_cast<long>(seconds + 0.5);
-  std::snprintf(text, sizeof(text), "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
-  return text;
-}
-
-// A bar that stays in its line on a terminal, else a line now and then.
-class ProgressBar {
- public:
-  ProgressBar(const ResultFile& results, RunOrder* order) : results_(results), order_(order) {}
-
-  void show(int finished) {
-    const std::size_t done = results_.results().size();
-    const std::size_t runs = done + order_->remaining();
-    if (!terminal_ && (finished == shown_ || (done * 20 / runs == last_step_ && done < runs))) {
-      return;
-    }
-    last_step_ = done * 20 / runs;
-    shown_ = finished;
-    int failed = 0;
-    for (const auto& [number, result] : results_.results()) failed += result.success ? 0 : 1;
-    constexpr std::size_t kWidth = 30;
-    const std::size_t filled = done * kWidth / runs;
-    const double passed = std::chrono::duration<double>(Clock::now() - start_).count();
-    const std::string left =
-        finished > 0 ? duration_text(passed / finished * static_cast<double>(runs - done)) + " left"
-                     : "";
-    std::fprintf(stderr, "%s[%s%s] %zu/%zu, %d failed, %s%s", terminal_ ? "\r" : "",
-                 std::string(filled, '#').c_str(), std::string(kWidth - filled, '.').c_str(), done,
-                 runs, failed, left.c_str(), terminal_ ? "\033[K" : "\n");
-    std::fflush(stderr);
-  }
-  void end() const {
-    if (terminal_) std::fputs("\r\033[K", stderr);
-  }
-
- private:
-  const ResultFile& results_;
-  RunOrder* order_;
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
-  Clock::time_point start_ = Clock::now();
-  int shown_ = 0;
-  std::size_t last_step_ = 0;
 };
 
 // Makes the folder and takes it for this process, or says why not. A descriptor, or -1.
@@ -144,6 +97,33 @@ void write_plots(const Campaign& campaign, const std::vector<SearchResult>& foun
   }
 }
 
+PoolEnd calibrate(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                  const RunnerOptions& options, const std::map<int, CampaignResult>& results,
+                  CalibrationFailures* failures, std::string* error) {
+  ProgressBar bar("calibrations ");
+  const auto progress = [&](const ProgressCounts& counts) { bar.show(counts); };
+  const PoolEnd end =
+      make_calibrations(campaign, runs, options, results, progress, failures, error);
+  bar.end();
+  for (const auto& [file, why] : *failures) std::cerr << "gaitctl: campaign: " << why << "\n";
+  return end;
+}
+
+PoolEnd play(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+             const RunnerOptions& options, const CalibrationFailures& failures, RunOrder* order,
+             ResultFile* results, std::string* error) {
+  ProgressBar bar("");
+  const auto progress = [&](int finished) {
+    int failed = 0;
+    for (const auto& [number, result] : results->results()) failed += result.success ? 0 : 1;
+    const std::size_t done = results->results().size();
+    bar.show({done, done + order->remaining(), failed, finished});
+  };
+  const PoolEnd end = play_runs(campaign, runs, options, failures, order, results, progress, error);
+  bar.end();
+  return end;
+}
+
 int run(const Context& context, const Arguments& arguments) {
   daemon::Issues issues;
   std::optional<Campaign> campaign = load_campaign(arguments.file, &issues);
@@ -189,23 +169,23 @@ int run(const Context& context, const Arguments& arguments) {
                      ? arguments.jobs
                      : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   RunOrder order(*campaign, runs, results.results());
-  ProgressBar bar(results, &order);
   if (const std::size_t before = results.results().size(); before > 0) {
     std::cerr << "goes on: " << before << " of " << before + order.remaining()
               << (campaign->searches ? " runs at most are done\n" : " runs are done\n");
   }
-  const RunnerEnd end = play_runs(
-      *campaign, runs, options, &order, &results, [&bar](int finished) { bar.show(finished); },
-      &error);
-  bar.end();
+  CalibrationFailures failures;
+  PoolEnd end = calibrate(*campaign, runs, options, results.results(), &failures, &error);
+  if (end == PoolEnd::kDone) {
+    end = play(*campaign, runs, options, failures, &order, &results, &error);
+  }
   close(lock);
-  if (end == RunnerEnd::kFailed) return fail(context, kFailed, "campaign", error);
+  if (end == PoolEnd::kFailed) return fail(context, kFailed, "campaign", error);
   const nlohmann::json summary = summary_json(*campaign, runs, results.results(), &order, options);
   if (campaign->plot) write_plots(*campaign, order.found(), folder);
   std::ofstream(folder / "summary.txt") << summary_text(summary);
   std::ofstream(folder / "summary.json") << json_text(summary);
   std::cout << (context.json ? json_text(summary) : summary_text(summary));
-  if (end == RunnerEnd::kInterrupted) {
+  if (end == PoolEnd::kInterrupted) {
     std::cerr << "interrupted; the same command goes on\n";
     return kInterrupted;
   }

@@ -74,10 +74,16 @@ const std::vector<std::string>& campaign_figures() {
   return kNames;
 }
 
-CampaignResult read_result(const Campaign& campaign, int number, const std::string& run_json) {
+CampaignResult unjudged_result(int number, const std::string& problem) {
   CampaignResult result;
   result.number = number;
+  result.problem = one_line(problem);
   result.figures.assign(campaign_figures().size(), kNaN);
+  return result;
+}
+
+CampaignResult read_result(const Campaign& campaign, int number, const std::string& run_json) {
+  CampaignResult result = unjudged_result(number, "");
   const json document = json::parse(run_json, nullptr, false);
   const json report = document.is_object() && document.contains("scenarios")
                           ? document["scenarios"].at(0)

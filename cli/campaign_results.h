@@ -28,6 +28,9 @@ const std::vector<std::string>& campaign_figures();
 /// From what `gaitctl --json run` printed for that run; what is no such text becomes a problem.
 CampaignResult read_result(const Campaign& campaign, int number, const std::string& run_json);
 
+/// Of a run that was not even played, and why.
+CampaignResult unjudged_result(int number, const std::string& problem);
+
 /// How bad a run was: those that failed first, then by the largest error of the ICP.
 double badness(const CampaignResult& result);
 

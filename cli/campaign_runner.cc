@@ -6,17 +6,16 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
-#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <system_error>
-#include <thread>
 
-#include "cli/child.h"
+#include "cli/campaign_calibration.h"
+#include "cli/child_pool.h"
 #include "cli/gauntlet/gauntlet.h"
 #include "cli/stop_signals.h"
 
@@ -25,11 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Pool {
+// The logs of the runs in the folder of the campaign.
+class Logs {
  public:
-  Pool(const Campaign& campaign, const std::vector<CampaignRun>& runs, const RunnerOptions& options,
-       ResultFile* results)
-      : campaign_(campaign), runs_(runs), options_(options), results_(results) {
+  Logs(const fs::path& folder, int keep) : folder_(folder), keep_(keep) {
     // What a killed campaign left; its last children may still be writing there.
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(logs(), ignored)) {
@@ -41,79 +39,38 @@ class Pool {
     fs::create_directories(running_, ignored);
   }
 
-  // Children that are still there, when anything goes wrong.
-  ~Pool() {
-    for (const auto& [pid, number] : children_) kill(pid, SIGTERM);
-    for (const auto& [pid, number] : children_) waitpid(pid, nullptr, 0);
+  ~Logs() {
     std::error_code ignored;
     fs::remove_all(running_, ignored);
   }
 
-  bool idle() const { return children_.empty(); }
-  bool full() const { return static_cast<int>(children_.size()) >= options_.jobs; }
-
-  bool start(const CampaignRun& run, std::string* error) {
-    std::vector<std::string> arguments{options_.gaitctl.string(),
-                                       "--json",
-                                       "run",
-                                       scenario_of(campaign_, run, options_.folder),
-                                       "--log",
-                                       running(run.number, ".mcap").string()};
-    if (options_.trust) arguments.emplace_back("--trust");
-    std::vector<std::string> settings = assignments(campaign_, run);
-    settings.insert(settings.end(), options_.settings.begin(), options_.settings.end());
-    for (const std::string& setting : settings) {
-      arguments.insert(arguments.end(), {"--set", setting});
-    }
-    const pid_t pid = start_child(arguments, running(run.number, ".json").string(), "/dev/null");
-    if (pid < 0) {
-      *error = "cannot start " + options_.gaitctl.string() + ": " + std::strerror(errno);
-      return false;
-    }
-    children_[pid] = run.number;
-    return true;
+  // While they are being written.
+  fs::path running(int number, const char* extension) const {
+    return running_ / log(number, extension).filename();
   }
 
-  // Takes up one child that has ended. False with an empty error if none has.
-  bool take(std::string* error) {
-    for (const auto& [pid, number] : children_) {
-      int status = 0;
-      if (waitpid(pid, &status, WNOHANG) != pid) continue;
-      const int run = number;
-      children_.erase(pid);
-      std::ifstream in(running(run, ".json"));
-      const std::string text(std::istreambuf_iterator<char>(in), {});
-      CampaignResult result = read_result(campaign_, run, text);
-      if (WIFSIGNALED(status)) {
-        result.success = false;
-        result.problem = "gaitctl run was killed by signal " + std::to_string(WTERMSIG(status));
-      }
-      std::error_code ignored;
-      fs::remove(running(run, ".json"), ignored);
-      for (const char* extension : {".mcap", ".txt"}) {
-        fs::rename(running(run, extension), log(run, extension), ignored);
-      }
-      if (!results_->append(result, error)) return false;
-      keep_worst();
-      return true;
+  // Of a run that has ended.
+  void keep(int number) const {
+    std::error_code ignored;
+    for (const char* extension : {".mcap", ".txt"}) {
+      fs::rename(running(number, extension), log(number, extension), ignored);
     }
-    return false;
   }
 
   // Deletes all logs but those of the worst runs.
-  void keep_worst() {
+  void keep_worst(const std::map<int, CampaignResult>& results) {
     std::vector<std::pair<double, int>> logs;
     std::error_code ignored;
-    for (const auto& [number, result] : results_->results()) {
+    for (const auto& [number, result] : results) {
       if (deleted_.contains(number)) continue;
-      if (fs::exists(campaign_log(options_.folder, number), ignored)) {
+      if (fs::exists(campaign_log(folder_, number), ignored)) {
         logs.emplace_back(-badness(result), number);
       } else {
         deleted_[number] = true;
       }
     }
     std::sort(logs.begin(), logs.end());
-    for (std::size_t i = static_cast<std::size_t>(campaign_.keep_logs); i < logs.size(); ++i) {
+    for (std::size_t i = static_cast<std::size_t>(keep_); i < logs.size(); ++i) {
       forget(logs[i].second);
       deleted_[logs[i].second] = true;
     }
@@ -122,27 +79,58 @@ class Pool {
  private:
   static constexpr const char* kRunning = "running-";
 
-  fs::path logs() const { return campaign_log(options_.folder, 0).parent_path(); }
+  fs::path logs() const { return campaign_log(folder_, 0).parent_path(); }
   fs::path log(int number, const char* extension) const {
-    return campaign_log(options_.folder, number).replace_extension(extension);
-  }
-  // While it is being written.
-  fs::path running(int number, const char* extension) const {
-    return running_ / log(number, extension).filename();
+    return campaign_log(folder_, number).replace_extension(extension);
   }
   void forget(int number) const {
     std::error_code ignored;
     for (const char* extension : {".mcap", ".txt"}) fs::remove(log(number, extension), ignored);
   }
 
-  const Campaign& campaign_;
-  const std::vector<CampaignRun>& runs_;
-  const RunnerOptions& options_;
-  ResultFile* results_;
+  const fs::path folder_;
+  const int keep_;
   fs::path running_;
-  std::map<pid_t, int> children_;  // numbers of the runs
   std::map<int, bool> deleted_;
 };
+
+std::vector<std::string> arguments_of(const Campaign& campaign, const CampaignRun& run,
+                                      const RunnerOptions& options, const fs::path& log) {
+  std::vector<std::string> arguments{options.gaitctl.string(),
+                                     "--json",
+                                     "run",
+                                     scenario_of(campaign, run, options.folder),
+                                     "--log",
+                                     log.string()};
+  if (options.trust) arguments.emplace_back("--trust");
+  for (const std::string& setting : played_settings(campaign, run, options)) {
+    arguments.insert(arguments.end(), {"--set", setting});
+  }
+  return arguments;
+}
+
+// Why the robot of this run could not be measured; null if nothing is wrong.
+const std::string* failure_of(const Campaign& campaign, const CampaignRun& run,
+                              const RunnerOptions& options, const CalibrationFailures& failures) {
+  if (failures.empty()) return nullptr;
+  const auto calibration =
+      calibration_of(campaign, settings_of(campaign, run, options), options.folder);
+  const auto failure = calibration ? failures.find(calibration->file.string()) : failures.end();
+  return failure == failures.end() ? nullptr : &failure->second;
+}
+
+CampaignResult result_of(const Campaign& campaign, int number, int status, const fs::path& output) {
+  std::ifstream in(output);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  CampaignResult result = read_result(campaign, number, text);
+  if (WIFSIGNALED(status)) {
+    result.success = false;
+    result.problem = "gaitctl run was killed by signal " + std::to_string(WTERMSIG(status));
+  }
+  std::error_code ignored;
+  fs::remove(output, ignored);
+  return result;
+}
 
 }  // namespace
 
@@ -179,38 +167,59 @@ bool write_drawn(const Campaign& campaign, const fs::path& folder, std::string* 
   return true;
 }
 
-RunnerEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                    const RunnerOptions& options, RunOrder* order, ResultFile* results,
-                    const std::function<void(int)>& progress, std::string* error) {
-  using Clock = std::chrono::steady_clock;
-  constexpr auto kRefresh = std::chrono::milliseconds(500);
-  const StopSignals signals;
-  Pool pool(campaign, runs, options, results);
-  pool.keep_worst();
-  int finished = 0;
-  Clock::time_point shown{};
-  for (;;) {
-    if (StopSignals::requested()) return RunnerEnd::kInterrupted;
-    while (!pool.full()) {
-      const std::optional<int> next = order->next();
-      if (!next) break;
-      const CampaignRun& run = runs[static_cast<std::size_t>(*next) - 1];
-      if (!pool.start(run, error)) return RunnerEnd::kFailed;
-    }
-    if (pool.idle()) return RunnerEnd::kDone;
-    error->clear();
-    // A terminal interrupts the children as well: what they say then is no result.
-    while (!StopSignals::requested() && pool.take(error)) {
-      ++finished;
-      progress(finished);
-    }
-    if (!error->empty()) return RunnerEnd::kFailed;
-    if (Clock::now() - shown >= kRefresh) {
-      shown = Clock::now();
-      progress(finished);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+std::vector<std::string> settings_of(const Campaign& campaign, const CampaignRun& run,
+                                     const RunnerOptions& options) {
+  std::vector<std::string> settings = assignments(campaign, run);
+  settings.insert(settings.end(), options.settings.begin(), options.settings.end());
+  return settings;
+}
+
+std::vector<std::string> played_settings(const Campaign& campaign, const CampaignRun& run,
+                                         const RunnerOptions& options) {
+  std::vector<std::string> settings = settings_of(campaign, run, options);
+  if (const auto calibration = calibration_of(campaign, settings, options.folder)) {
+    constexpr std::string_view kKey = "calibration=";
+    std::erase_if(settings, [&](const std::string& s) { return s.starts_with(kKey); });
+    settings.push_back(std::string(kKey) + calibration->file.string());
   }
+  return settings;
+}
+
+PoolEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                  const RunnerOptions& options, const CalibrationFailures& failures,
+                  RunOrder* order, ResultFile* results, const std::function<void(int)>& progress,
+                  std::string* error) {
+  const StopSignals signals;
+  Logs logs(options.folder, campaign.keep_logs);
+  ChildPool pool(options.jobs);
+  logs.keep_worst(results->results());
+  int finished = 0;
+  const auto append = [&](const CampaignResult& result, std::string* why) {
+    if (!results->append(result, why)) return false;
+    logs.keep_worst(results->results());
+    ++finished;
+    return true;
+  };
+  const auto start = [&](std::string* why) {
+    const std::optional<int> next = order->next();
+    if (!next) return false;
+    const CampaignRun& run = runs[static_cast<std::size_t>(*next) - 1];
+    if (const std::string* failure = failure_of(campaign, run, options, failures)) {
+      if (!append(unjudged_result(run.number, *failure), why)) return false;
+      progress(finished);
+      return true;
+    }
+    return pool.start(run.number,
+                      arguments_of(campaign, run, options, logs.running(run.number, ".mcap")),
+                      logs.running(run.number, ".json").string(), "/dev/null", why);
+  };
+  const auto finish = [&](const ChildPool::End& end, std::string* why) {
+    const CampaignResult result =
+        result_of(campaign, end.number, end.status, logs.running(end.number, ".json"));
+    logs.keep(end.number);
+    return append(result, why);
+  };
+  return work_off(&pool, {start, finish, [&] { progress(finished); }}, error);
 }
 
 }  // namespace gaitd::cli

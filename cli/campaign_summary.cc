@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "cli/campaign_calibration.h"
 #include "cli/campaign_groups.h"
 #include "cli/campaign_runner.h"
 #include "cli/campaign_sweep.h"
@@ -59,13 +60,27 @@ std::string quoted(const std::string& word) {
   return out + "'";
 }
 
-// The command that plays a run again.
+std::string calibrate_text(const Campaign& campaign, const Calibration& calibration) {
+  std::string text = "gaitctl";
+  for (const std::string& argument : calibrate_arguments(campaign, calibration, calibration.file)) {
+    text += " " + quoted(argument);
+  }
+  return text;
+}
+
+// The command that plays a run again, or the one that fails before it can be played.
 std::string replay_text(const Campaign& campaign, const CampaignRun& run,
                         const RunnerOptions& options) {
+  const auto calibration =
+      calibration_of(campaign, settings_of(campaign, run, options), options.folder);
+  std::error_code ignored;
+  if (calibration && !fs::exists(calibration->file, ignored)) {
+    return calibrate_text(campaign, *calibration);
+  }
   std::string text = "gaitctl run " + quoted(scenario_of(campaign, run, options.folder));
-  std::vector<std::string> settings = assignments(campaign, run);
-  settings.insert(settings.end(), options.settings.begin(), options.settings.end());
-  for (const std::string& setting : settings) text += " --set " + quoted(setting);
+  for (const std::string& setting : played_settings(campaign, run, options)) {
+    text += " --set " + quoted(setting);
+  }
   return text + (options.trust ? " --trust" : "");
 }
 

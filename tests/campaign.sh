@@ -66,6 +66,57 @@ largest() { awk -v angle="direction=$1 " '$1 == "push-bent-forward" && index($0,
 grep -q '<polygon points="160.0,[0-9.]* [0-9.]*,190.0 "' map/push-bent-forward.svg ||
   fail "picture: $(cat map/push-bent-forward.svg)"
 
+# Each robot is measured before its runs, once, also if that is killed the first time.
+cat >motions.yaml <<'MOTIONS'
+schema: gaitd.scenario/1
+name: motions
+robot: atlas
+duration: 24.0
+mode: walk-bent
+commands:
+  - {at: 2.0, pose: {pelvis: {z: -0.05}}}
+  - {at: 5.0, pose: {pelvis: {z: -0.12, pitch: 0.1}}}
+  - {at: 8.0, pose: {pelvis: {y: 0.05, z: -0.05}}}
+  - {at: 11.0, pose: {pelvis: {y: -0.05, z: -0.08}}}
+  - {at: 14.0, pose: {pelvis: {roll: 0.1, z: -0.08}}}
+  - {at: 17.0, pose: {pelvis: {yaw: 0.15, z: -0.1}}}
+  - {at: 20.0, pose: {pelvis: {x: 0.04, z: -0.05}}}
+expect: {no_fall: true}
+MOTIONS
+cat >measured.yaml <<'MEASURED'
+schema: gaitd.campaign/1
+name: measured
+scenarios: [short.yaml]
+set:
+  state_estimator.variant: [kinematic_inertial, invariant_ekf]
+  drives:
+    nominal: {actuators.model: nominal}
+    hydraulic: {actuators.model: hydraulic, sensors.noise: lab, calibration: hydraulic}
+seeds: [3]
+calibrate: {motions: motions.yaml}
+MEASURED
+gaitctl campaign measured.yaml -o measured >first.txt 2>&1 &
+campaign=$!
+for _ in {1..600}; do
+  compgen -G 'measured/calibrations/*.mcap' >/dev/null && break
+  sleep 0.05
+done
+kill -KILL "$campaign"
+wait "$campaign" 2>/dev/null || true
+compgen -G 'measured/calibrations/*.yaml' >/dev/null && fail "a calibration that was killed has left a file"
+expect 0 gaitctl campaign measured.yaml -o measured
+calibrations=(measured/calibrations/*)
+[[ ${#calibrations[@]} == 2 && ${calibrations[1]} == measured/calibrations/seed-3-*.yaml ]] ||
+  fail "calibrations: ${calibrations[*]}"
+grep -q 'zero:' "${calibrations[1]}" || fail "measured: $(cat "${calibrations[1]}")"
+(($(grep -c 'hydraulic,1,' measured/results.csv) == 2)) || fail "results: $(cat measured/results.csv)"
+replays=$(grep -c "\"replay\": .*calibration=$PWD/${calibrations[1]}" measured/summary.json)
+((replays == 2)) || fail "replays: $(grep '"replay"' measured/summary.json)"
+touch -d 2020-01-01 "${calibrations[1]}"
+rm measured/results.csv
+expect 0 gaitctl campaign measured.yaml -o measured
+[[ $(date -r "${calibrations[1]}" +%Y) == 2020 ]] || fail "what was measured was measured again"
+
 for file in "$GAITD_SOURCE"/sim/campaigns/*.yaml; do
   # Stopped before the first run ends: only whether it can be read and started.
   code=0

@@ -34,6 +34,8 @@ struct Arguments {
   std::string output;
   std::string motions = "calibration";
   std::vector<std::string> settings;
+  std::string simulated_log;
+  bool trust = false;
   bool simulate = false;
   calibrate::Prior prior;
 };
@@ -117,7 +119,8 @@ int estimate(const Context& context, const Arguments& arguments, const std::stri
 }
 
 int simulate(const Context& context, const Arguments& arguments) {
-  RunOptions options{beside_this_program(), arguments.settings, {}, false};
+  RunOptions options{beside_this_program(), arguments.settings, arguments.simulated_log,
+                     arguments.trust};
   const RunReport report = run_scenario(arguments.motions, options, Progress());
   if (!report.pass()) {
     std::cerr << report_text(report);
@@ -130,8 +133,8 @@ int simulate(const Context& context, const Arguments& arguments) {
 int run(const Context& context, const Arguments& arguments) {
   if (!arguments.log.empty()) return estimate(context, arguments, arguments.log);
   if (arguments.simulate) return simulate(context, arguments);
-  if (!arguments.settings.empty()) {
-    return fail(context, kUsage, kCommand, "--set is for --simulate");
+  if (!arguments.settings.empty() || !arguments.simulated_log.empty() || arguments.trust) {
+    return fail(context, kUsage, kCommand, "--set, --log and --trust are for --simulate");
   }
   std::string log;
   if (const int failed = play_live(context, arguments.motions, &log)) return failed;
@@ -163,6 +166,14 @@ void add_calibrate_command(CLI::App* app, Context* context) {
       ->type_name("KEY=VALUE")
       ->take_all()
       ->expected(1);
+  command
+      ->add_option("--log", arguments->simulated_log,
+                   "With --simulate: log file; by default a new file in $XDG_STATE_HOME/gaitd/logs "
+                   "(~/.local/state/gaitd/logs). The output of gaitd goes beside it as .txt")
+      ->type_name("FILE");
+  command->add_flag("--trust", arguments->trust,
+                    "With --simulate: load libraries that the scenario or its robot.yaml names by "
+                    "path");
   command
       ->add_option("--motions", arguments->motions,
                    "Scenario whose commands are the motions; by default calibration")
