@@ -75,7 +75,7 @@ duration: 24.0
 mode: walk-bent
 commands:
   - {at: 2.0, pose: {pelvis: {z: -0.05}}}
-  - {at: 5.0, pose: {pelvis: {z: -0.12, pitch: 0.1}}}
+  - {at: 5.0, pose: {pelvis: {z: -0.09, pitch: 0.1}}}
   - {at: 8.0, pose: {pelvis: {y: 0.05, z: -0.05}}}
   - {at: 11.0, pose: {pelvis: {y: -0.05, z: -0.08}}}
   - {at: 14.0, pose: {pelvis: {roll: 0.1, z: -0.08}}}

@@ -68,7 +68,39 @@ std::string output_of(const Arguments& arguments, const daemon::Robot& robot) {
   return (folder / "measured.yaml").string();
 }
 
-int estimate(const Context& context, const Arguments& arguments, const std::string& file) {
+calibrate::Result measure(const daemon::Robot& robot, const calibrate::Recording& recording,
+                          const calibrate::Prior& prior) {
+  calibrate::Result result;
+  result.hanging = static_cast<int>(recording.hanging.size());
+  daemon::Calibration known = robot.calibration;
+  if (result.hanging > 0) {
+    result.feet = calibrate::foot_offsets(robot.model, known, recording.hanging);
+  }
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    if (result.hanging == 0) result.feet[side].value = known.feet[side];
+    known.feet[side] = result.feet[side].value;
+  }
+  result.identified = calibrate::identify(robot.model, known, recording, prior);
+  for (std::size_t i = 0; i < result.identified.zeros.joints.size(); ++i) {
+    known.joints[result.identified.zeros.joints[i]].zero =
+        result.identified.zeros.value[static_cast<Eigen::Index>(i)];
+  }
+  result.drives = calibrate::drive_errors(robot.model, known, recording.tests);
+  for (std::size_t j = 0; j < result.drives.size(); ++j) {
+    calibrate::DriveErrors& drive = result.drives[j];
+    const daemon::JointCalibration& kind = known.joints[j];
+    if (drive.measured) continue;  // else what is known of its kind stays
+    drive.measured = kind.torque_bias != 0.0 || kind.coulomb > 0.0 || kind.viscous > 0.0;
+    drive.bias = kind.torque_bias;
+    drive.coulomb = kind.coulomb;
+    drive.viscous = kind.viscous;
+  }
+  return result;
+}
+
+// `growing`: gaitd still writes the log, so that it has no end is no damage.
+int estimate(const Context& context, const Arguments& arguments, const std::string& file,
+             bool growing = false) {
   std::string error;
   const auto log = daemon::LogReader::open(file, &error);
   if (!log) return fail(context, kFailed, kCommand, error);
@@ -86,22 +118,8 @@ int estimate(const Context& context, const Arguments& arguments, const std::stri
                     std::to_string(recording->postures.size()) +
                     "; let it take the postures of the scenario calibration");
   }
-  calibrate::Result result;
-  result.hanging = static_cast<int>(recording->hanging.size());
-  daemon::Calibration known = robot->calibration;
-  if (result.hanging > 0) {
-    result.feet = calibrate::foot_offsets(robot->model, known, recording->hanging);
-  }
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    if (result.hanging == 0) result.feet[side].value = known.feet[side];
-    known.feet[side] = result.feet[side].value;
-  }
-  result.identified = calibrate::identify(robot->model, known, *recording, arguments.prior);
-  for (std::size_t i = 0; i < result.identified.zeros.joints.size(); ++i) {
-    known.joints[result.identified.zeros.joints[i]].zero =
-        result.identified.zeros.value[static_cast<Eigen::Index>(i)];
-  }
-  result.drives = calibrate::drive_errors(robot->model, known, recording->tests);
+  const calibrate::Result result = measure(*robot, *recording, arguments.prior);
+  const bool damaged = !growing || log->damaged() > 0;
   const std::string output = output_of(arguments, *robot);
   if (const int failed = write(context, output,
                                calibration_yaml(robot->model, result, fs::path(file).filename()))) {
@@ -110,12 +128,12 @@ int estimate(const Context& context, const Arguments& arguments, const std::stri
   if (context.json) {
     nlohmann::json json = summary_json(robot->model, result);
     json["file"] = output;
-    add_damage(*log, &json);
+    if (damaged) add_damage(*log, &json);
     std::cout << json_text(json);
   } else {
     std::cout << summary(robot->model, result) << "written: " << output << "\n";
   }
-  return tell_damage(kCommand, *log, kDone);
+  return damaged ? tell_damage(kCommand, *log, kDone) : kDone;
 }
 
 int simulate(const Context& context, const Arguments& arguments) {
@@ -138,7 +156,7 @@ int run(const Context& context, const Arguments& arguments) {
   }
   std::string log;
   if (const int failed = play_live(context, arguments.motions, &log)) return failed;
-  return estimate(context, arguments, log);
+  return estimate(context, arguments, log, true);
 }
 
 }  // namespace
