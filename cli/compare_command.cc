@@ -98,15 +98,11 @@ json json_of(const Arguments& arguments, const Runs& runs) {
 }
 
 int compare(const Context& context, const Arguments& arguments) {
-  std::error_code ignored;
   Runs runs;
   for (int i = 0; i < 2; ++i) {
     const std::string& overlay = arguments.overlays[i];
     std::string error;
-    RunOptions options{fs::read_symlink("/proc/self/exe", ignored).parent_path() / "gaitd",
-                       settings_of(overlay, &error),
-                       {},
-                       arguments.trust};
+    RunOptions options{gaitd_program(), settings_of(overlay, &error), {}, arguments.trust};
     if (!error.empty()) return fail(context, kFailed, "compare", error);
     if (!arguments.folder.empty()) {
       options.log = fs::path(arguments.folder) / (std::string(1, static_cast<char>('a' + i)) + "-" +

@@ -32,12 +32,6 @@ struct Arguments {
   bool trust = false;
 };
 
-// gaitd stands beside this program, in a build tree and installed.
-fs::path beside_this_program() {
-  std::error_code ignored;
-  return fs::read_symlink("/proc/self/exe", ignored).parent_path() / "gaitd";
-}
-
 void show_progress(const std::string& scenario, double time, double duration) {
   std::fprintf(stderr, "\r%s: %.1f of %.1f s simulated\033[K", daemon::printable(scenario).c_str(),
                time, duration);
@@ -52,8 +46,7 @@ int run(const Context& context, const Arguments& arguments) {
         context, kUsage, "run",
         "--log " + arguments.log + ": one file for several scenarios; give a folder (ending in /)");
   }
-  const RunOptions options{beside_this_program(), arguments.settings, arguments.log,
-                           arguments.trust};
+  const RunOptions options{gaitd_program(), arguments.settings, arguments.log, arguments.trust};
   const bool terminal = isatty(STDERR_FILENO) != 0;
   bool pass = true;
   bool interrupted = false;

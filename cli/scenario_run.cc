@@ -159,6 +159,11 @@ std::string with_newline(std::string text) {
 
 }  // namespace
 
+fs::path gaitd_program() {
+  std::error_code ignored;
+  return fs::read_symlink("/proc/self/exe", ignored).parent_path() / "gaitd";
+}
+
 fs::path default_log_folder() {
   const char* state = std::getenv("XDG_STATE_HOME");
   const char* home = std::getenv("HOME");

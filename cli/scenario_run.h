@@ -12,6 +12,9 @@
 
 namespace gaitd::cli {
 
+/// The daemon's program: it stands beside this one, in a build tree and installed.
+std::filesystem::path gaitd_program();
+
 struct RunOptions {
   std::filesystem::path gaitd;        ///< the daemon's program
   std::vector<std::string> settings;  ///< KEY=VALUE, over those of the scenario

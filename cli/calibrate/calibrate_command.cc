@@ -40,11 +40,6 @@ struct Arguments {
   calibrate::Prior prior;
 };
 
-fs::path beside_this_program() {
-  std::error_code ignored;
-  return fs::read_symlink("/proc/self/exe", ignored).parent_path() / "gaitd";
-}
-
 int write(const Context& context, const std::string& file, const std::string& text) {
   std::error_code ignored;
   const fs::path folder = fs::path(file).parent_path();
@@ -137,8 +132,7 @@ int estimate(const Context& context, const Arguments& arguments, const std::stri
 }
 
 int simulate(const Context& context, const Arguments& arguments) {
-  RunOptions options{beside_this_program(), arguments.settings, arguments.simulated_log,
-                     arguments.trust};
+  RunOptions options{gaitd_program(), arguments.settings, arguments.simulated_log, arguments.trust};
   const RunReport report = run_scenario(arguments.motions, options, Progress());
   if (!report.pass()) {
     std::cerr << report_text(report);

@@ -21,7 +21,8 @@ using nlohmann::json;
 using std::chrono::milliseconds;
 
 constexpr const char* kCommand = "calibrate";
-constexpr double kPatience = 60.0;  // s, for the robot to stand, or to be lowered
+constexpr double kPatience = 60.0;    // s, for the robot to stand, or to be lowered
+constexpr double kLastPosture = 3.0;  // s, that it is held
 constexpr milliseconds kPoll(20);
 
 json status(RpcClient* client) {
@@ -43,6 +44,27 @@ json params_of(const daemon::ScenarioCommand& command) {
   if (command.params.is_string()) return {{command.method, command.params}};
   if (command.params.is_array()) return {{"footsteps", command.params}};
   return command.params;
+}
+
+// s, of the robot: a simulation may be faster or slower than the clock.
+double time_of(const json& status) {
+  const auto time = status.find("time");
+  return time != status.end() && time->is_number() ? time->get<double>() : 0.0;
+}
+
+// False: its time stands still.
+bool wait_until(RpcClient* client, double time) {
+  using Clock = std::chrono::steady_clock;
+  double now = time_of(status(client));
+  auto moved = Clock::now();
+  while (now < time) {
+    std::this_thread::sleep_for(kPoll);
+    const double next = time_of(status(client));
+    if (next > now) moved = Clock::now();
+    if (Clock::now() - moved > std::chrono::duration<double>(kPatience)) return false;
+    now = next;
+  }
+  return true;
 }
 
 bool wait_for(RpcClient* client, const std::string& state, std::string* got) {
@@ -94,13 +116,14 @@ int play_live(const Context& context, const std::string& name, std::string* log)
   if (const auto* refused = std::get_if<daemon::RpcError>(&chosen)) {
     return fail(context, kCommand, "mode", *refused);
   }
-  auto due = std::chrono::steady_clock::now();
+  double due = time_of(before);
   double last = scenario->commands.empty() ? 0.0 : scenario->commands.front().at;
   for (const daemon::ScenarioCommand& command : scenario->commands) {
-    due += std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-        std::chrono::duration<double>(command.at - last));
+    due += command.at - last;
     last = command.at;
-    std::this_thread::sleep_until(due);
+    if (!wait_until(client.get(), due)) {
+      return fail(context, kFailed, kCommand, "gaitd does not go on; see `gaitctl status`");
+    }
     if (command.method == "arm") {
       std::cerr
           << "arming; lower the hoist until both feet carry the robot and the rope is slack\n";
@@ -116,9 +139,10 @@ int play_live(const Context& context, const std::string& name, std::string* log)
                   command.method + ": expected the robot to be " + wanted + " after it, got " +
                       got + "; see `gaitctl status`");
     }
-    due = std::max(due, std::chrono::steady_clock::now());
+    due = std::max(due, time_of(status(client.get())));
   }
-  std::this_thread::sleep_for(std::chrono::seconds(4));  // the last posture, and the log
+  wait_until(client.get(), due + kLastPosture);
+  std::this_thread::sleep_for(std::chrono::seconds(2));  // until it is in the log
   return kDone;
 }
 
