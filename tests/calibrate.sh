@@ -65,7 +65,9 @@ YAML
 } >short.yaml
 gaitd --scenario hanging.yaml --clock realtime --log "$PWD/live.mcap" >"$scratch/gaitd.txt" 2>&1 &
 daemon=$!
-for _ in $(seq 100); do gaitctl status >status.txt 2>&1 && break || sleep 0.1; done
+for _ in $(seq 200); do
+  gaitctl status >status.txt 2>&1 && grep -q '^state *disarmed' status.txt && break || sleep 0.1
+done
 grep -q '^state *disarmed' status.txt || { cat status.txt; fail "a robot on its hoist comes up disarmed"; }
 gaitctl calibrate --motions "$PWD/short.yaml" -o live.yaml || fail "the calibration of a running robot"
 grep -q 'l_leg_aky.*coulomb' live.yaml || { cat live.yaml; fail "no friction of the joint that was swung"; }
