@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/calibrate/calibrate_command.h"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
@@ -18,7 +16,6 @@
 #include "cli/log_damage.h"
 #include "cli/print.h"
 #include "cli/scenario_run.h"
-#include "daemon/config/paths.h"
 #include "daemon/replay/robot_of_log.h"
 
 namespace gaitd::cli {

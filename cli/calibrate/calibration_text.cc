@@ -3,14 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <vector>
 
+#include "cli/doctor/finding.h"
+
 namespace gaitd::calibrate {
 namespace {
+
+using doctor::format;
 
 constexpr const char* kSides[] = {"left", "right"};
 constexpr double kDegree = std::numbers::pi / 180;
@@ -18,15 +20,6 @@ constexpr double kSaid = 0.3;              // of the largest coefficient, that i
 constexpr double kLeastStiffness = 500.0;  // N m/rad
 constexpr double kLargestStiffness = 1e7;
 constexpr double kLargestZero = 0.2;  // rad
-
-__attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof(text), pattern, arguments);
-  va_end(arguments);
-  return text;
-}
 
 double sigma_of(const Zeros& zeros, std::size_t i) {
   const auto k = static_cast<Eigen::Index>(i);

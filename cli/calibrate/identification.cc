@@ -56,14 +56,7 @@ struct Layout {
 
 Layout layout_of(const GaitdModel& model, const Recording& recording) {
   Layout layout;
-  for (const GaitdLeg& leg : model.legs) {
-    layout.joints.insert(layout.joints.end(), leg.joints, leg.joints + leg.joint_count);
-  }
-  for (int body = model.chest_body; body > 0;) {
-    const int joint = model.bodies[body].joint;
-    layout.joints.push_back(joint);
-    body = model.joints[joint].parent_body;
-  }
+  layout.joints = carrying_joints(model);
   for (const Posture& p : recording.postures) {
     layout.stances = std::max(layout.stances, p.stance + 1);
   }

@@ -62,20 +62,6 @@ struct Window {
   std::array<Vector6d, GAITD_MAX_FEET> wrench;
 };
 
-// The joints whose stillness counts: those of the legs and of the way to the chest.
-std::vector<int> carrying_joints(const GaitdModel& model) {
-  std::vector<int> joints;
-  for (const GaitdLeg& leg : model.legs) {
-    joints.insert(joints.end(), leg.joints, leg.joints + leg.joint_count);
-  }
-  for (int body = model.chest_body; body > 0;) {
-    const int joint = model.bodies[body].joint;
-    joints.push_back(joint);
-    body = model.joints[joint].parent_body;
-  }
-  return joints;
-}
-
 // Value of the word of an enumeration, -1 if the log has no such word.
 int word_of(const LogReader& log, std::string_view signal, std::string_view word) {
   const int i = daemon::find_signal(log.signals(), signal);
@@ -110,6 +96,17 @@ double largest(const Eigen::VectorXd& values, const std::vector<int>& joints) {
 }
 
 }  // namespace
+
+std::vector<int> carrying_joints(const GaitdModel& model) {
+  std::vector<int> joints;
+  for (const GaitdLeg& leg : model.legs) {
+    joints.insert(joints.end(), leg.joints, leg.joints + leg.joint_count);
+  }
+  for (int body = model.chest_body; body > 0; body = model.bodies[body].parent) {
+    joints.push_back(model.bodies[body].joint);
+  }
+  return joints;
+}
 
 std::optional<Recording> read_recording(const LogReader& log, const GaitdModel& model,
                                         std::string* error) {

@@ -48,6 +48,10 @@ struct Recording {
   std::vector<Stillness> hanging;  // with both feet in the air, slow rather than still
 };
 
+// The joints that carry a standing robot, which are calibrated: those of both legs, from the pelvis
+// to the foot, then those from the chest down to the pelvis.
+std::vector<int> carrying_joints(const GaitdModel& model);
+
 // Nothing, with why in `error`, if the log does not have what it takes.
 std::optional<Recording> read_recording(const daemon::LogReader& log, const GaitdModel& model,
                                         std::string* error);

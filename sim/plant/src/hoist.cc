@@ -78,11 +78,6 @@ double Hoist::stretch(const Rope& rope, Bodies bodies) const {
   return (hook - bodies[chest_].point(rope.point)).norm() - kRope;
 }
 
-bool Hoist::slack(Bodies bodies) const {
-  return std::all_of(ropes_.begin(), ropes_.end(),
-                     [&](const Rope& rope) { return stretch(rope, bodies) <= 0; });
-}
-
 void Hoist::add_forces(Bodies bodies, std::vector<BodyForce>* forces) const {
   const BodyMotion& chest = bodies[chest_];
   for (const Rope& rope : ropes_) {

@@ -27,8 +27,6 @@ class Hoist {
   void command(const GaitdJointCommands& commands, double period);
   void add_forces(Bodies bodies, std::vector<BodyForce>* forces) const;
 
-  bool slack(Bodies bodies) const;  // neither rope pulls
-
  private:
   struct Rope {
     Eigen::Vector3d point;  // m, chest frame
