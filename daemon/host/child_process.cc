@@ -16,6 +16,7 @@
 #include <cstring>
 
 #include "daemon/host/child_side.h"
+#include "daemon/host/file_descriptor.h"
 #include "gaitd/sdk/bounds.h"
 
 extern char** environ;
@@ -29,25 +30,8 @@ using Clock = std::chrono::steady_clock;
 // arguments would run as itself and start children of its own, without end.
 constexpr const char* kChildMark = "GAITD_CHILD_PROCESS";
 
-// A file descriptor that closes itself.
-class Fd {
- public:
-  explicit Fd(int fd = -1) : fd_(fd) {}
-  ~Fd() { reset(); }
-  Fd(const Fd&) = delete;
-  Fd& operator=(const Fd&) = delete;
-  int get() const { return fd_; }
-  void reset(int fd = -1) {
-    if (fd_ >= 0) close(fd_);
-    fd_ = fd;
-  }
-
- private:
-  int fd_;
-};
-
 // The model in an anonymous file, positioned at its start.
-bool share_model(const GaitdModel& model, Fd* fd) {
+bool share_model(const GaitdModel& model, FileDescriptor* fd) {
   fd->reset(memfd_create("gaitd-model", MFD_CLOEXEC));
   return fd->get() >= 0 && write(fd->get(), &model, sizeof(model)) == sizeof(model) &&
          lseek(fd->get(), 0, SEEK_SET) == 0;
@@ -175,16 +159,16 @@ ChildEnd run_child(const ChildRequest& request) {
   if (std::getenv(kChildMark) != nullptr) {
     return no_child("a child process starts no child", EPERM);
   }
-  Fd model_fd;
+  FileDescriptor model_fd;
   if (!share_model(*request.model, &model_fd)) return no_child("memfd_create", errno);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return no_child("pipe", errno);
-  Fd report_read(ends[0]);
-  Fd report_write(ends[1]);
+  FileDescriptor report_read(ends[0]);
+  FileDescriptor report_write(ends[1]);
   const auto high = [](int fd) { return fcntl(fd, F_DUPFD_CLOEXEC, kChildLibraryFd + 1); };
-  const Fd high_model(high(model_fd.get()));
-  Fd high_report(high(report_write.get()));
-  const Fd high_library(request.library_fd < 0 ? -1 : high(request.library_fd));
+  const FileDescriptor high_model(high(model_fd.get()));
+  FileDescriptor high_report(high(report_write.get()));
+  const FileDescriptor high_library(request.library_fd < 0 ? -1 : high(request.library_fd));
   if (high_model.get() < 0 || high_report.get() < 0 ||
       (request.library_fd >= 0 && high_library.get() < 0)) {
     return no_child("dup", errno);

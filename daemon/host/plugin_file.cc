@@ -11,24 +11,11 @@
 #include <utility>
 
 #include "daemon/host/elf_descriptor.h"
+#include "daemon/host/file_descriptor.h"
 #include "gaitd/sdk/bounds.h"
 
 namespace gaitd::daemon {
 namespace {
-
-class Fd {
- public:
-  explicit Fd(int fd) : fd_(fd) {}
-  ~Fd() {
-    if (fd_ >= 0) close(fd_);
-  }
-  Fd(const Fd&) = delete;
-  Fd& operator=(const Fd&) = delete;
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 // Up to bytes->size() bytes from the beginning; how many there were, negative on an error.
 ssize_t read_all(int fd, std::vector<std::byte>* bytes) {
@@ -52,7 +39,7 @@ bool read_bytes(const std::filesystem::path& path, std::vector<std::byte>* bytes
     refusal->add("file", has, "a readable shared library", remedy);
     return false;
   };
-  const Fd file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  const FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   struct stat info {};
   if (file.get() < 0 || fstat(file.get(), &info) != 0) {
     return refuse(std::strerror(errno), "check the path and its permissions");

@@ -3,8 +3,8 @@
 
 namespace gaitd::daemon {
 
-// The child of probe() is started as `<program> kProbeArgument <library>`. Besides what child_side.h
-// says it writes "step <name>" before each step.
+// The child of probe() is started as `<program> kProbeArgument <library>`. Besides what
+// child_side.h says it writes "step <name>" before each step.
 inline constexpr const char* kProbeArgument = "--gaitd-probe-plugin";
 
 /// Runs the child to its end and returns its exit code.
