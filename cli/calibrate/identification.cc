@@ -267,7 +267,7 @@ class Problem {
       force += l.force;
     }
     r.segment<2>(9) = (level.transpose() * moment).head<2>() / force.norm() / kBalanceSigma;
-    return r;
+    return r / posture.unrest;
   }
 
   const GaitdModel model_;

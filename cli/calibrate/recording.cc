@@ -15,7 +15,8 @@ namespace {
 using daemon::LogReader;
 
 constexpr double kWindow = 0.4;       // s, over which a reading is averaged
-constexpr double kTravel = 4e-3;      // rad that an encoder may move in it, robot at rest
+constexpr double kRest = 4e-3;        // rad that an encoder moves in it, robot at rest
+constexpr double kTravel = 15e-3;     // rad beyond which it is of no use that the robot stands
 constexpr double kSlowTravel = 0.08;  // rad, hanging
 constexpr double kNewPosture = 0.02;  // rad, by which one posture differs from the next
 constexpr double kAirborne = 0.1;     // of the weight, on both feet together
@@ -140,7 +141,7 @@ std::optional<Recording> read_recording(const LogReader& log, const GaitdModel& 
       const bool again = !all.empty() && all.back().stance == stance &&
                          largest(all.back().position - still.position, carrying) < kNewPosture;
       if (again) all.pop_back();  // it has settled further
-      all.push_back({still, stance});
+      all.push_back({still, stance, std::max(1.0, travel / kRest)});
     }
   };
   bool tested = false;

@@ -23,10 +23,11 @@ struct Stillness {
   std::array<Vector6d, GAITD_MAX_FEET> foot_wrench;  // N m, N: moment first; axes of the sensor
 };
 
-// A posture of the robot on both feet, at rest; those with the same `stance` had their feet in the
-// same places.
+// A posture of the robot on both feet, almost at rest; those with the same `stance` had their feet
+// in the same places.
 struct Posture : Stillness {
   int stance = 0;
+  double unrest = 1.0;  // standard deviations of its readings, in those of a robot at rest
 };
 
 // One joint moves, the others are off and hang.
