@@ -13,6 +13,14 @@ namespace {
 // Of the distance of the feet in the nominal posture: closer the legs get in each other's way.
 constexpr double kNominalShare = 0.8;
 
+// Over sqrt(g h), h the height of the CoM: a foot that is faster is still on its way.
+constexpr double kLandedRise = 0.05;
+constexpr double kLandedSlide = 0.15;
+constexpr double kLandedFirmly = 3.0;
+// Of √(g h): the speed that the foot may lose to a knee at its stop. Its own force sensor shows the
+// impulse of it, and no more than that is needed to say that the load is the ground's.
+constexpr double kLandedStop = 0.2;
+
 // ICP closer than this to the edge of both feet is not held by them (m).
 constexpr double kHeldMargin = 0.01;
 
@@ -141,6 +149,7 @@ void GaitMachine::begin_swing(const GaitdRobotState& robot) {
   state_.early_contact = 0;
   state_.late_contact = 0;
   state_.footholds[side].contact = GAITD_CONTACT_NONE;
+  landed_impulse_ = 0.0;
   shift_ = path_offset_;
   time_shift_ = 0.0;
   sdk::view(lift_off_.position) = sdk::view(robot.feet[side].position);
@@ -199,6 +208,28 @@ bool GaitMachine::icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& pl
          inside <= parameters_[Gait::kIcpErrorSideways];
 }
 
+// The ground loads a foot and stops it where it bears. A heel that brushes an edge, and the foot's
+// own mass in a sensor above it, load the foot on its way, and for moments.
+bool GaitMachine::has_landed(double dt, const GaitdFootState& foot) {
+  const double weight = model_.total_mass * model_.gravity;
+  const double least =
+      std::max(parameters_[Gait::kTouchdownForce] * weight, parameters_[Gait::kTouchdownLeast]);
+  landed_impulse_ = foot.normal_force > least ? landed_impulse_ + dt * foot.normal_force : 0.0;
+  const double speed = std::sqrt(model_.gravity * model_.nominal_com_height);
+  const double own = model_.bodies[model_.feet[state_.next_side].body].mass * kLandedStop * speed;
+  if (landed_impulse_ < own) return false;
+  Eigen::Vector3d velocity = sdk::view(foot.twist).tail<3>();
+  if (foot.cop_valid != 0) {
+    const Eigen::Vector3d arm(foot.cop[0], foot.cop[1], 0.0);
+    velocity += Eigen::Vector3d(sdk::view(foot.twist).head<3>())
+                    .cross(sdk::quaternion(foot.orientation) * arm);
+  }
+  // What bears more is believed sooner: after a hard landing the foot shakes for ten milliseconds.
+  const double unit = speed * std::min(foot.normal_force / least, kLandedFirmly);
+  return std::abs(velocity.z()) < kLandedRise * unit &&
+         velocity.head<2>().norm() < kLandedSlide * unit;
+}
+
 void GaitMachine::adjust(const GaitdStepAdjustment& adjustment) {
   const bool swing = state_.phase == GAITD_PHASE_SWING;
   const Eigen::Vector3d shift = swing ? Eigen::Vector3d(sdk::view(adjustment.shift)) : shift_;
@@ -247,14 +278,11 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
     }
     case GAITD_PHASE_SWING: {
       if (adjustment.active != 0) adjust(adjustment);
-      const double weight = model_.total_mass * model_.gravity;
-      const bool loaded =
-          robot.feet[state_.next_side].normal_force >
-          std::max(parameters_[Gait::kTouchdownForce] * weight, parameters_[Gait::kTouchdownLeast]);
       const bool credible =
           state_.time_in_phase >= parameters_[Gait::kTouchdownFraction] * state_.phase_duration;
-      state_.late_contact = over && !loaded ? 1 : 0;
-      if (loaded && credible) touch_down(robot, !over);
+      const bool landed = has_landed(dt, robot.feet[state_.next_side]);
+      state_.late_contact = over && !landed ? 1 : 0;
+      if (landed && credible) touch_down(robot, !over);
       break;
     }
     default:

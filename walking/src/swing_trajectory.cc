@@ -14,6 +14,10 @@ constexpr double kBrisk = 30.0;     // m/s^2, to reach a foothold that moved aft
 constexpr double kPeakAcceleration =
     5.77;  // largest acceleration of a quintic from rest to rest, per way / time^2
 constexpr double kOnset = 0.05;  // s
+// Of the way: how far beyond its foothold a foot comes down an edge. It goes back at the bottom,
+// where nothing is left to be caught on; odometry is wrong by a centimetre or two after a few
+// steps.
+constexpr double kBeyondEdge = 0.035;
 
 double blend(double a, double b, double share) { return a + share * (b - a); }
 
@@ -78,6 +82,7 @@ void SwingTrajectory::begin(const GaitdPose& from, const sdk::Vector6d& twist, d
   now.angular_velocity = twist.head<3>();
   now.angular_acceleration.setZero();
   ground_ = ground;
+  lift_off_ = now.position.head<2>();
   const double drop = std::clamp(-edge(to, parameters), 0.0, 1.0);
   apex_ = duration * blend(parameters[Swing::kApexFraction], parameters[Swing::kDropApex], drop);
   plan(0.0, now, to, duration, parameters);
@@ -109,32 +114,45 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   const double rise = std::max(0.0, edge(to, parameters));
   const double drop = std::max(0.0, -edge(to, parameters));
   leave_ = std::max(t, rise * parameters[Swing::kRiseWait] * duration_);
+  const Eigen::Vector2d end = sdk::view(to.pose.position).head<2>();
+  const Eigen::Vector2d beyond = drop * kBeyondEdge * (end - lift_off_);
   // A foothold that moves late is reached in its own time, and at touchdown at the latest.
-  const Eigen::Vector3d end = sdk::view(to.pose.position);
-  const double move = (end - now.position).head<2>().norm();
-  const double needed = std::sqrt(kPeakAcceleration * move / kBrisk);
-  arrive_ = std::max({blend(1.0, parameters[Swing::kDropArrive], drop) * duration_,
-                      std::min(leave_ + needed, duration_), leave_ + kShortest});
+  const auto needed = [](const Eigen::Vector2d& way) {
+    return std::sqrt(kPeakAcceleration * way.norm() / kBrisk);
+  };
+  const double arrival = blend(1.0, parameters[Swing::kDropArrive], drop) * duration_;
+  const auto arrive = [&](const Eigen::Vector2d& goal) {
+    return std::max({arrival, std::min(leave_ + needed(goal - now.position.head<2>()), duration_),
+                     leave_ + kShortest});
+  };
+  arrive_ = arrive(end + beyond);
+  const bool goes_beyond = leave_ < arrival && duration_ - arrive_ > needed(beyond);
+  if (!goes_beyond) arrive_ = leave_ < arrival ? arrive(end) : duration_;
   level_ = std::max(blend(1.0, parameters[Swing::kRiseLevel], rise) * duration_, t + kShortest);
   const double way = arrive_ - leave_;
   // Who waits does not move.
   const Eigen::Vector3d v = leave_ > t ? Eigen::Vector3d::Zero() : now.velocity;
   const Eigen::Vector3d a = leave_ > t ? Eigen::Vector3d::Zero() : now.acceleration;
-  x_.fit(now.position.x(), v.x(), a.x(), end.x(), 0.0, 0.0, way);
-  y_.fit(now.position.y(), v.y(), a.y(), end.y(), 0.0, 0.0, way);
+  for (int i = 0; i < 2; ++i) {
+    const double over = end[i] + (goes_beyond ? beyond[i] : 0.0);
+    ahead_[i].fit(now.position[i], v[i], a[i], over, 0.0, 0.0, way);
+    back_[i].fit(over, 0.0, 0.0, end[i], 0.0, 0.0, std::max(duration_ - arrive_, kShortest));
+  }
+  const double goal_height = to.pose.position[2];
   const double down = -parameters[Swing::kTouchdownVelocity];
   if (apex_ - t > kShortest) {
-    apex_height_ = std::max(ground_, end.z()) + to.swing_height;
+    apex_height_ = std::max(ground_, goal_height) + to.swing_height;
     // Curvature of a parabola of this height over the swing: no flat top, no hard corner.
-    const double height = apex_height_ - 0.5 * (ground_ + end.z());
+    const double height = apex_height_ - 0.5 * (ground_ + goal_height);
     const double curvature = -6.0 * std::max(height, 0.0) / (duration_ * duration_);
     z_up_.fit(now.position.z(), now.velocity.z(), now.acceleration.z(), apex_height_, 0.0,
               curvature, apex_ - t);
-    z_down_.fit(apex_height_, 0.0, curvature, end.z(), down, 0.0,
+    z_down_.fit(apex_height_, 0.0, curvature, goal_height, down, 0.0,
                 std::max(duration_ - apex_, kShortest));
   } else {
     apex_ = t;
-    z_down_.fit(now.position.z(), now.velocity.z(), now.acceleration.z(), end.z(), down, 0.0, T);
+    z_down_.fit(now.position.z(), now.velocity.z(), now.acceleration.z(), goal_height, down, 0.0,
+                T);
   }
   from_orientation_ = now.orientation;
   const Eigen::Quaterniond goal = sdk::quaternion(to.pose.orientation);
@@ -152,10 +170,12 @@ SwingTrajectory::Sample SwingTrajectory::evaluate(double t) const {
   const bool up = inside < apex_;
   const Quintic& z = up ? z_up_ : z_down_;
   const double uz = up ? u : inside - std::max(apex_, start_);
-  const double w = std::clamp(inside, leave_, arrive_) - leave_;
-  s.position = {x_.position(w), y_.position(w), z.position(uz)};
-  s.velocity = {x_.velocity(w), y_.velocity(w), z.velocity(uz)};
-  s.acceleration = {x_.acceleration(w), y_.acceleration(w), z.acceleration(uz)};
+  const bool back = inside > arrive_;
+  const double w = back ? inside - arrive_ : std::max(inside, leave_) - leave_;
+  const std::array<Quintic, 2>& way = back ? back_ : ahead_;
+  s.position = {way[0].position(w), way[1].position(w), z.position(uz)};
+  s.velocity = {way[0].velocity(w), way[1].velocity(w), z.velocity(uz)};
+  s.acceleration = {way[0].acceleration(w), way[1].acceleration(w), z.acceleration(uz)};
   const double v = std::min(inside, level_) - start_;
   Eigen::Vector3d turn, rate, acceleration;
   for (int i = 0; i < 3; ++i) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "walking/test/allocation_counter.h"
 
+#include <atomic>
 #include <cstddef>
 #include <cstdlib>
 #include <new>
 
 namespace {
-int allocations = 0;
+std::atomic<int> allocations{0};  // of every thread
 }  // namespace
 
 extern "C" {
@@ -43,6 +44,7 @@ void* operator new(std::size_t size) {
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return std::malloc(size); }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 

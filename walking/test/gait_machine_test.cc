@@ -158,6 +158,64 @@ TEST(GaitMachine, ALoadedFootJustAfterLiftOffIsNoTouchdown) {
   EXPECT_NEAR((w.ticks - begin) * w.dt, 0.6 * fraction, 2e-3);
 }
 
+// The heel that brushes an edge on the way down, and the mass of the foot in its sensor when the
+// knee stops.
+TEST(GaitMachine, ALoadedFootThatStillMovesIsNoTouchdown) {
+  SyntheticWalk w;
+  w.landing_delay = -0.1;
+  ASSERT_FALSE(w.machine.walk({.steps = 2, .length = 0.3, .swing_duration = 0.6}).refused());
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 1));
+  w.robot.feet[w.gait().next_side].twist[5] = -0.7;
+  w.run_for(0.7);
+  EXPECT_EQ(w.gait().phase, GAITD_PHASE_SWING);
+  EXPECT_EQ(w.gait().late_contact, 1);
+  GaitdFootState& foot = w.robot.feet[w.gait().next_side];
+  for (const Eigen::Vector3d& v : {Eigen::Vector3d(0, 0, 0.7), Eigen::Vector3d(2, 0, 0)}) {
+    sdk::view(foot.twist).tail<3>() = v;
+    w.tick();
+    EXPECT_EQ(w.gait().phase, GAITD_PHASE_SWING) << v.transpose();
+  }
+  sdk::view(foot.twist).tail<3>() = Eigen::Vector3d(0, 0, -0.7);
+  // It rolls over the edge that bears: there it stands still.
+  foot.cop_valid = 1;
+  foot.cop[0] = 0.1;
+  foot.twist[1] = -7.0;  // its toe edge, 0.1 m ahead, rises as fast as its middle sinks
+  w.tick();
+  EXPECT_EQ(w.gait().phase, GAITD_PHASE_TRANSFER);
+}
+
+// The foot shakes for some milliseconds after a hard landing; the transfer does not wait for it.
+TEST(GaitMachine, AFirmLoadIsATouchdownBeforeTheFootIsAtRest) {
+  SyntheticWalk w;
+  ASSERT_FALSE(w.machine.walk({.steps = 2, .length = 0.3, .swing_duration = 0.6}).refused());
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 1));
+  w.robot.feet[w.gait().next_side].twist[5] = -0.3;
+  w.run_for(0.61);
+  EXPECT_EQ(w.gait().phase, GAITD_PHASE_TRANSFER);
+}
+
+// A knee at its stop throws the foot's own mass into its sensor: half the weight, for a
+// millisecond.
+TEST(GaitMachine, AShockIsNoTouchdown) {
+  SyntheticWalk w;
+  w.landing_delay = 10.0;
+  w.landing_load = 0.5;
+  ASSERT_FALSE(w.machine.walk({.steps = 2, .length = 0.3, .swing_duration = 0.6}).refused());
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 1));
+  w.run_for(0.45);
+  for (int shocks = 0; shocks < 20; ++shocks) {
+    w.landing_delay = -10.0;
+    w.tick();
+    ASSERT_EQ(w.gait().phase, GAITD_PHASE_SWING) << shocks;
+    w.landing_delay = 10.0;
+    w.run_for(0.005);
+  }
+  w.landing_delay = -10.0;
+  const int begin = w.ticks;
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 2));
+  EXPECT_LE((w.ticks - begin) * w.dt, 0.01);
+}
+
 TEST(GaitMachine, AMissingGroundKeepsTheSwingGoingAndSaysSo) {
   SyntheticWalk w;
   w.landing_delay = 0.3;
@@ -261,8 +319,8 @@ TEST(GaitMachine, FootstepsAheadStayInTheirLandingRegions) {
   ASSERT_TRUE(w.run_until_fraction(1, 0.3));
   GaitdFootstep ahead[2] = {w.gait().commanded[1], w.gait().commanded[2]};
   const double x = ahead[0].pose.position[0], y = ahead[0].pose.position[1];
-  const double region[4][2] = {{x - 0.1, y - 0.1}, {x + 0.01, y - 0.1}, {x + 0.01, y + 0.1},
-                               {x - 0.1, y + 0.1}};
+  const double region[4][2] = {
+      {x - 0.1, y - 0.1}, {x + 0.01, y - 0.1}, {x + 0.01, y + 0.1}, {x - 0.1, y + 0.1}};
   ahead[0].region_count = 4;
   for (int i = 0; i < 4; ++i) {
     for (int k = 0; k < 2; ++k) ahead[0].landing_region[i][k] = region[i][k];

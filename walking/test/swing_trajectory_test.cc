@@ -156,7 +156,8 @@ TEST(SwingTrajectory, AFootholdThatMovesAfterTheArrivalIsNoJolt) {
   for (double t = moved; t <= kDuration; t += 1e-4) {
     hardest = std::max(hardest, s.evaluate(t).acceleration.head<2>().norm());
   }
-  EXPECT_LT(hardest, 5.8 * 0.02 / std::pow(kDuration - moved, 2));
+  const double way = 0.02 + 0.04 * 0.3;  // moved, and what it went beyond
+  EXPECT_LT(hardest, 5.8 * way / std::pow(kDuration - moved, 2));
   EXPECT_NEAR(s.evaluate(kDuration).position.x(), 0.32, 1e-9);
 }
 
@@ -283,6 +284,18 @@ TEST(SwingTrajectory, IsPastAnEdgeBeforeItComesDown) {
     const Vector3d heel = s.evaluate(t).position - Vector3d(0.13, 0.0, 0.0);
     if (heel.z() < 0.2) EXPECT_TRUE(heel.x() > 0.19 || heel.x() < 0.001) << t;
   }
+}
+
+// Footholds near an edge: where odometry is wrong by a centimetre the heel must not be caught on
+// it.
+TEST(SwingTrajectory, ComesDownAnEdgeBeyondItsFootholdAndGoesBack) {
+  const SwingTrajectory s = swing(pose(0.0, 0.0, 0.2), landing(pose(0.5, 0.1, 0.0)));
+  for (double t = 0.5 * kDuration; t <= kDuration; t += 0.005) {
+    const Vector3d at = s.evaluate(t).position;
+    if (at.z() > 0.08 && at.z() < 0.2) EXPECT_GT(at.x(), 0.51) << t;
+  }
+  EXPECT_LT((s.evaluate(kDuration).position - Vector3d(0.5, 0.1, 0.0)).norm(), 1e-9);
+  EXPECT_LT(s.evaluate(kDuration).velocity.head<2>().norm(), 1e-9);
 }
 
 TEST(SwingTrajectory, GoesOnFromTheTwistOfTheFoot) {

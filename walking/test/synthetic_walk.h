@@ -73,9 +73,10 @@ class SyntheticWalk {
   GaitdToeOff toe_off{};
   GaitdStepAdjustment adjustment{};
   Planner planner;
-  walking::CmpOffsets offsets;  // of the planner
+  walking::CmpOffsets offsets;      // of the planner
   std::function<void()> on_update;  // after the machine, before the planner
   double landing_delay = 0.0;       // s after the planned end of the swing; negative: early
+  double landing_load = 2.0;        // of the weight, on a foot that is down
   double ground_error = 0.0;        // m, of the ground under the swing foot
   double icp_error = 0.0;           // m, forwards
   int ticks = 0;
@@ -90,7 +91,7 @@ class SyntheticWalk {
       const GaitdPose& pose = swinging ? g.adjusted[0].pose : g.footholds[side].pose;
       const bool down =
           !swinging || g.time_in_phase + dt >= g.phase_duration + landing_delay - 0.5 * dt;
-      foot.normal_force = down ? 0.5 * weight : 0.0;
+      foot.normal_force = down ? landing_load * weight : 0.0;
       foot.contact = down ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
       if (!down) continue;
       for (int k = 0; k < 3; ++k) foot.position[k] = pose.position[k];

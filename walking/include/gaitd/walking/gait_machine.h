@@ -57,6 +57,7 @@ class GaitMachine {
   void time_step(const GaitdRobotState& robot);
   void begin_swing(const GaitdRobotState& robot);
   void begin_stand();
+  bool has_landed(double dt, const GaitdFootState& foot);
   void touch_down(const GaitdRobotState& robot, bool early);
   void apply_pending_mode();
   // Level, half-way between the feet.
@@ -97,6 +98,7 @@ class GaitMachine {
   SwingLimits swing_limits_;
   StepTiming::Changes time_changes_{};  // s, from the transfer of the current step on
   double time_unheld_ = 0.0;            // s, since the feet cannot hold the ICP
+  double landed_impulse_ = 0.0;         // N s, of the load on the swing foot since it came
   bool recovering_ = false;             // the steps of now are the robot's own
   double height_offset_ = 0.0;          // m, measured minus commanded height of the ground so far
   int pending_mode_ = GAITD_MODE_WALK_BENT;

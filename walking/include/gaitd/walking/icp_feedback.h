@@ -56,8 +56,9 @@ inline Eigen::Vector2d ecmp_of(const Eigen::Vector2d& cmp, const Eigen::Vector2d
 
 // Tracks the ICP reference by moving the CMP (theory section 3):
 //   r_eCMP = r_ref + (1 + k/w) (xi - xi_ref), k along and across the motion of the reference
-// The CMP that follows is kept inside the support polygon plus a bounded excursion. What is commanded
-// acts a known delay later: the error is the one of then, predicted with what is on its way.
+// The CMP that follows is kept inside the support polygon plus a bounded excursion. What is
+// commanded acts a known delay later: the error is the one of then, predicted with what is on its
+// way.
 class IcpFeedback {
  public:
   explicit IcpFeedback(const GaitdModel& model) : model_(model) { reset(); }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 
 #include "gaitd/abi/types.h"
 #include "gaitd/sdk/views.h"
@@ -27,8 +28,8 @@ class Quintic {
 // Path of the sole of the swing foot in W, with continuous acceleration: from lift-off over an apex
 // above the higher of both footholds down to the foothold, which it meets with a downward velocity.
 // Onto an edge the foot first rises, and is level before it is above it; down an edge it is above
-// its foothold before it comes down. After the planned end it keeps going down, faster and faster,
-// until the ground is met.
+// beyond its foothold before it comes down, and goes back to it at the bottom. After the planned
+// end it keeps going down, faster and faster, until the ground is met.
 class SwingTrajectory {
  public:
   struct Sample {
@@ -61,12 +62,14 @@ class SwingTrajectory {
   double apex_height_ = 0.0;
   double late_velocity_ = 0.0;
   double late_acceleration_ = 0.0;
-  double late_gain_ = 0.0;  // m/s, on top of late_velocity_ at most
-  Quintic x_, y_, z_up_, z_down_;
+  double late_gain_ = 0.0;               // m/s, on top of late_velocity_ at most
+  std::array<Quintic, 2> ahead_, back_;  // from above: to the arrival, then to the foothold
+  Quintic z_up_, z_down_;
   Quintic turn_[3];  // rotation vector from from_orientation_, W, rad
   Eigen::Quaterniond from_orientation_ = Eigen::Quaterniond::Identity();
-  GaitdFootstep goal_{};  // what the polynomials lead to
-  double ground_ = 0.0;   // m, height of the foothold that was left
+  GaitdFootstep goal_{};                                // what the polynomials lead to
+  double ground_ = 0.0;                                 // m, height of the foothold that was left
+  Eigen::Vector2d lift_off_ = Eigen::Vector2d::Zero();  // m, W
 };
 
 }  // namespace gaitd::walking
