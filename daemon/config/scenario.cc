@@ -12,7 +12,8 @@
 namespace gaitd::daemon {
 namespace {
 
-// What the command line may replace.
+// What the command line may replace. Of what is expected only which drives the bounds are for.
+constexpr std::string_view kBoundsKey = "expect.bounds";
 constexpr std::array<std::string_view, 10> kOverridable = {
     "duration", "seed",      "start",       "mode",         "terrain",
     "sensors",  "actuators", "model_error", "disturbances", "commands"};
@@ -37,7 +38,9 @@ bool is_there(const NodePtr& root, const std::string& key, const Location& where
 NodePtr with_overrides(NodePtr root, Settings* settings, Issues* issues) {
   for (const Settings::Entry& entry : settings->from(SettingSource::kCommandLine)) {
     const std::string_view first = std::string_view(entry.key).substr(0, entry.key.find('.'));
-    if (std::find(kOverridable.begin(), kOverridable.end(), first) == kOverridable.end()) continue;
+    const bool known =
+        std::find(kOverridable.begin(), kOverridable.end(), first) != kOverridable.end();
+    if (!known && entry.key != kBoundsKey) continue;
     settings->declare(entry.key);
     if (!is_there(root, entry.key, entry.value->where, issues)) continue;
     root = with_value(root, entry.key, entry.value);
@@ -47,7 +50,7 @@ NodePtr with_overrides(NodePtr root, Settings* settings, Issues* issues) {
 
 // Logs are called by it.
 std::string read_name(MapReader* root) {
-  const std::string name = root->text("name").value_or("");
+  std::string name = root->text("name").value_or("");
   if (!name.empty() && !is_file_name(name)) {
     root->fail("name",
                "a name for files: letters, digits, '.', '_' and '-', at most " +

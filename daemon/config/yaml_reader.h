@@ -19,7 +19,7 @@ namespace gaitd::daemon {
 struct Bounds {
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
-  std::string_view unit = "";
+  std::string_view unit;
 
   bool contains(double value) const { return value >= minimum && value <= maximum; }
   std::string text() const;  // "0.05..20 s", "at least 0 m", "" when unbounded

@@ -11,7 +11,7 @@ namespace gaitd::daemon {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 std::string pad(std::string text, std::size_t width) {
   if (text.size() < width) text.append(width - text.size(), ' ');
@@ -19,7 +19,9 @@ std::string pad(std::string text, std::size_t width) {
 }
 
 // JSON has neither NaN nor infinity.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+OrderedJson number(double value) {
+  return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
+}
 
 }  // namespace
 
@@ -68,25 +70,25 @@ std::string verdict_text(const Verdict& verdict) {
 }
 
 std::string verdict_json(const Verdict& verdict) {
-  Json json;
+  OrderedJson json;
   json["pass"] = verdict.pass;
-  json["expectations"] = Json::array();
+  json["expectations"] = OrderedJson::array();
   for (const Judgement& judgement : verdict.judgements) {
-    Json entry = {{"name", judgement.name},
-                  {"pass", judgement.pass},
-                  {"value", number(judgement.value)},
-                  {"figure", judgement.figure},
-                  {"bound", judgement.bound}};
+    OrderedJson entry = {{"name", judgement.name},
+                         {"pass", judgement.pass},
+                         {"value", number(judgement.value)},
+                         {"figure", judgement.figure},
+                         {"bound", judgement.bound}};
     if (!judgement.note.empty()) entry["note"] = judgement.note;
     json["expectations"].push_back(std::move(entry));
   }
-  json["figures"] = Json::object();
-  json["units"] = Json::object();
+  json["figures"] = OrderedJson::object();
+  json["units"] = OrderedJson::object();
   for (const Figure& figure : verdict.figures) {
     json["figures"][figure.name] = number(figure.value);
     if (!figure.unit.empty()) json["units"][figure.name] = figure.unit;
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 }  // namespace gaitd::daemon

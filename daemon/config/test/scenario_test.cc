@@ -67,6 +67,26 @@ TEST(Scenario, ALogHoldsWhatIsExpected) {
   }
 }
 
+TEST(Scenario, BoundsOfRealDrivesAreWider) {
+  const std::string text = kHead +
+                           "terrain: {ground_z: 0}\n"
+                           "mode: walk-bent\n"
+                           "commands: [{at: 1, walk: {steps: 4, length: 0.2}}]\n"
+                           "expect: {no_fall: true, icp_error_rms_max: 0.02, stance_knee_mean_max: "
+                           "0.3, final_pelvis: {x: 0, y: 0, tolerance: 0.2}}\n";
+  Issues issues;
+  Settings settings;
+  settings.set(SettingSource::kCommandLine, "expect.bounds", make_scalar("real_drives", {}));
+  const auto scenario = read(text, &issues, &settings);
+  ASSERT_TRUE(scenario) << issues.error_text();
+  EXPECT_DOUBLE_EQ(scenario->expect.icp_error_rms_max.value(), 0.04);
+  EXPECT_DOUBLE_EQ(scenario->expect.stance_knee_mean_max.value(), 0.36);
+  EXPECT_DOUBLE_EQ(scenario->expect.final_pelvis.value().tolerance, 0.3);
+  const auto logged = read_logged_expectations(scenario->expect_section.dump());
+  ASSERT_TRUE(logged);
+  EXPECT_DOUBLE_EQ(logged->icp_error_rms_max.value(), 0.04);
+}
+
 TEST(Scenario, ReadsEverySection) {
   Issues issues;
   Settings settings;
