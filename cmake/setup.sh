@@ -9,9 +9,11 @@ die() {
   exit 1
 }
 
+# missing_packages demo|tests
 missing_packages() {
   local package
   while read -r package; do
+    [[ $1 == demo && $package == '# all the rest'* ]] && break
     [[ -z $package || $package == \#* ]] && continue
     # node.org's nodejs brings its own npm, and Debian's does not go beside it.
     [[ $package == npm ]] && command -v npm >/dev/null && continue
@@ -20,6 +22,7 @@ missing_packages() {
   done <"$PACKAGE_LIST"
 }
 
+# install_packages demo|tests
 install_packages() {
   local as_root=()
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
@@ -27,7 +30,7 @@ install_packages() {
     return
   fi
   local missing
-  mapfile -t missing < <(missing_packages)
+  mapfile -t missing < <(missing_packages "$1")
   ((${#missing[@]} == 0)) && return
   if ((EUID != 0)); then
     command -v sudo >/dev/null || die "missing packages, and neither root nor sudo to install them.
@@ -42,13 +45,18 @@ install_packages() {
     die "apt-get could not install ${missing[*]}; gaitd is built and tested on Debian 12"
 }
 
-# The whole repository with its tests is configured, always in the same way, so that run-demo and
-# run-tests share one build tree; the arguments choose the targets to build.
+# set_up_and_build demo|tests: the demo needs neither tests nor what only they need. Both share one build
+# tree: what is there already stays, whoever comes first.
 set_up_and_build() {
-  install_packages
+  install_packages "$1"
+  local options=(-UGAITD_COMPONENTS -UGAITD_BUILD_TESTS -UGAITD_BUILD_BENCHMARKS) targets=()
+  if [[ $1 == demo ]]; then
+    targets=(--target programs)
+    [[ -f $BUILD/CMakeCache.txt ]] && options=() || options=(-DGAITD_BUILD_TESTS=OFF -DGAITD_BUILD_BENCHMARKS=OFF)
+  fi
   say "Configuring $BUILD"
-  cmake --preset release -UGAITD_COMPONENTS -UGAITD_BUILD_TESTS -UGAITD_BUILD_BENCHMARKS ||
+  cmake --preset release "${options[@]}" ||
     die "the configuration failed, see above; $PACKAGE_LIST lists what it needs"
   say "Building $BUILD on $(nproc) cores"
-  cmake --build --preset release --parallel "$(nproc)" "$@" || die "the build failed, see above"
+  cmake --build --preset release --parallel "$(nproc)" "${targets[@]}" || die "the build failed, see above"
 }
