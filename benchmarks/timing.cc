@@ -16,19 +16,19 @@ double now() {
 }
 
 // Cholesky factors of one 36 × 36 matrix, in plain loops: much like what a tick computes.
-constexpr int kSize = 36;
-using Matrix = std::array<std::array<double, kSize>, kSize>;
+constexpr int kOrder = 36;
+using Matrix = std::array<std::array<double, kOrder>, kOrder>;
 
 double factor(const Matrix& h) {
   Matrix l = h;
-  for (int j = 0; j < kSize; ++j) {
-    for (int i = j; i < kSize; ++i) {
+  for (int j = 0; j < kOrder; ++j) {
+    for (int i = j; i < kOrder; ++i) {
       double sum = l[i][j];
       for (int k = 0; k < j; ++k) sum -= l[i][k] * l[j][k];
       l[i][j] = i == j ? sum : sum / l[j][j];
     }
   }
-  return l[kSize - 1][kSize - 1];
+  return l[kOrder - 1][kOrder - 1];
 }
 
 }  // namespace
@@ -57,8 +57,8 @@ std::vector<double> least_of_five(int count, const std::function<void()>& begin,
 
 double calibration() {
   Matrix h;
-  for (int i = 0; i < kSize; ++i) {
-    for (int j = 0; j < kSize; ++j) h[i][j] = i == j ? 2.0 * kSize : 1.0 / (1 + i + j);
+  for (int i = 0; i < kOrder; ++i) {
+    for (int j = 0; j < kOrder; ++j) h[i][j] = i == j ? 2.0 * kOrder : 1.0 / (1 + i + j);
   }
   volatile double result = 0.0;
   double least = std::numeric_limits<double>::infinity();

@@ -42,8 +42,8 @@ std::string bad_sensor(const LogCase& log, std::size_t tick) {
 
 }  // namespace
 
-// A fall, a tilt and a lost capture point are consequences; an overrun and the solver have checks of
-// their own.
+// A fall, a tilt and a lost capture point are consequences; an overrun and the solver have checks
+// of their own.
 Findings check_faults(const LogCase& log) {
   Findings findings;
   const auto add = [&](const char* check, const std::string& what, const std::string& advice) {

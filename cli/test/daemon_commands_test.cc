@@ -75,7 +75,10 @@ class Gaitctl : public ::testing::Test {
   }
   // What the daemon got for a command that must succeed.
   json sent(const std::string& arguments) {
-    method_ = "";
+    {
+      const std::lock_guard lock(mutex_);
+      method_ = "";
+    }
     const Outcome outcome = gaitctl(arguments);
     EXPECT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.err;
     const std::lock_guard lock(mutex_);

@@ -21,8 +21,8 @@ using testing::SyntheticWalk;
 GaitdStepAdjustment process(IcpQp& layer, const SyntheticWalk& w, const GaitdRobotState& robot) {
   GaitdStepAdjustment out{};
   const GaitdToeOff toe_off{};
-  const GaitdStepAdjusterInput in{
-      sizeof(in), 0, testing::layer_time(w.dt), &robot, &w.gait(), &w.plan, &toe_off};
+  const GaitdStepAdjusterInput in{sizeof(in), 0,       testing::layer_time(w.dt), &robot, &w.gait(),
+                                  &w.plan,    &toe_off};
   EXPECT_EQ(layer.process(in, out), GAITD_OK);
   return out;
 }
@@ -184,8 +184,8 @@ TEST(CaptureQp, NoPointIsBetterThanItsSolution) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   Capture c;
-  for (const Vector2d& p : {Vector2d(-0.1, -0.05), Vector2d(0.1, -0.05), Vector2d(0.1, 0.05),
-                            Vector2d(-0.1, 0.05)}) {
+  for (const Vector2d& p :
+       {Vector2d(-0.1, -0.05), Vector2d(0.1, -0.05), Vector2d(0.1, 0.05), Vector2d(-0.1, 0.05)}) {
     c.cmp_region.add(p);
   }
   c.cmp_region.make_hull();
@@ -211,7 +211,8 @@ TEST(CaptureQp, NoPointIsBetterThanItsSolution) {
       const Vector2d cmp = c.cmp_region.closest_point({0.15 * unit(random), 0.1 * unit(random)});
       const Vector2d am(0.03 * unit(random), 0.03 * unit(random));
       const Vector2d other = c.possible_shift(shift + 0.1 * Vector2d(unit(random), unit(random)));
-      best_at_solution = std::min(best_at_solution, cost(c, w, remaining, previous, shift, cmp, am));
+      best_at_solution =
+          std::min(best_at_solution, cost(c, w, remaining, previous, shift, cmp, am));
       best_elsewhere = std::min(best_elsewhere, cost(c, w, remaining, previous, other, cmp, am));
     }
     EXPECT_LE(best_at_solution, best_elsewhere + 2e-2) << run;

@@ -17,15 +17,15 @@ struct Capture {
   double omega = 3.0;
   double kappa = 1.0;
   Eigen::Vector2d com = Eigen::Vector2d::Zero();
-  Eigen::Vector2d icp = Eigen::Vector2d::Zero();      // measured
-  Eigen::Vector2d icp_end = Eigen::Vector2d::Zero();  // of the plan at touchdown with shift D0
-  double gamma_end = 1.0;                             // d icp_end / d shift
-  Eigen::Vector2d cmp = Eigen::Vector2d::Zero();      // constant one that the plan amounts to
-  Eigen::Vector2d commanded = Eigen::Vector2d::Zero();  // foothold
+  Eigen::Vector2d icp = Eigen::Vector2d::Zero();          // measured
+  Eigen::Vector2d icp_end = Eigen::Vector2d::Zero();      // of the plan at touchdown with shift D0
+  double gamma_end = 1.0;                                 // d icp_end / d shift
+  Eigen::Vector2d cmp = Eigen::Vector2d::Zero();          // constant one that the plan amounts to
+  Eigen::Vector2d commanded = Eigen::Vector2d::Zero();    // foothold
   Eigen::Vector2d start_shift = Eigen::Vector2d::Zero();  // D0, with which the swing began
-  walking::ConvexPolygon cmp_region;  // where the CMP may be
-  walking::ConvexPolygon reach;       // where the foothold may be
-  walking::ConvexPolygon landing;     // where the terrain allows it; empty: anywhere
+  walking::ConvexPolygon cmp_region;                      // where the CMP may be
+  walking::ConvexPolygon reach;                           // where the foothold may be
+  walking::ConvexPolygon landing;  // where the terrain allows it; empty: anywhere
 
   Eigen::Vector2d ecmp_of(const Eigen::Vector2d& at) const {
     return walking::ecmp_of(at, com, kappa);

@@ -5,9 +5,9 @@
 namespace gaitd::can {
 namespace {
 
-constexpr size_t kTimes = 3;                // frames to each motor, against a lost one
-constexpr double kPause = 0.002;            // s between them
-constexpr int64_t kPatience = 100'000'000;  // ns with a bus that does not take them
+constexpr size_t kTimes = 3;                    // frames to each motor, against a lost one
+constexpr double kPause = 0.002;                // s between them
+constexpr int64_t kStopPatience = 100'000'000;  // ns with a bus that does not take them
 
 }  // namespace
 
@@ -18,7 +18,7 @@ void CanRobot::switch_off() {
   for (const Motor& motor : wiring_.motors) {
     buses_[motor.bus].frames.push_back(encode_special(motor.id, Special::kDisable));
   }
-  const int64_t end = clocks_.monotonic_ns() + kPatience;
+  const int64_t end = clocks_.monotonic_ns() + kStopPatience;
   for (;;) {
     bool done = true;
     for (size_t i = 0; i < buses_.size(); ++i) {

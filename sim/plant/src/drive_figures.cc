@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kArcMinute = std::numbers::pi / (180 * 60);
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 struct FixedKey {
   const char* name;
@@ -40,9 +40,9 @@ const FixedKey kFixedKeys[] = {
     {"derating_start", &DriveFigures::derating_start, {0, 100}},
     {"derating_end", &DriveFigures::derating_end, {0, 100}},
     {"orifice_speed", &DriveFigures::orifice_speed, {0, 100}},
-    {"stiffness", &DriveFigures::stiffness, {0, kInfinity}},
-    {"hip_yaw_stiffness", &DriveFigures::hip_yaw_stiffness, {0, kInfinity}},
-    {"hip_roll_stiffness", &DriveFigures::hip_roll_stiffness, {0, kInfinity}},
+    {"stiffness", &DriveFigures::stiffness, {0, kUnbounded}},
+    {"hip_yaw_stiffness", &DriveFigures::hip_yaw_stiffness, {0, kUnbounded}},
+    {"hip_roll_stiffness", &DriveFigures::hip_roll_stiffness, {0, kUnbounded}},
     {"hip_damping", &DriveFigures::hip_damping, {0, 1000}},
     {"armature_base", &DriveFigures::armature_base, {0, 100}},
     {"armature_factor", &DriveFigures::armature_factor, {0, 100}},

@@ -41,8 +41,8 @@ typedef struct GaitdHealth {
   uint32_t missing;
   uint32_t duplicate;
   uint32_t stale;
-  uint32_t lost;   /* frames that the receiver dropped */
-  uint32_t unsent; /* commands that the bus did not take */
+  uint32_t lost;                     /* frames that the receiver dropped */
+  uint32_t unsent;                   /* commands that the bus did not take */
   char text[GAITD_DESCRIPTION_SIZE]; /* the first condition in words, "" if there is none */
 } GaitdHealth;
 
@@ -54,19 +54,19 @@ typedef struct GaitdBackendVtable {
    * errors in `error`, one per line. [main] */
   GaitdStatus (*init)(void* self, const GaitdModel* model, const char* config, double period,
                       int32_t clock, char* error, uint32_t error_size);
-  GaitdStatus (*start)(void* self);                                         /* [main] */
+  GaitdStatus (*start)(void* self); /* [main] */
   /* GAITD_NOT_READY: no sensors newer than those of the last read. [rt] */
   GaitdStatus (*read)(void* self, GaitdSensors* sensors);
-  GaitdStatus (*write)(void* self, const GaitdJointCommands* commands);     /* [rt] */
+  GaitdStatus (*write)(void* self, const GaitdJointCommands* commands); /* [rt] */
   /* Lockstep only: runs the plant one period under the last command. [control thread, outside
    * the guarded section] */
   GaitdStatus (*advance)(void* self);
-  GaitdStatus (*truth)(void* self, GaitdTruth* truth);                      /* [rt] */
-  GaitdStatus (*disturb)(void* self, const GaitdDisturbance* disturbance);  /* [rt] */
+  GaitdStatus (*truth)(void* self, GaitdTruth* truth);                     /* [rt] */
+  GaitdStatus (*disturb)(void* self, const GaitdDisturbance* disturbance); /* [rt] */
   /* Simulation: back to the start state. [control thread, outside the guarded section] */
   GaitdStatus (*reset)(void* self);
-  GaitdStatus (*stop)(void* self);                                          /* [main] */
-  void (*destroy)(void* self);                                              /* [main] */
+  GaitdStatus (*stop)(void* self); /* [main] */
+  void (*destroy)(void* self);     /* [main] */
   /* May be null: always healthy. [any, rt included] */
   GaitdStatus (*health)(void* self, GaitdHealth* health);
 } GaitdBackendVtable;

@@ -70,7 +70,7 @@ typedef struct GaitdJoint {
   double effort_limit;   /* N m or N, > 0 */
   double rotor_inertia;  /* kg m^2 at the output, >= 0 */
   double damping;        /* N m s/rad, viscous, >= 0 */
-  double reserve[4]; /* 0 */
+  double reserve[4];     /* 0 */
 } GaitdJoint;
 
 typedef struct GaitdFrame {
@@ -79,15 +79,15 @@ typedef struct GaitdFrame {
   int32_t reserved;
   double origin[3];      /* m, body frame */
   double orientation[4]; /* frame in the body frame */
-  double reserve[2]; /* 0 */
+  double reserve[2];     /* 0 */
 } GaitdFrame;
 
 typedef struct GaitdFoot {
   int32_t body;
   int32_t point_count;
-  GaitdFrame sole;                          /* sole frame in the body of the foot */
-  double points[GAITD_MAX_FOOT_POINTS][2];  /* m, sole frame, physical outline, counter-clockwise */
-  double toe_point[3];                      /* m, sole frame: middle of the front edge */
+  GaitdFrame sole;                         /* sole frame in the body of the foot */
+  double points[GAITD_MAX_FOOT_POINTS][2]; /* m, sole frame, physical outline, counter-clockwise */
+  double toe_point[3];                     /* m, sole frame: middle of the front edge */
   GaitdFrame force_sensor;
   double reserve[4]; /* 0 */
 } GaitdFoot;
@@ -102,10 +102,10 @@ typedef struct GaitdLeg {
   int32_t ankle_pitch;
   int32_t ankle_roll;
   int32_t reserved;
-  double knee_bend_sign;         /* +1 or -1 */
-  double hip_pitch_bend_sign;    /* sign of the hip pitch that goes with a bending knee */
-  double ankle_pitch_bend_sign;  /* likewise; also the sign of dorsiflexion */
-  double reserve[4]; /* 0 */
+  double knee_bend_sign;        /* +1 or -1 */
+  double hip_pitch_bend_sign;   /* sign of the hip pitch that goes with a bending knee */
+  double ankle_pitch_bend_sign; /* likewise; also the sign of dorsiflexion */
+  double reserve[4];            /* 0 */
 } GaitdLeg;
 
 typedef struct GaitdModel {
@@ -140,9 +140,9 @@ typedef struct GaitdSignalInfo {
 
 typedef struct GaitdJointSensor {
   GaitdSignalInfo info;
-  double position; /* rad */
-  double velocity; /* rad/s */
-  double torque;   /* N m */
+  double position;   /* rad */
+  double velocity;   /* rad/s */
+  double torque;     /* N m */
   double reserve[2]; /* 0 */
 } GaitdJointSensor;
 
@@ -153,14 +153,14 @@ typedef struct GaitdImuSensor {
   double orientation[4];    /* IMU frame in W */
   double angular_rate[3];   /* rad/s, IMU frame */
   double specific_force[3]; /* m/s^2, IMU frame: acceleration minus gravity */
-  double reserve[4]; /* 0 */
+  double reserve[4];        /* 0 */
 } GaitdImuSensor;
 
 /* Wrench of the ground on the foot, in the sensor frame, about the sensor origin. */
 typedef struct GaitdFootForceSensor {
   GaitdSignalInfo info;
-  double force[3];  /* N */
-  double moment[3]; /* N m */
+  double force[3];   /* N */
+  double moment[3];  /* N m */
   double reserve[2]; /* 0 */
 } GaitdFootForceSensor;
 
@@ -181,16 +181,16 @@ typedef struct GaitdSensors {
 enum { GAITD_CONTACT_NONE = 0, GAITD_CONTACT_TOE = 1, GAITD_CONTACT_FULL = 2 };
 
 typedef struct GaitdFootState {
-  int32_t contact;         /* measured: GAITD_CONTACT_NONE or GAITD_CONTACT_FULL */
+  int32_t contact; /* measured: GAITD_CONTACT_NONE or GAITD_CONTACT_FULL */
   int32_t cop_valid;
-  double position[3];      /* m, sole origin in W */
-  double orientation[4];   /* sole frame in W */
-  double twist[6];         /* of the sole origin, W axes, angular first */
-  double wrench[6];        /* ground on foot, moment first, about the sole origin, sole axes */
-  double normal_force;     /* N, filtered, along the normal of the sole, >= 0 */
-  double cop[2];           /* m, sole frame */
-  double cop_world[3];     /* m, W */
-  double reserve[4]; /* 0 */
+  double position[3];    /* m, sole origin in W */
+  double orientation[4]; /* sole frame in W */
+  double twist[6];       /* of the sole origin, W axes, angular first */
+  double wrench[6];      /* ground on foot, moment first, about the sole origin, sole axes */
+  double normal_force;   /* N, filtered, along the normal of the sole, >= 0 */
+  double cop[2];         /* m, sole frame */
+  double cop_world[3];   /* m, W */
+  double reserve[4];     /* 0 */
 } GaitdFootState;
 
 typedef struct GaitdRobotState {
@@ -224,18 +224,18 @@ typedef struct GaitdPose {
 
 typedef struct GaitdFootstep {
   int32_t side;
-  uint32_t id;               /* counts footsteps since start-up, from 1 */
-  GaitdPose pose;            /* sole frame in W */
-  double swing_duration;     /* s */
-  double transfer_duration;  /* s, of the transfer before the swing */
-  double swing_height;       /* m, above the higher of lift-off and touchdown */
-  int32_t polygon_count;     /* 0: whole sole */
-  int32_t region_count;      /* 0: anywhere */
-  int32_t closing;           /* brings the feet side by side; not counted as a step */
+  uint32_t id;              /* counts footsteps since start-up, from 1 */
+  GaitdPose pose;           /* sole frame in W */
+  double swing_duration;    /* s */
+  double transfer_duration; /* s, of the transfer before the swing */
+  double swing_height;      /* m, above the higher of lift-off and touchdown */
+  int32_t polygon_count;    /* 0: whole sole */
+  int32_t region_count;     /* 0: anywhere */
+  int32_t closing;          /* brings the feet side by side; not counted as a step */
   int32_t reserved;
-  double contact_polygon[GAITD_MAX_FOOT_POINTS][2];   /* m, sole frame, counter-clockwise */
-  double landing_region[GAITD_MAX_REGION_POINTS][3];  /* m, W, convex, counter-clockwise */
-  double reserve[8]; /* 0 */
+  double contact_polygon[GAITD_MAX_FOOT_POINTS][2];  /* m, sole frame, counter-clockwise */
+  double landing_region[GAITD_MAX_REGION_POINTS][3]; /* m, W, convex, counter-clockwise */
+  double reserve[8];                                 /* 0 */
 } GaitdFootstep;
 
 /* Where a foot stands or stood last, with the part of the sole that may carry load. */
@@ -244,28 +244,28 @@ typedef struct GaitdFoothold {
   int32_t contact; /* commanded: GAITD_CONTACT_* */
   int32_t polygon_count;
   double contact_polygon[GAITD_MAX_FOOT_POINTS][2]; /* m, sole frame, never empty */
-  double reserve[4]; /* 0 */
+  double reserve[4];                                /* 0 */
 } GaitdFoothold;
 
 typedef struct GaitdGaitState {
   uint32_t size;
   int32_t mode;
   int32_t phase;
-  int32_t support;         /* GAITD_LEFT, GAITD_RIGHT or GAITD_BOTH */
-  int32_t step_index;      /* of the current transfer or swing, from 1; 0 before the first */
-  int32_t footstep_count;  /* footsteps ahead, the current one included; at most the maximum */
+  int32_t support;        /* GAITD_LEFT, GAITD_RIGHT or GAITD_BOTH */
+  int32_t step_index;     /* of the current transfer or swing, from 1; 0 before the first */
+  int32_t footstep_count; /* footsteps ahead, the current one included; at most the maximum */
   int32_t early_contact;
   int32_t late_contact;
   int32_t paused;
-  int32_t plan_revision;   /* changes whenever footsteps, phase or timing changed */
-  int32_t next_side;       /* foot that swings now or next; GAITD_BOTH when none */
-  int32_t transfer_final;  /* this transfer ends in standing */
-  int32_t trailing_side;   /* transfer: foot that the load leaves; GAITD_BOTH from standing */
+  int32_t plan_revision;  /* changes whenever footsteps, phase or timing changed */
+  int32_t next_side;      /* foot that swings now or next; GAITD_BOTH when none */
+  int32_t transfer_final; /* this transfer ends in standing */
+  int32_t trailing_side;  /* transfer: foot that the load leaves; GAITD_BOTH from standing */
   int32_t reserved;
-  double omega;            /* 1/s, natural frequency of the ICP */
-  double time_in_phase;    /* s */
-  double phase_duration;   /* s, as planned; infinite standing is 0 */
-  double time_remaining;   /* s, >= 0 */
+  double omega;                   /* 1/s, natural frequency of the ICP */
+  double time_in_phase;           /* s */
+  double phase_duration;          /* s, as planned; infinite standing is 0 */
+  double time_remaining;          /* s, >= 0 */
   double final_transfer_duration; /* s, of the transfer after the last footstep */
   GaitdFoothold footholds[GAITD_MAX_FEET];
   GaitdFootstep commanded[GAITD_MAX_FOOTSTEPS];
@@ -277,28 +277,28 @@ typedef struct GaitdGaitState {
 typedef struct GaitdIcpPlan {
   uint32_t size;
   int32_t reserved;
-  double icp[2];           /* m, W */
-  double icp_velocity[2];  /* m/s */
-  double ecmp[2];          /* m, W */
-  double com[2];           /* m, W, of the plan */
+  double icp[2];          /* m, W */
+  double icp_velocity[2]; /* m/s */
+  double ecmp[2];         /* m, W */
+  double com[2];          /* m, W, of the plan */
   double com_velocity[2];
-  double icp_end[2];       /* m, at the end of the phase */
-  double kappa;            /* kappa reference, section 1 of the theory */
-  double time_remaining;   /* s, of the phase */
-  double offset[2];        /* m, decaying difference between this reference and the pure plan */
+  double icp_end[2];     /* m, at the end of the phase */
+  double kappa;          /* kappa reference, section 1 of the theory */
+  double time_remaining; /* s, of the phase */
+  double offset[2];      /* m, decaying difference between this reference and the pure plan */
   double gamma[GAITD_MAX_FOOTSTEPS]; /* d icp / d foothold i, all later footholds moving along */
 } GaitdIcpPlan;
 
 typedef struct GaitdStepAdjustment {
   uint32_t size;
   int32_t active;
-  double shift[3];                  /* m, W, absolute against the commanded foothold */
-  double time_shift;                /* s, absolute against the planned duration of the phase */
-  double ecmp[2];                   /* m, desired */
-  double cmp[2];                    /* m, desired, inside the support polygon plus excursion */
-  double kappa;                     /* that was used between the two */
-  double linear_momentum_rate[2];   /* N, desired */
-  double angular_momentum_rate[3];  /* N m, about the CoM; only rows in the mask are wanted */
+  double shift[3];                 /* m, W, absolute against the commanded foothold */
+  double time_shift;               /* s, absolute against the planned duration of the phase */
+  double ecmp[2];                  /* m, desired */
+  double cmp[2];                   /* m, desired, inside the support polygon plus excursion */
+  double kappa;                    /* that was used between the two */
+  double linear_momentum_rate[2];  /* N, desired */
+  double angular_momentum_rate[3]; /* N m, about the CoM; only rows in the mask are wanted */
   int32_t angular_momentum_mask;
   int32_t reserved;
 } GaitdStepAdjustment;
@@ -317,7 +317,7 @@ typedef struct GaitdToeOff {
   int32_t active;
   int32_t side;
   int32_t reserved;
-  double toe_point[3];                     /* m, sole frame */
+  double toe_point[3];                      /* m, sole frame */
   double criterion[GAITD_TOE_OFF_CRITERIA]; /* value, see the layer's documentation */
   int32_t satisfied[GAITD_TOE_OFF_CRITERIA + 1];
 } GaitdToeOff;
@@ -357,14 +357,14 @@ typedef struct GaitdObjectives {
   uint32_t size;
   int32_t contact_count;
   int32_t task_count;
-  uint32_t momentum_mask;       /* rows 0-2 angular, 3-5 linear, W, about the CoM */
-  double momentum_rate[6];      /* N m, N; the z row is always filled */
+  uint32_t momentum_mask;  /* rows 0-2 angular, 3-5 linear, W, about the CoM */
+  double momentum_rate[6]; /* N m, N; the z row is always filled */
   double momentum_weight[6];
-  double height_target;         /* m, CoM in W that the z row aims at */
-  double external_wrench[6];    /* about the CoM, W */
+  double height_target;      /* m, CoM in W that the z row aims at */
+  double external_wrench[6]; /* about the CoM, W */
   double rho_weight;
   double rho_rate_weight;
-  double acceleration_weight;   /* of every generalised acceleration */
+  double acceleration_weight;                    /* of every generalised acceleration */
   double posture_acceleration[GAITD_MAX_JOINTS]; /* joint tasks, diagonal; feedback included */
   double posture_weight[GAITD_MAX_JOINTS];       /* 0: no task for this joint */
   double privileged_acceleration[GAITD_MAX_JOINTS];
@@ -386,13 +386,13 @@ enum {
 typedef struct GaitdJointCommand {
   int32_t mode;
   int32_t reserved;
-  double torque;    /* N m, feed-forward */
-  double position;  /* rad */
-  double velocity;  /* rad/s */
-  double stiffness; /* N m/rad */
-  double damping;   /* N m s/rad */
+  double torque;       /* N m, feed-forward */
+  double position;     /* rad */
+  double velocity;     /* rad/s */
+  double stiffness;    /* N m/rad */
+  double damping;      /* N m s/rad */
   double acceleration; /* rad/s^2, expected under this command; 0 if nothing is expected */
-  double reserve[2]; /* 0 */
+  double reserve[2];   /* 0 */
 } GaitdJointCommand;
 
 typedef struct GaitdJointCommands {
@@ -415,8 +415,8 @@ typedef struct GaitdWbcInfo {
   int32_t status;
   int32_t iterations;
   double kkt_residual;
-  double null_trace;           /* freedoms that no task claims; 0 where there is no projector */
-  double momentum_residual;    /* N, wanted minus achieved linear momentum rate, wanted rows */
+  double null_trace;             /* freedoms that no task claims; 0 where there is no projector */
+  double momentum_residual;      /* N, wanted minus achieved linear momentum rate, wanted rows */
   double pelvis_acceleration[6]; /* pelvis frame, angular first */
   double joint_acceleration[GAITD_MAX_JOINTS];
   double foot_wrench[GAITD_MAX_FEET][6]; /* ground on foot, moment first, about the sole, W axes */
@@ -425,11 +425,11 @@ typedef struct GaitdWbcInfo {
 /* ---------------------------------------------------------------------------------- truth -- */
 
 typedef struct GaitdFootTruth {
-  double force[3];      /* N, W, ground on foot */
-  double slip;          /* m, horizontal path of the contact since the foot was loaded (> 50 N) */
-  double penetration;   /* m, deepest point */
-  double side_force;    /* N, on vertical faces */
-  double position[3];   /* m, sole origin in W */
+  double force[3];    /* N, W, ground on foot */
+  double slip;        /* m, horizontal path of the contact since the foot was loaded (> 50 N) */
+  double penetration; /* m, deepest point */
+  double side_force;  /* N, on vertical faces */
+  double position[3]; /* m, sole origin in W */
   double orientation[4];
   double reserve[4]; /* 0 */
 } GaitdFootTruth;
@@ -437,7 +437,7 @@ typedef struct GaitdFootTruth {
 /* Simulation only; no layer ever reads it. */
 typedef struct GaitdTruth {
   uint32_t size;
-  int32_t body_contact;  /* something other than a foot touches the terrain */
+  int32_t body_contact; /* something other than a foot touches the terrain */
   double time;
   double pelvis_position[3];
   double pelvis_orientation[4];
