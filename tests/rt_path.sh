@@ -1,5 +1,5 @@
 # Within a tick nothing is allocated, no page is met for the first time, and nothing can block: over a
-# walk of a minute with a push, commands and a hundred swaps, and in real time, with clients. The torques
+# walk of a minute with a push, commands and 125 swaps, and in real time, with clients. The torques
 # take no step at a swap.
 source "$(dirname "$0")/common.sh"
 cd "$scratch"
@@ -19,8 +19,19 @@ guarded() {
     --socket "$1.sock" --log "$1.mcap" >"$1.txt" 2>&1 || { cat "$1.txt"; fail "$1 does not run"; }
 }
 
-# The walk of the scenario swaps, with a push, commands, and clients that ask and command.
-sed '/^expect:/,$d' "$GAITD_SOURCE/sim/scenarios/swaps.yaml" >walk.yaml
+# The walk of the scenario swaps, with a push, commands, and clients that ask and command. The swaps come
+# one by one, 0.41 s apart, so those of a layer are 2.4 to 2.6 steps apart: they fall all over the step,
+# whenever the feet of this gait touch down.
+sed '/^expect:/,$d; /swap:/d' "$GAITD_SOURCE/sim/scenarios/swaps.yaml" >walk.yaml
+awk 'BEGIN {
+  split("toe_off whole_body_controller icp_planner step_adjuster state_estimator", layer, " ")
+  split("never com_height_qp single_cmp fixed_steps invariant_ekf", variant, " ")
+  split("icp_criteria nullspace_qp heel_to_toe icp_qp kinematic_inertial", before, " ")
+  for (i = 0; i < 125; ++i) {
+    k = i % 5 + 1
+    printf "  - {at: %.2f, swap: {layer: %s, to: %s}}\n", 2 + 0.41 * i, layer[k], int(i / 5) % 2 ? before[k] : variant[k]
+  }
+}' >>walk.yaml
 cat >>walk.yaml <<'SCENARIO'
   - {at: 6.0, param: {gait.swing_height: 0.12}}
   - {at: 53.0, mode: walk-bent}
@@ -52,7 +63,7 @@ awk '{ ++count[$2, $3]; ++all; if ($5 > worst) { worst = $5; line = $0 } }
        for (i in layer) if (count[layer[i], "swing"] < 5 || count[layer[i], "transfer"] < 5) {
          print layer[i] ": too few in swings or transfers"; few = 1
        }
-       exit worst > 0.05 || all != 100 || few
+       exit worst > 0.05 || all != 125 || few
      }' steps.txt || { cat steps.txt; fail "see above"; }
 
 # The guard sees what it has to see: an exception takes memory.
