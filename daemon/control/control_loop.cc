@@ -13,6 +13,7 @@
 #include "daemon/control/state_text.h"
 #include "daemon/control/stopwatch.h"
 #include "daemon/control/tick_guard.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -24,6 +25,12 @@ std::int64_t now_ns() {
   timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return std::int64_t{1000000000} * t.tv_sec + t.tv_nsec;
+}
+
+// What a command costs a tick: each footstep is looked at.
+int footsteps_of(const Command& command) {
+  if (command.type == CommandType::kWalk) return command.walk.steps;
+  return command.type == CommandType::kFootsteps ? command.footstep_count : 0;
 }
 
 RunEnd end_of(ScenarioPlayer::End end) {
@@ -161,8 +168,12 @@ void ControlLoop::take_commands() {
     }
   }
   if (bridge_ == nullptr) return;
-  for (std::size_t i = 0; i < CommandBridge::kPerTick && bridge_->try_pop(*command_); ++i) {
+  int footsteps = 0;
+  for (std::size_t i = 0; i < CommandBridge::kPerTick && footsteps < bounds::kFootstepsPerTick &&
+                          bridge_->try_pop(*command_);
+       ++i) {
     execute(*command_, true);
+    footsteps += footsteps_of(*command_);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -166,6 +167,38 @@ TEST(GaitRefusal, WalksThatCannotBeWalkedAreRefused) {
     EXPECT_GT(std::strlen(r.message), 20u);
     EXPECT_TRUE(same(before, w.gait()));
   }
+}
+
+// A walk is judged by its first footsteps and its last; each of them has to be what all would be.
+TEST(GaitRefusal, ALongWalkIsRefusedExactlyWhenOneOfItsFootstepsIs) {
+  std::mt19937 random(19);
+  const auto draw = [&random](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  int refused = 0;
+  constexpr int kWalks = 400;
+  for (int i = 0; i < kWalks; ++i) {
+    WalkCommand walk{.steps = std::uniform_int_distribution<int>(1, 30)(random),
+                     .length = draw(-0.6, 0.9),
+                     .turn = draw(-0.5, 0.5),
+                     .swing_duration = draw(0.2, 1.0),
+                     .first_side = i % 2 == 0 ? GAITD_LEFT : GAITD_RIGHT};
+    if (i % 3 == 0) walk.lateral = draw(-0.3, 0.3);
+    SyntheticWalk by_walk;
+    SyntheticWalk by_footsteps;
+    const GaitdPose middle = middle_pose(by_walk.gait().footholds[GAITD_LEFT].pose,
+                                         by_walk.gait().footholds[GAITD_RIGHT].pose);
+    FootstepGenerator generator(walk, middle, walk.first_side, atlas().nominal_foot_separation,
+                                by_walk.machine.parameters());
+    std::vector<GaitdFootstep> all;
+    for (int k = 0; k < generator.count(); ++k) all.push_back(generator.next());
+    const Refusal one_by_one =
+        by_footsteps.machine.footsteps(all.data(), static_cast<int>(all.size()), false);
+    EXPECT_STREQ(by_walk.machine.walk(walk).message, one_by_one.message) << walk.steps << " steps";
+    refused += one_by_one.refused() ? 1 : 0;
+  }
+  EXPECT_GT(refused, kWalks / 5);
+  EXPECT_LT(refused, 4 * kWalks / 5);
 }
 
 TEST(GaitRefusal, AWalkMustGoOnWithTheOtherFoot) {

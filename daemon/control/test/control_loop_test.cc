@@ -16,6 +16,7 @@
 #include "daemon/control/signals.h"
 #include "daemon/control/test/pipeline_bench.h"
 #include "daemon/log/log_reader.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -144,6 +145,28 @@ TEST_F(ControlLoopTest, AResetThatDoesNotKnowOfAnEstopIsRefused) {
   ASSERT_NE(refused, nullptr);
   EXPECT_NE(refused->message.find("an e-stop was asked for after this command"), std::string::npos);
   EXPECT_TRUE(std::holds_alternative<nlohmann::json>(*late));
+}
+
+TEST_F(ControlLoopTest, LongWalksOfClientsAreTakenOneInATick) {
+  const auto commands = std::make_unique<CommandBridge>();
+  bridge = commands.get();
+  Command walk;
+  walk.type = CommandType::kWalk;
+  walk.walk.steps = bounds::kFootstepsPerTick;
+  Command resume;
+  resume.type = CommandType::kResume;
+  std::vector<int> walks;
+  std::vector<int> others;
+  const auto note =
+      [](std::vector<int>* ticks) {  // the robot is not under control: all are refused
+        return [ticks](RpcResult r) { ticks->push_back(std::get<RpcError>(r).data["tick"]); };
+      };
+  for (int i = 0; i < 3; ++i) commands->submit(walk, {.connection = 1}, note(&walks));
+  for (int i = 0; i < 3; ++i) commands->submit(resume, {.connection = 1}, note(&others));
+  run(standing(0.05));
+  commands->poll(CommandBridge::Clock::now());
+  EXPECT_EQ(walks, (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(others, (std::vector<int>{3, 3, 3}));
 }
 
 TEST_F(ControlLoopTest, ARunWithoutFailureSaysSo) {

@@ -29,18 +29,24 @@ inline constexpr int kUrdfAttributes = 100;  ///< of one element, which TinyXML 
 
 // ---- The socket of commands.
 
-/// Of one line, of which every client may make gaitd hold two; 64 footsteps with all they can have,
-/// the most in one command, have 0.1 MB.
+/// Of one line, and of those of a client that wait; 64 footsteps with all they can have, the most
+/// in one command, have 0.1 MB.
 inline constexpr std::size_t kRequestBytes = 256u << 10;
+/// JSON values in one line, each of which takes up to 60 bytes when it is read; those 64 footsteps
+/// have 4500.
+inline constexpr std::size_t kRequestValues = 16384;
 /// An e-stop in a line of at most so many bytes is acted on before everything else.
 inline constexpr std::size_t kEstopBytes = 4096;
 inline constexpr std::size_t kLinesWaiting = 16;     ///< of one client, then it is not read
 inline constexpr std::size_t kCommandsWaiting = 64;  ///< of one client for the control thread
 inline constexpr std::size_t kCommandsPerTick = 16;  ///< of all clients
-inline constexpr int kClients = 64;                  ///< of each socket, that stay connected
-inline constexpr int kGuests = 128;                  ///< beyond them, for one request each
-inline constexpr int kRequestDepth = 32;             ///< of nested arrays and objects
-inline constexpr int kRequestBatch = 256;            ///< requests in one line
+inline constexpr int kFootstepsPerTick = 64;  ///< in commands of clients, then no further one
+/// Of a variant or the path of a library: PATH_MAX of Linux.
+inline constexpr std::size_t kPathBytes = 4096;
+inline constexpr int kClients = 64;        ///< of each socket, that stay connected
+inline constexpr int kGuests = 128;        ///< beyond them, for one request each
+inline constexpr int kRequestDepth = 32;   ///< of nested arrays and objects
+inline constexpr int kRequestBatch = 256;  ///< requests in one line
 /// Bytes of answers that a client has not read; the longest answer, plugin.list, has 0.2 MB.
 inline constexpr std::size_t kUnreadBytes = 1u << 20;
 
