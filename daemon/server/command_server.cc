@@ -223,6 +223,9 @@ void CommandServer::Impl::welcome(Door& door, Session::Socket socket) {
       std::move(socket), caller,
       Session::Limits{options_.max_request, options_.max_unread_output, options_.max_line_time},
       [this](const std::shared_ptr<Session>& s, std::string_view line) { return handle(s, line); },
+      [this](const std::shared_ptr<Session>& s, std::string_view line) {
+        return handle_estop(s, line);
+      },
       [this](const std::shared_ptr<Session>& s) { forget(s); });
   Client client{session, &door, {}};
   if (door.clients >= options_.max_clients) {
@@ -307,7 +310,7 @@ void CommandServer::Impl::turn_away(Door& door) {
 }
 
 bool CommandServer::Impl::handle(const std::shared_ptr<Session>& session, std::string_view line) {
-  if (line.size() <= bounds::kEstopBytes && handle_estop(session, line)) return true;
+  if (handle_estop(session, line)) return true;
   // The last holder of the session may be an answer: it comes back to this thread to end.
   const std::shared_ptr<void> end(nullptr, [this, session](void*) mutable {
     asio::post(io_, [session = std::move(session)] {});
@@ -319,7 +322,11 @@ bool CommandServer::Impl::handle(const std::shared_ptr<Session>& session, std::s
   };
   Caller caller = session->caller();
   caller.estops = estop_->asked();
-  if (!worker_.push(caller, line, send)) return false;
+  if (!worker_.has_room(caller.connection, line.size())) return false;
+  if (line.size() <= bounds::kEstopBytes && is_batch_with_estop(line)) {
+    caller.estop = estop_->raise();
+  }
+  worker_.push(caller, line, send);
   finish_guest(session);
   return true;
 }
@@ -332,6 +339,7 @@ void CommandServer::Impl::finish_guest(const std::shared_ptr<Session>& session) 
 
 bool CommandServer::Impl::handle_estop(const std::shared_ptr<Session>& session,
                                        std::string_view line) {
+  if (line.size() > bounds::kEstopBytes) return false;
   const auto request = estop_request(line);
   if (!request) return false;
   estops_.stop([session, id = request->id, silent = request->notification](RpcResult result) {

@@ -5,9 +5,9 @@
 
 namespace gaitd::daemon {
 
-void EstopAnswers::stop(Respond respond) {
+void EstopAnswers::stop(Respond respond, std::uint64_t raised) {
   const std::int64_t read_at = flag_->present_tick();
-  const std::uint64_t number = flag_->raise();
+  const std::uint64_t number = raised != 0 ? raised : flag_->raise();
   const Clock::time_point now = Clock::now();
   const double raised_at = std::chrono::duration<double>(now.time_since_epoch()).count();
   waiting_.push_back({number, read_at, raised_at, now, std::move(respond)});

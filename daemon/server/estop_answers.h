@@ -23,7 +23,8 @@ class EstopAnswers {
   /// `flag` must outlive it.
   explicit EstopAnswers(EstopFlag* flag) : flag_(flag) {}
 
-  void stop(Respond respond);
+  /// `raised`: the number of the stop, if it has been raised already.
+  void stop(Respond respond, std::uint64_t raised = 0);
   /// Gives the answers that are due.
   void poll(Clock::time_point now);
   bool waiting() const { return !waiting_.empty(); }

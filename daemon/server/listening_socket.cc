@@ -79,7 +79,8 @@ std::unique_ptr<ListeningSocket> ListeningSocket::open(const std::string& path, 
 
 bool ListeningSocket::lock(std::string* error) {
   const std::string path = path_ + ".lock";
-  lock_fd_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kMode);
+  // For this user alone: whoever can open it can hold it, and with it keep gaitd from starting.
+  lock_fd_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kUserMode);
   if (lock_fd_ < 0) {
     *error = failed(path_, "cannot open its lock file " + path);
     return false;

@@ -15,8 +15,8 @@ RequestWorker::RequestWorker(Methods methods, const RpcLimits& limits, CommandBr
       estops_(flag),
       room_(std::move(room)) {
   // For those that come within a batch, or in a line too long for the lane of their own.
-  methods_.add_async("estop", [this](const nlohmann::json&, const Caller&, Respond respond) {
-    estops_.stop(std::move(respond));
+  methods_.add_async("estop", [this](const nlohmann::json&, const Caller& caller, Respond respond) {
+    estops_.stop(std::move(respond), caller.estop);
   });
 }
 
@@ -38,15 +38,21 @@ void RequestWorker::stop() {
   queue_.clear();
 }
 
-bool RequestWorker::push(const Caller& caller, std::string_view line, Exchange::Send send) {
+bool RequestWorker::has_room(std::uint64_t client, std::size_t bytes) {
   const std::scoped_lock lock(mutex_);
-  if (stopping_) return true;  // nobody will answer any more
-  if (!queue_.push(caller.connection, {caller, std::string(line), std::move(send), {}})) {
-    full_.insert(caller.connection);
-    return false;
-  }
+  const auto waiting = bytes_.find(client);
+  const bool room = queue_.has_room(client) &&
+                    (waiting == bytes_.end() || waiting->second + bytes <= kShareBytes);
+  if (!room) full_.insert(client);
+  return room;
+}
+
+void RequestWorker::push(const Caller& caller, std::string_view line, Exchange::Send send) {
+  const std::scoped_lock lock(mutex_);
+  if (stopping_) return;  // nobody will answer any more
+  queue_.push(caller.connection, {caller, std::string(line), std::move(send), {}});
+  bytes_[caller.connection] += line.size();
   wake_.notify_one();
-  return true;
 }
 
 void RequestWorker::retire(std::uint64_t client) {
@@ -97,12 +103,14 @@ void RequestWorker::work(std::uint64_t client, Job job) {
   } catch (...) {
     // Out of memory for one line, say: that one is lost, the others go on.
   }
-  bool has_room = false;
+  bool was_full = false;
   {
     const std::scoped_lock lock(mutex_);
-    has_room = full_.erase(client) > 0;
+    const auto bytes = bytes_.find(client);
+    if ((bytes->second -= job.line.size()) == 0) bytes_.erase(bytes);
+    was_full = full_.erase(client) > 0;
   }
-  if (has_room) room_(client);
+  if (was_full) room_(client);
 }
 
 void RequestWorker::poll() {

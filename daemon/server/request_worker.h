@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -25,12 +26,13 @@ namespace gaitd::daemon {
 /// long a request takes, an e-stop is read meanwhile. Clients take turns, request by request.
 class RequestWorker {
  public:
-  /// Lines of one client that wait; its socket is not read while they are as many.
+  /// Lines of one client that wait, and their bytes; a single line always has room.
   static constexpr std::size_t kShare = bounds::kLinesWaiting;
+  static constexpr std::size_t kShareBytes = bounds::kRequestBytes;
 
-  /// `room` is called on the worker's thread with a client that may send again after push() had no
-  /// room. `bridge` (may be null) is polled every millisecond while commands wait; it and `flag`
-  /// outlive the worker.
+  /// `room` is called on the worker's thread with a client for whom there is room again after
+  /// has_room() said no. `bridge` (may be null) is polled every millisecond while commands wait; it
+  /// and `flag` outlive the worker.
   RequestWorker(Methods methods, const RpcLimits& limits, CommandBridge* bridge, EstopFlag* flag,
                 std::function<void(std::uint64_t client)> room);
   ~RequestWorker();  ///< stops
@@ -42,9 +44,11 @@ class RequestWorker {
   /// Answers what waits with the stopping error and joins. Lines that were not begun are dropped.
   void stop();
 
-  /// [any thread] Queues a line. False: the client's share is used up; `room` will tell. `send`
-  /// takes the answer on the worker's thread.
-  bool push(const Caller& caller, std::string_view line, Exchange::Send send);
+  /// [one thread] False: the client's share is used up; `room` will tell.
+  bool has_room(std::uint64_t client, std::size_t bytes);
+  /// [the same thread] Queues a line for which there is room. `send` takes the answer on the
+  /// worker's thread.
+  void push(const Caller& caller, std::string_view line, Exchange::Send send);
   /// [any thread] Nothing more comes from this client.
   void retire(std::uint64_t client);
 
@@ -69,7 +73,8 @@ class RequestWorker {
   std::mutex mutex_;
   std::condition_variable wake_;
   FairQueue<Job> queue_{kShare};
-  std::set<std::uint64_t> full_;  // clients that push() turned away
+  std::map<std::uint64_t, std::size_t> bytes_;  // of the lines of each client that are not done
+  std::set<std::uint64_t> full_;                // clients that has_room() turned away
   bool stopping_ = false;
   std::thread thread_;
 };

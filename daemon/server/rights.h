@@ -21,7 +21,8 @@ constexpr std::string_view role_name(Role role) {
 struct Caller {
   std::uint64_t connection = 0;  ///< tells the clients apart; never used twice
   Role role = Role::kAdminister;
-  std::uint64_t estops = 0;  ///< that had been read when the request was (EstopFlag)
+  std::uint64_t estops = 0;  ///< that had been read before the request was (EstopFlag)
+  std::uint64_t estop = 0;   ///< number of the one that was raised for it as it was read; 0: none
 };
 
 struct MethodRight {

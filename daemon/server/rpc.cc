@@ -44,11 +44,20 @@ json answer(const json& id, RpcResult result) {
 // An id that comes back as it came: larger integers and fractions become another number.
 bool is_id(const json& id) { return id.is_null() || id.is_string() || id.is_number_integer(); }
 
-// The deepest nesting of arrays and objects in a text, JSON or not: looked at before parsing, so
-// that nothing deep is ever built.
-int nesting(std::string_view text) {
-  int depth = 0;
+bool is_estop(const json& request) {
+  return request.is_object() && request.value("method", json()) == "estop";
+}
+
+// The deepest nesting of arrays and objects in a text, JSON or not, and how many values it has at
+// most: looked at before parsing, so that nothing deep or large is ever built.
+struct Shape {
   int deepest = 0;
+  std::size_t values = 1;
+};
+
+Shape shape_of(std::string_view text) {
+  Shape shape;
+  int depth = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -58,12 +67,15 @@ int nesting(std::string_view text) {
     } else if (c == '"') {
       in_string = true;
     } else if (c == '[' || c == '{') {
-      deepest = std::max(deepest, ++depth);
+      shape.deepest = std::max(shape.deepest, ++depth);
+      ++shape.values;
     } else if (c == ']' || c == '}') {
       --depth;
+    } else if (c == ',') {
+      ++shape.values;
     }
   }
-  return deepest;
+  return shape;
 }
 
 // Finds a key that an object has twice: which of them is meant nobody can know. A pass of its own,
@@ -205,9 +217,15 @@ void Exchange::read(const RpcLimits& limits, std::string_view line, const Send& 
   const auto refuse = [&send](int code, const std::string& what) {
     send(error_line({code, what}));
   };
-  if (nesting(line) > limits.max_depth) {
+  const Shape shape = shape_of(line);
+  if (shape.deepest > limits.max_depth) {
     return refuse(rpc_code::kInvalidRequest, "invalid request: nested deeper than " +
                                                  std::to_string(limits.max_depth) + " levels");
+  }
+  if (shape.values > limits.max_values) {
+    return refuse(rpc_code::kInvalidRequest,
+                  "invalid request: up to " + std::to_string(shape.values) +
+                      " values, expected at most " + std::to_string(limits.max_values));
   }
   json value;
   try {
@@ -298,11 +316,19 @@ RpcError no_right(const std::string& what, Role least, const Caller& caller) {
 std::optional<EstopRequest> estop_request(std::string_view line) {
   if (line.find("\"estop\"") == std::string_view::npos) return std::nullopt;
   json value = json::parse(line, nullptr, false);
-  if (!value.is_object() || value.value("method", json()) != "estop") return std::nullopt;
+  if (!is_estop(value)) return std::nullopt;
   EstopRequest request;
   request.notification = !value.contains("id");
   if (!request.notification && is_id(value["id"])) request.id = value["id"];
   return request;
+}
+
+bool is_batch_with_estop(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos || line[first] != '[') return false;
+  if (line.find("\"estop\"") == std::string_view::npos) return false;
+  const json batch = json::parse(line, nullptr, false);
+  return batch.is_array() && std::any_of(batch.begin(), batch.end(), is_estop);
 }
 
 void Methods::add(const std::string& name, Handler handler) {

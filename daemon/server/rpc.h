@@ -72,8 +72,9 @@ class Methods {
 };
 
 struct RpcLimits {
-  int max_depth = bounds::kRequestDepth;  // of nested arrays and objects
-  int max_batch = bounds::kRequestBatch;  // requests in one line
+  int max_depth = bounds::kRequestDepth;            // of nested arrays and objects
+  int max_batch = bounds::kRequestBatch;            // requests in one line
+  std::size_t max_values = bounds::kRequestValues;  // JSON values in one line
 };
 
 /// The requests of one line and their answers.
@@ -118,6 +119,9 @@ struct EstopRequest {
   bool notification = false;
 };
 std::optional<EstopRequest> estop_request(std::string_view line);
+
+/// Whether a line is a batch with an e-stop in it.
+bool is_batch_with_estop(std::string_view line);
 
 /// The refusal of `what`, which needs the role `least`.
 RpcError no_right(const std::string& what, Role least, const Caller& caller);

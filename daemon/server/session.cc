@@ -11,36 +11,74 @@ namespace gaitd::daemon {
 
 using boost::system::error_code;
 
-Session::Session(Socket socket, const Caller& caller, Limits limits, OnLine on_line, OnEnd on_end)
+Session::Session(Socket socket, const Caller& caller, Limits limits, OnLine on_line,
+                 OnUrgent on_urgent, OnEnd on_end)
     : socket_(std::move(socket)),
       caller_(caller),
       limits_(limits),
       on_line_(std::move(on_line)),
+      on_urgent_(std::move(on_urgent)),
       on_end_(std::move(on_end)),
       line_timer_(socket_.get_executor()) {}
 
 void Session::read() {
-  socket_.async_read_some(boost::asio::buffer(chunk_), [self = shared_from_this()](
-                                                           error_code error, std::size_t size) {
-    if (!self->reading_) return;
-    if (error) {
-      if (!self->input_.empty()) {
-        self->send(error_line({rpc_code::kParseError,
-                               "the connection ended within a request; end it with a newline"}));
-      }
-      return self->end_reading();
-    }
-    const std::size_t searched = self->input_.size();
-    self->input_.append(self->chunk_.data(), size);
-    self->take_lines(searched);
-    if (self->reading_ && !self->paused_) self->read();
-  });
+  under_way_ = true;
+  socket_.async_read_some(boost::asio::buffer(chunk_),
+                          [self = shared_from_this()](error_code error, std::size_t size) {
+                            self->under_way_ = false;
+                            if (!self->reading_) return;
+                            if (error) {
+                              self->ended_ = true;
+                              return self->take_end();
+                            }
+                            const std::size_t searched = self->input_.size();
+                            self->input_.append(self->chunk_.data(), size);
+                            if (self->paused_) {
+                              self->take_urgent();
+                            } else {
+                              self->take_lines(searched);
+                            }
+                            self->read_on();
+                          });
+}
+
+void Session::read_on() {
+  const bool room = !paused_ || input_.size() <= limits_.max_line;
+  if (reading_ && !ended_ && !under_way_ && room) read();
 }
 
 void Session::resume() {
   if (!std::exchange(paused_, false) || !reading_) return;
   take_lines(0);
-  if (reading_ && !paused_) read();
+  if (ended_) return take_end();
+  read_on();
+}
+
+// E-stops among the lines that wait.
+void Session::take_urgent() {
+  const auto self = shared_from_this();
+  for (std::size_t end = 0; reading_ && (end = input_.find('\n', looked_)) != std::string::npos;) {
+    if (!on_urgent_(self, std::string_view(input_).substr(looked_, end - looked_))) {
+      looked_ = end + 1;
+    } else if (reading_) {  // that was not its last word
+      input_.erase(looked_, end + 1 - looked_);
+    }
+  }
+}
+
+// What a client sent last may lack its newline. Lines that wait are still taken.
+void Session::take_end() {
+  if (!reading_) return;
+  const auto self = shared_from_this();
+  const std::size_t begin = input_.rfind('\n') == std::string::npos ? 0 : input_.rfind('\n') + 1;
+  const bool unfinished = begin < input_.size();
+  if (unfinished && on_urgent_(self, std::string_view(input_).substr(begin))) {
+    if (reading_) input_.erase(begin);
+  } else if (unfinished && !paused_) {
+    send(error_line(
+        {rpc_code::kParseError, "the connection ended within a request; end it with a newline"}));
+  }
+  if (!paused_) end_reading();
 }
 
 // Handles every complete line of the input; the first `searched` bytes hold no newline.
@@ -55,7 +93,8 @@ void Session::take_lines(std::size_t searched) {
       paused_ = true;
       line_timer_.cancel();
       input_.erase(0, begin);
-      return;
+      looked_ = 0;
+      return take_urgent();
     }
     begin = end + 1;
     if (line.size() > limits_.max_line) break;
@@ -135,11 +174,13 @@ void Session::close() {
   }
 }
 
-// The queue stays as it is: a write that is under way may still use its front.
+// The queue stays as it is: a write that is under way may still use its front. Lines that wait are
+// still taken.
 void Session::drop() {
   error_code ignored;
   socket_.close(ignored);
-  end_reading();
+  ended_ = true;
+  if (!paused_) end_reading();
 }
 
 }  // namespace gaitd::daemon

@@ -28,13 +28,17 @@ class Session : public std::enable_shared_from_this<Session> {
     std::size_t max_output = 0;                  // bytes that the client has not read yet
     std::chrono::milliseconds max_line_time{0};  // from the first byte of a line to its newline
   };
-  /// False: there is no room for this line now; nothing is read until resume(), then it comes
-  /// again.
+  /// False: there is no room for this line now; it comes again after resume(). Until then only
+  /// e-stops are looked for in what the client sends, as much of it as one line may have.
   using OnLine = std::function<bool(const std::shared_ptr<Session>&, std::string_view line)>;
+  /// Of a line that has to wait, or that a client left without its end when it went: true if it was
+  /// an e-stop, and is done with.
+  using OnUrgent = std::function<bool(const std::shared_ptr<Session>&, std::string_view line)>;
   /// Nothing more will be read.
   using OnEnd = std::function<void(const std::shared_ptr<Session>&)>;
 
-  Session(Socket socket, const Caller& caller, Limits limits, OnLine on_line, OnEnd on_end);
+  Session(Socket socket, const Caller& caller, Limits limits, OnLine on_line, OnUrgent on_urgent,
+          OnEnd on_end);
 
   const Caller& caller() const { return caller_; }
   void start() { read(); }
@@ -48,7 +52,10 @@ class Session : public std::enable_shared_from_this<Session> {
 
  private:
   void read();
+  void read_on();
   void take_lines(std::size_t searched);
+  void take_urgent();
+  void take_end();
   void watch_unfinished_line();
   void end_reading();
   void write();
@@ -58,14 +65,18 @@ class Session : public std::enable_shared_from_this<Session> {
   const Caller caller_;
   Limits limits_;
   OnLine on_line_;
+  OnUrgent on_urgent_;
   OnEnd on_end_;
   std::array<char, 16384> chunk_;
-  std::string input_;  // the line that is not finished yet
+  std::string input_;       // the line that is not finished yet; paused: before it those that wait
+  std::size_t looked_ = 0;  // paused: bytes of the input that hold no e-stop
   boost::asio::steady_timer line_timer_;
   std::deque<std::string> output_;
   std::size_t output_bytes_ = 0;
   bool reading_ = true;
   bool paused_ = false;
+  bool under_way_ = false;  // a read
+  bool ended_ = false;      // the client sends nothing more
   bool closing_ = false;
 };
 

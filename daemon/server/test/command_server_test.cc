@@ -302,6 +302,103 @@ TEST_F(Server, AnEstopWaitsForNoOtherRequest) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(busy.answer()["result"], "done");
 }
 
+TEST_F(Server, AnEstopPassesWhatItsOwnClientHasWaiting) {
+  hanging_ = true;
+  start();
+  RawClient client(directory_.file());
+  const int lines = static_cast<int>(bounds::kLinesWaiting) + 20;
+  for (int i = 0; i < lines; ++i) client.send(std::string(kSlow) + "\n");
+  wait_for_hang();
+  client.send(std::string(kEstop) + "\n");
+  EXPECT_EQ(client.answer()["id"], 9);
+  client.send("[" + std::string(kStatus) + "]\n");
+  hanging_ = false;
+  for (int i = 0; i < lines; ++i) EXPECT_EQ(client.answer()["result"], "done");
+  EXPECT_TRUE(client.answer().is_array());
+}
+
+TEST_F(Server, AnEstopInABatchIsRaisedWhenItIsRead) {
+  hanging_ = true;
+  start();
+  RawClient client(directory_.file());
+  client.send(std::string(kSlow) + "\n");
+  wait_for_hang();
+  client.send("[" + std::string(kStatus) + "," + kEstop + "]\n");
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (estop_.asked() == 0 && std::chrono::steady_clock::now() < until) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(estop_.asked(), 1u);
+  hanging_ = false;
+  EXPECT_EQ(client.answer()["result"], "done");
+  const json answers = client.answer();
+  ASSERT_EQ(answers.size(), 2u);
+  EXPECT_EQ(answers[1]["result"]["accepted"], true);
+  EXPECT_EQ(estop_.asked(), 1u);  // its turn does not stop the robot once more
+  // Even one that is refused as a whole.
+  client.send("[" + std::string(kEstop) + R"(,{"a":1,"a":2}])" + "\n");
+  EXPECT_EQ(client.answer()["error"]["code"], -32600);
+  EXPECT_EQ(estop_.asked(), 2u);
+}
+
+TEST_F(Server, AnEstopWithoutANewlineIsTakenWhenItsClientEnds) {
+  start();
+  RawClient client(directory_.file());
+  client.send(kEstop);
+  client.end_sending();
+  EXPECT_EQ(client.answer()["result"]["accepted"], true);
+  EXPECT_TRUE(client.ended());
+  // Its sender waits for no answer.
+  RawClient(directory_.file()).send(kEstop);
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (estop_.asked() < 2 && std::chrono::steady_clock::now() < until) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(estop_.asked(), 2u);
+}
+
+TEST_F(Server, WhatWaitsIsCarriedOutThoughItsClientHasGone) {
+  hanging_ = true;
+  start();
+  {
+    RawClient client(directory_.file());
+    client.send(std::string(kSlow) + "\n");
+    wait_for_hang();
+    for (std::size_t i = 0; i < 3 * bounds::kLinesWaiting; ++i) {
+      client.send(std::string(kArm) + "\n");
+    }
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  hanging_ = false;
+  for (int i = 0; i < 200 && taken_ < static_cast<int>(3 * bounds::kLinesWaiting); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(taken_, static_cast<int>(3 * bounds::kLinesWaiting));
+  expect_alive();
+}
+
+TEST_F(Server, HoldsSoManyBytesOfAClientAndNoMore) {
+  hanging_ = true;
+  start();
+  RawClient client(directory_.file());
+  client.send(std::string(kSlow) + "\n");
+  wait_for_hang();
+  const std::string line = kStatus + std::string(100000, ' ') + "\n";
+  std::atomic<int> sent{0};
+  std::thread sender([&] {
+    for (; sent < 40 && client.send(line); ++sent) {
+    }
+  });
+  for (int last = -1; last != sent; std::this_thread::sleep_for(std::chrono::milliseconds(100))) {
+    last = sent;
+  }
+  EXPECT_LT(sent, 12);  // two for the worker, three for the session, and what the socket holds
+  hanging_ = false;
+  EXPECT_EQ(client.answer()["result"], "done");
+  for (int i = 0; i < 40; ++i) EXPECT_TRUE(client.answer()["result"].is_object()) << i;
+  sender.join();
+}
+
 TEST_F(Server, AnEstopIsNeverRefusedForItsForm) {
   start();
   RawClient client(directory_.file());

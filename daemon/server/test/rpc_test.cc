@@ -88,6 +88,7 @@ TEST_F(Rpc, AKeyThatStandsTwiceIsRefused) {
 
 TEST_F(Rpc, ALargeLineTakesNoLongTime) {
   // A megabyte of the smallest objects there are: a square of their number would take minutes.
+  limits_.max_values = 1000000;
   std::string line = R"({"jsonrpc":"2.0","id":1,"method":"echo","params":[{})";
   for (int i = 0; i < 300000; ++i) line += ",{}";
   EXPECT_EQ(one(line + "]}")["result"].size(), 300001u);
@@ -178,6 +179,24 @@ TEST_F(Rpc, DeepNestingIsRefusedBeforeParsing) {
   const json answer = one(R"({"jsonrpc":"2.0","id":1,"method":"echo","params":["\")" +
                           std::string(100, '[') + R"("]})");
   EXPECT_TRUE(answer.contains("result"));
+}
+
+TEST_F(Rpc, TooManyValuesAreRefusedBeforeParsing) {
+  const auto echo = [this](std::size_t values) {
+    std::string line = R"({"jsonrpc":"2.0","id":1,"method":"echo","params":[[])";
+    for (std::size_t i = 1; i < values; ++i) line += ",[]";
+    return one(line + "]}");
+  };
+  EXPECT_EQ(echo(bounds::kRequestValues / 2 - 10)["result"].size(),
+            bounds::kRequestValues / 2 - 10);
+  const json answer = echo(bounds::kRequestValues);
+  EXPECT_EQ(answer["error"]["code"], -32600);
+  EXPECT_NE(answer["error"]["message"].get<std::string>().find("values, expected at most"),
+            std::string::npos);
+  // Commas in a text separate nothing.
+  EXPECT_TRUE(one(R"({"jsonrpc":"2.0","id":1,"method":"echo","params":[")" +
+                  std::string(2 * bounds::kRequestValues, ',') + R"("]})")
+                  .contains("result"));
 }
 
 TEST_F(Rpc, AnswersThatAreNoUtf8AreStillJson) {
@@ -285,6 +304,18 @@ TEST(EstopRequest, IsAnyObjectThatAsksForIt) {
   for (const char* line : {"", "estop", "\"estop\"", R"({"method":"status","params":["estop"]})",
                            R"([{"method":"estop"}])", R"({"method":"estop")"}) {
     EXPECT_FALSE(estop_request(line)) << line;
+  }
+}
+
+TEST(EstopRequest, IsFoundInABatch) {
+  for (const char* line : {R"([{"method":"estop"}])", R"( [1, {"id":1,"method":"estop"}, []])",
+                           R"([{"method":"status"},{"method":"estop","params":7}])"}) {
+    EXPECT_TRUE(is_batch_with_estop(line)) << line;
+  }
+  for (const char* line :
+       {"", "[", "[]", R"({"method":"estop"})", R"(["estop"])",
+        R"([{"method":"status","params":["estop"]}])", R"([{"method":"estop"})"}) {
+    EXPECT_FALSE(is_batch_with_estop(line)) << line;
   }
 }
 

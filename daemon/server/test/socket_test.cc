@@ -71,6 +71,9 @@ TEST(Listening, HasMode0660AndGoesAwayWithItsOwner) {
   ASSERT_EQ(stat(directory.file().c_str(), &info), 0);
   EXPECT_TRUE(S_ISSOCK(info.st_mode));
   EXPECT_EQ(info.st_mode & 0777, 0660u);
+  // Who can open the lock can hold it, and then no gaitd starts here.
+  ASSERT_EQ(stat((directory.file() + ".lock").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0600u);
   socket.reset();
   EXPECT_FALSE(std::filesystem::exists(directory.file()));
 }
