@@ -24,6 +24,7 @@
 #include "cli/campaign_summary.h"
 #include "cli/failure.h"
 #include "cli/print.h"
+#include "daemon/config/daemon_config.h"
 #include "daemon/config/library_paths.h"
 
 namespace gaitd::cli {
@@ -71,19 +72,40 @@ int take_folder(const fs::path& folder, const std::string& text, std::string* er
   return lock;
 }
 
-// The first library that the campaign names by its path, as KEY=PATH; empty if there is none. Its
-// settings reach gaitd as --set, where nobody could tell whose word they are.
-std::string library_of(const Campaign& campaign) {
+// KEY=VALUE of everything that a run may get from the file.
+std::vector<std::string> all_assignments(const Campaign& campaign) {
+  std::vector<std::string> all;
   for (const CampaignSetting& setting : campaign.settings) {
     for (const std::string& value : setting.values) {
-      daemon::Settings settings;
-      daemon::Issues unreadable;  // gaitd will say so
-      for (const std::string& assignment : assignments(campaign, setting.key, value)) {
-        settings.set_assignment(assignment, &unreadable);
+      for (std::string& one : assignments(campaign, setting.key, value)) {
+        all.push_back(std::move(one));
       }
-      for (const daemon::Settings::Entry& entry : daemon::library_paths(settings)) {
-        return entry.key + "=" + entry.value->text;
-      }
+    }
+  }
+  for (const CampaignDraw& draw : campaign.draws) {
+    for (const std::string& value : draw.choices) all.push_back(draw.key + "=" + value);
+  }
+  return all;
+}
+
+// Why the campaign may not be played; empty if it may. Its settings reach gaitd as --set, where
+// nobody could tell whose word they are.
+std::string what_no_file_may_say(const Campaign& campaign, bool trust) {
+  for (const std::string& assignment : all_assignments(campaign)) {
+    daemon::Settings settings;
+    daemon::Issues unreadable;  // gaitd will say so
+    settings.set_assignment(assignment, &unreadable);
+    for (const daemon::Settings::Entry& entry : daemon::library_paths(settings)) {
+      if (trust) continue;
+      return entry.key + "=" + entry.value->text +
+             ": a file may not name code to run; name an installed variant, give the path with "
+             "--set, or say --trust if you know the library";
+    }
+    for (const daemon::Settings::Entry& entry : settings.effective()) {
+      if (!daemon::is_own_key(entry.key)) continue;
+      return entry.key +
+             ": a file may not say where gaitd writes, listens and finds plugins; remove it there, "
+             "or give it with --set";
     }
   }
   return "";
@@ -128,14 +150,8 @@ int run(const Context& context, const Arguments& arguments) {
   daemon::Issues issues;
   std::optional<Campaign> campaign = load_campaign(arguments.file, &issues);
   if (!campaign) return fail(context, kFailed, "campaign", issues.error_text());
-  if (!arguments.trust) {
-    const std::string path = library_of(*campaign);
-    if (!path.empty()) {
-      return fail(context, kFailed, "campaign",
-                  arguments.file + ": " + path +
-                      ": a file may not name code to run; name an installed variant, give the "
-                      "path with --set, or say --trust if you know the library");
-    }
+  if (const std::string why = what_no_file_may_say(*campaign, arguments.trust); !why.empty()) {
+    return fail(context, kFailed, "campaign", arguments.file + ": " + why);
   }
   std::string error;
   std::vector<std::string> settings;  // those that are no settings of the campaign

@@ -67,6 +67,20 @@ for command in "log info" "log export" doctor; do
   [[ ! -e $GAITD_TEST_MARK ]] || fail "gaitctl $command loaded the library of the log"
 done
 
+# Drawn by a campaign, it is the word of the file as well.
+printf 'schema: gaitd.campaign/1\nname: d\nscenarios: [plain.yaml]\ndraw: {toe_off.variant: {choose: [%s]}}\n' \
+  "$evil" >d.yaml
+refused --trust gaitctl campaign d.yaml -o d
+
+# No file says where gaitd writes and listens.
+echo precious >mine.txt
+for key in log.file socket; do
+  scenario places places "set: {$key: $PWD/mine.txt}"
+  refused "$key: only gaitd.yaml" gaitd --scenario "$PWD/places.yaml" --clock lockstep
+  refused "$key: only gaitd.yaml" gaitctl run places.yaml --log places.mcap
+done
+[[ $(cat mine.txt) == precious ]] || fail "a scenario overwrote a file"
+
 # A name leads to no other folder.
 mkdir logs
 scenario ../x up

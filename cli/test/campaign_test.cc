@@ -254,6 +254,25 @@ TEST_F(CampaignTest, ANameMayNotHideALibrary) {
   EXPECT_HAS(outcome.err, "a file may not name code to run");
 }
 
+TEST_F(CampaignTest, WhatIsDrawnMayBeNoLibraryEither) {
+  campaign("scenarios: [" + file("good.yaml") +
+           "]\ndraw: {toe_off.variant: {choose: [never, ./evil.so]}}\n");
+  const Outcome outcome = run();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_HAS(outcome.err, "toe_off.variant=./evil.so: a file may not name code to run");
+}
+
+TEST_F(CampaignTest, SaysNotWhereGaitdWrites) {
+  for (const char* text :
+       {"set: {log.file: [/tmp/x]}", "set: {log: [{directory: /tmp}]}",
+        "set: {class: {easy: {socket: /tmp/x}}}", "draw: {plugins.folders: {choose: [[/tmp]]}}"}) {
+    campaign("scenarios: [" + file("good.yaml") + "]\n" + text + "\n");
+    const Outcome outcome = run();
+    EXPECT_EQ(outcome.exit_code, 1) << text;
+    EXPECT_HAS(outcome.err, "a file may not say where gaitd writes");
+  }
+}
+
 TEST_F(CampaignTest, SetLeavesOneOfTheValues) {
   campaign("scenarios: [" + file("good.yaml") +
            "]\nset:\n  x: [1, 2, 3]\n  class: {easy: {y: 1}, hard: {y: 2}}\n"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/config/daemon_config.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -15,6 +16,8 @@ constexpr std::array<std::string_view, 2> kClocks = {"realtime", "lockstep"};
 constexpr std::array<std::string_view, 3> kProfiles = {"simulation", "hardware", "auto"};
 constexpr std::array<std::string_view, 3> kOverrunPolicies = {"skip", "catch_up", "stop"};
 constexpr std::array<std::string_view, 2> kCompressions = {"none", "zstd"};
+constexpr std::array<const char*, 4> kOwnKeys = {"plugins.folders", "log.file", "log.directory",
+                                                 "socket"};
 constexpr int kMaxProcessor = 1023;
 constexpr std::size_t kMaxPluginFolders = 100;
 
@@ -97,10 +100,8 @@ void read_log(SettingReader* reader, Issues* issues, LogConfig* log) {
   reader->integer("log.keep", 0, 100000, &log->keep);
 }
 
-void read_plugin_folders(SettingReader* reader, Settings* settings, Issues* issues,
-                         std::vector<std::string>* folders) {
+void read_plugin_folders(SettingReader* reader, Issues* issues, std::vector<std::string>* folders) {
   constexpr const char* kKey = "plugins.folders";
-  settings->reserve(kKey);
   for (const NodePtr& item : reader->list(kKey, kMaxPluginFolders)) {
     std::error_code error;
     if (item->text.starts_with('/') && std::filesystem::is_directory(item->text, error)) {
@@ -113,6 +114,10 @@ void read_plugin_folders(SettingReader* reader, Settings* settings, Issues* issu
 }
 
 }  // namespace
+
+bool is_own_key(std::string_view key) {
+  return std::find(kOwnKeys.begin(), kOwnKeys.end(), key) != kOwnKeys.end();
+}
 
 bool load_config_file(const std::string& file, Settings* settings, Issues* issues) {
   Issues found;
@@ -132,6 +137,7 @@ bool load_config_file(const std::string& file, Settings* settings, Issues* issue
 
 DaemonConfig read_daemon_config(Settings* settings, Issues* issues) {
   DaemonConfig config;
+  for (const char* key : kOwnKeys) settings->reserve(key);
   SettingReader reader(settings, issues);
   reader.text("backend", false, &config.backend);
   reader.text("robot", false, &config.robot);
@@ -148,7 +154,7 @@ DaemonConfig read_daemon_config(Settings* settings, Issues* issues) {
   read_realtime(&reader, issues, &config.realtime);
   read_log(&reader, issues, &config.log);
   reader.text("socket", true, &config.socket);
-  read_plugin_folders(&reader, settings, issues, &config.plugin_folders);
+  read_plugin_folders(&reader, issues, &config.plugin_folders);
   return config;
 }
 

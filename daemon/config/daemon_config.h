@@ -65,6 +65,10 @@ struct DaemonConfig {
   std::vector<std::string> plugin_folders;
 };
 
+// Where gaitd writes, listens and finds plugins: not for the files of others, scenarios, robots and
+// campaigns, to say.
+bool is_own_key(std::string_view key);
+
 // Puts a gaitd.yaml (schema gaitd.config/1) into the settings. False when it cannot be read.
 bool load_config_file(const std::string& file, Settings* settings, Issues* issues);
 

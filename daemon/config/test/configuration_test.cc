@@ -116,6 +116,24 @@ TEST(DaemonConfig, TakesFoldersOfPluginsByTheirAbsolutePath) {
   }
 }
 
+TEST(DaemonConfig, WhereGaitdWritesIsNotForScenariosAndRobotsToSay) {
+  for (const char* key : {"log.file", "log.directory", "socket", "plugins.folders"}) {
+    EXPECT_TRUE(is_own_key(key)) << key;
+    for (const SettingSource source :
+         {SettingSource::kRobot, SettingSource::kProfile, SettingSource::kScenario}) {
+      Settings settings;
+      Issues issues;
+      settings.set(source, key, make_scalar("/tmp/x", {"foreign.yaml", 3}));
+      read_daemon_config(&settings, &issues);
+      settings.report_unknown(&issues);
+      EXPECT_NE(issues.error_text().find("only gaitd.yaml and the command line may set this key"),
+                std::string::npos)
+          << key << issues.error_text();
+    }
+  }
+  EXPECT_FALSE(is_own_key("log.enabled"));
+}
+
 TEST(DaemonConfig, RefusesAFileOfAnotherSchema) {
   TemporaryFolder folder;
   for (const char* text : {"backend: simbody\n", "schema: gaitd.robot/1\n", "[1, 2]\n", ""}) {
