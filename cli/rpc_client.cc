@@ -19,8 +19,9 @@ namespace {
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-// A connected descriptor, or -1 with errno.
-int connect_to(const std::string& path) {
+// A connected descriptor that waits no longer than `patience` to be let in or to send, or -1 with
+// errno.
+int connect_to(const std::string& path, std::chrono::milliseconds patience) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof(address.sun_path)) {
@@ -30,6 +31,8 @@ int connect_to(const std::string& path) {
   path.copy(address.sun_path, sizeof(address.sun_path) - 1);
   const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (fd < 0) return -1;
+  const timeval limit{patience.count() / 1000, patience.count() % 1000 * 1000};
+  setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof(limit));
   if (connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) return fd;
   const int error = errno;
   close(fd);
@@ -50,6 +53,10 @@ std::string why_not(const std::string& path, int error) {
     case EACCES:
     case EPERM:
       return out + "permission denied: be root or a member of the group that owns it (gaitd)";
+    case EAGAIN:
+      return out +
+             "somebody listens there and lets nobody in: gaitd hangs, or too many knock; see "
+             "journalctl -u gaitd; to stop the robot use its own e-stop";
     case ENAMETOOLONG:
       return out + "the path is too long for a socket";
     default:
@@ -112,11 +119,11 @@ std::unique_ptr<RpcClient> RpcClient::connect(const Destination& destination, st
   for (const std::string& place : destination.paths) {
     if (!further) break;
     for (const std::string& path : sockets_of(place, destination.role)) {
-      const int fd = connect_to(path);
+      const int fd = connect_to(path, destination.patience);
       if (fd < 0) {
         // The other sockets of a place tell nothing more where its gaitd is not.
         if (path == place || errno != ENOENT) reasons += why_not(path, errno);
-        further = further && errno != EACCES && errno != EPERM;
+        further = further && errno != EACCES && errno != EPERM && errno != EAGAIN;
         continue;
       }
       const std::string stranger = destination.given ? "" : why_not_believed(fd, path);
@@ -149,6 +156,9 @@ daemon::RpcResult RpcClient::call(const std::string& method, const json& params,
   const Clock::time_point deadline = Clock::now() + timeout;
   if (!send_all(request.dump(-1, ' ', false, json::error_handler_t::replace) + "\n")) {
     // The daemon may have said why before it closed.
+    if (errno == EAGAIN) {
+      return broken("gaitd does not read what is sent to it; it may hang, see journalctl -u gaitd");
+    }
     if (errno != EPIPE && errno != ECONNRESET) {
       return broken(std::string("cannot send to gaitd: ") + std::strerror(errno));
     }

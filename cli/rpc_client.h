@@ -22,6 +22,7 @@ struct Destination {
   /// root, of this user or, in the directory of the system, of the user gaitd is believed.
   bool given = false;
   daemon::Role role = daemon::Role::kCommand;  ///< the least that the request needs
+  std::chrono::milliseconds patience{2000};    ///< with one who listens and takes nothing
 
   /// `socket` of the command line; empty: the usual places.
   static Destination of(const std::string& socket, daemon::Role role);
@@ -32,8 +33,8 @@ class RpcClient {
  public:
   /// Connects to the first place where a daemon listens, by a socket whose role is enough if this
   /// user may use one. It looks no further where somebody listens whom this user may not speak to,
-  /// or who is not to be believed. Null if there is none: `error` names the places, why each
-  /// failed, and how to start a daemon.
+  /// or who is not to be believed, or who takes nobody in. Null if there is none: `error` names the
+  /// places, why each failed, and how to start a daemon.
   static std::unique_ptr<RpcClient> connect(const Destination& destination, std::string* error);
   ~RpcClient();
   RpcClient(const RpcClient&) = delete;

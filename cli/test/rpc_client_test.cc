@@ -86,6 +86,29 @@ TEST_F(Client, ReportsWhatIsNoAnswer) {
             "");
 }
 
+TEST_F(Client, DoesNotWaitForOneWhoLetsNobodyIn) {
+  const int listener = socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  workspace_.file("s").copy(address.sun_path, sizeof(address.sun_path) - 1);
+  ASSERT_EQ(bind(listener, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+  ASSERT_EQ(listen(listener, 0), 0);
+  std::string error;
+  const Destination destination{
+      {workspace_.file("s")}, true, daemon::Role::kCommand, milliseconds(100)};
+  const auto waiting = RpcClient::connect(destination, &error);  // in the queue
+  ASSERT_TRUE(waiting) << error;
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_FALSE(RpcClient::connect(destination, &error));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, milliseconds(2000));
+  EXPECT_NE(error.find("lets nobody in"), std::string::npos) << error;
+  // Nor for one who reads nothing.
+  const daemon::RpcResult result =
+      waiting->call("status", std::string(4 << 20, 'x'), milliseconds(300));
+  EXPECT_NE(message(result).find("does not read"), std::string::npos) << message(result);
+  close(listener);
+}
+
 // An impostor needs another user: only root can make one here.
 class Stranger : public Client {
  protected:
