@@ -33,13 +33,30 @@ LibraryFolders::LibraryFolders(const std::vector<fs::path>& folders) {
   }
 }
 
+// What everybody may write to is nobody's word. Empty if `file` and the folders above it, up to the
+// one that is allowed, are not.
+std::string LibraryFolders::writable_by_all(const fs::path& file) const {
+  for (fs::path at = file; lies_in(at, real_folders_); at = at.parent_path()) {
+    std::error_code failed;
+    const auto mode = fs::status(at, failed).permissions();
+    if (failed || (mode & fs::perms::others_write) != fs::perms::none) return at.string();
+  }
+  return "";
+}
+
 std::optional<fs::path> LibraryFolders::admit(const std::string& file, std::string* error) const {
   const fs::path normal = fs::path(file).lexically_normal();
   std::error_code failed;
   fs::path real;
   if (lies_in(normal, folders_) || lies_in(normal, real_folders_)) {
     real = fs::canonical(file, failed);
-    if (!failed && lies_in(real, real_folders_)) return real;
+    if (!failed && lies_in(real, real_folders_)) {
+      const std::string open = writable_by_all(real);
+      if (open.empty()) return real;
+      *error = file + ": expected a library that not everybody can change, but " + open +
+               " is writable by all; take that right away (chmod o-w) when you have looked at it";
+      return std::nullopt;
+    }
   }
   *error = file + ": ";
   if (failed) {

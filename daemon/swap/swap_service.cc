@@ -70,7 +70,8 @@ void SwapService::add_methods(Methods* methods) {
           const std::string to = text("to");
           const auto layer = layer_from_name(text("layer"));
           if (!layer || *layer >= GAITD_LAYER_COUNT || params.size() != (rollback ? 1 : 2) ||
-              to.empty() != rollback) {
+              to.empty() != rollback || to.size() >= bounds::kPathBytes ||
+              to.find('\0') != std::string::npos) {
             std::string layers;
             for (const std::string_view one : sdk::kLayerNames) {
               layers += (layers.empty() ? "" : ", ") + std::string(one);

@@ -54,6 +54,18 @@ TEST_F(Folders, RefusesWhatLiesElsewhere) {
   EXPECT_FALSE(admit(LibraryFolders(), top_ / "allowed/a.so"));
 }
 
+TEST_F(Folders, RefusesWhatEverybodyMayChange) {
+  const LibraryFolders folders({top_ / "allowed"});
+  for (const char* open : {"allowed", "allowed/deep", "allowed/deep/b.so"}) {
+    fs::permissions(top_ / open, fs::perms::others_write, fs::perm_options::add);
+    EXPECT_FALSE(admit(folders, top_ / "allowed/deep/b.so")) << open;
+    EXPECT_NE(error_.find((top_ / open).string() + " is writable by all"), std::string::npos)
+        << error_;
+    fs::permissions(top_ / open, fs::perms::others_write, fs::perm_options::remove);
+    EXPECT_TRUE(admit(folders, top_ / "allowed/deep/b.so")) << error_;
+  }
+}
+
 TEST_F(Folders, SaysWhatIsNotThere) {
   EXPECT_FALSE(admit(LibraryFolders({top_ / "allowed"}), top_ / "allowed/none.so"));
   EXPECT_NE(error_.find("No such file"), std::string::npos) << error_;
