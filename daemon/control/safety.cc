@@ -178,7 +178,9 @@ void Safety::clamp(double dt, const TickData& d, GaitdJointCommands& commands) {
     if (rate > fastest) torque = std::min(torque, 0.0);
     if (rate < -fastest) torque = std::max(torque, 0.0);
     c.torque = torque;
-    const double margin = limits_[Limit::kPositionMargin];
+    // Of a joint that has less room than two margins the middle is left.
+    const double margin = std::min(limits_[Limit::kPositionMargin],
+                                   0.5 * (joint.position_max - joint.position_min));
     c.position = std::clamp(c.position, joint.position_min + margin, joint.position_max - margin);
     c.velocity = std::clamp(c.velocity, -fastest, fastest);
     // While readying the drives make the torque: what they make now is where control takes over.

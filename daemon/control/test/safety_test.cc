@@ -369,6 +369,24 @@ TEST(Safety, ReferencesAreClampedInsideTheJointLimits) {
   }
 }
 
+TEST(Safety, AMarginThatLeavesAJointNoRoomLeavesItsMiddle) {
+  Bench b({{Limit::kPositionMargin, 0.5}});
+  b.stand();
+  for (const double far : {-100.0, 0.0, 100.0}) {
+    for (int i = 0; i < atlas().joint_count; ++i) b.data->wbc.commands.joints[i].position = far;
+    b.tick();
+    int narrow = 0;
+    for (int i = 0; i < atlas().joint_count; ++i) {
+      const GaitdJoint& joint = atlas().joints[i];
+      const double middle = 0.5 * (joint.position_min + joint.position_max);
+      const double room = std::max(0.0, 0.5 * (joint.position_max - joint.position_min) - 0.5);
+      EXPECT_NEAR(b.command(i).position, std::clamp(far, middle - room, middle + room), 1e-12);
+      narrow += room == 0.0 ? 1 : 0;
+    }
+    EXPECT_GT(narrow, 0);
+  }
+}
+
 TEST(Safety, ControlTakesOverFromTheTorquesThatTheDrivesMade) {
   Bench b;
   b.safety.set_parameter(static_cast<int>(SafetyParameter::kTorqueRate), 1.0);
