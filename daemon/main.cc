@@ -4,6 +4,7 @@
 #include <spdlog/async.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
@@ -20,35 +21,38 @@ namespace {
 
 // SIGINT, SIGTERM and SIGHUP (the terminal has gone) are blocked in every thread and waited for in
 // one of their own. That somebody does not read what gaitd says is no reason to end.
-class StopSignals {
+sigset_t block_stop_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, signal);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files ends the log, not the robot
+  return set;
+}
+
+// Calls a function for each of those signals, on a thread that ends with it.
+class SignalThread {
  public:
-  StopSignals() {
-    sigemptyset(&set_);
-    sigaddset(&set_, SIGINT);
-    sigaddset(&set_, SIGTERM);
-    sigaddset(&set_, SIGHUP);
-    pthread_sigmask(SIG_BLOCK, &set_, nullptr);
-    std::signal(SIGPIPE, SIG_IGN);
-    std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files ends the log, not the robot
-  }
   template <class Function>
-  void on_signal(Function function) {
-    thread_ = std::thread([this, function] {
-      const timespec poll{0, 100'000'000};
-      while (!done_) {
-        if (sigtimedwait(&set_, nullptr, &poll) > 0) function();
-      }
-    });
-  }
-  ~StopSignals() {
+  SignalThread(const sigset_t& set, Function function)
+      : thread_([this, set, function] {
+          const timespec poll{0, 100'000'000};
+          while (!done_) {
+            const int signal = sigtimedwait(&set, nullptr, &poll);
+            if (signal > 0) function(signal);
+          }
+        }) {}
+  ~SignalThread() {
     done_ = true;
-    if (thread_.joinable()) thread_.join();
+    thread_.join();
   }
+  SignalThread(const SignalThread&) = delete;
+  SignalThread& operator=(const SignalThread&) = delete;
 
  private:
-  sigset_t set_;
-  std::thread thread_;
   std::atomic<bool> done_{false};
+  std::thread thread_;
 };
 
 // Nobody who has something to say waits for the terminal or the journal: a thread of its own writes
@@ -84,7 +88,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
-  StopSignals signals;
+  const sigset_t stop_signals = block_stop_signals();
   const Messages messages;
   try {
     gaitd::daemon::Issues issues;
@@ -93,12 +97,18 @@ int main(int argc, char** argv) {
       return 1;
     }
     gaitd::daemon::Application application(options);
+    // Until the backend is started no motor is on, and a disk or a library may take any time.
+    std::atomic<bool> prepared{false};
+    const SignalThread signals(stop_signals, [&](int signal) {
+      if (!prepared) _exit(128 + signal);
+      application.request_stop();
+    });
     if (!application.prepare()) return 1;
     if (options.check_config) {
       spdlog::info("the configuration is in order");
       return 0;
     }
-    signals.on_signal([&] { application.request_stop(); });
+    prepared = true;
     return application.run();
   } catch (const std::exception& e) {
     spdlog::critical("{}", e.what());

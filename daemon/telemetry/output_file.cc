@@ -26,6 +26,8 @@ const char* advice(int code) {
       return "; free some space";
     case EFBIG:
       return "; raise the limit on the size of files (ulimit -f)";
+    case ENXIO:
+      return "; let somebody read the pipe first, or name a file";
     case EISDIR:
       return "; name a file, not a directory";
     default:
@@ -42,8 +44,10 @@ bool OutputFile::open(const std::string& path) {
   path_ = path;
   size_ = 0;
   error_.clear();
-  descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644);
-  return descriptor_ >= 0 || fail("create", errno);
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC | O_NOCTTY;
+  // A pipe that nobody reads is an error, and not waited for.
+  descriptor_ = ::open(path.c_str(), kFlags | O_NONBLOCK, 0644);
+  return (descriptor_ >= 0 && ::fcntl(descriptor_, F_SETFL, kFlags) == 0) || fail("create", errno);
 }
 
 bool OutputFile::write(std::string_view bytes) {

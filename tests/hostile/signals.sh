@@ -24,6 +24,25 @@ daemon=
 ((code == 0)) || fail "gaitd ended with $code on SIGHUP, expected 0"
 echo "no reader, SIGHUP: in order"
 
+# Told to end while it starts, here while a library hangs in its try, it ends at once.
+gaitd --clock lockstep --set log.enabled=false \
+  --set "toe_off.variant=$GAITD_BUILD/daemon/host/test/plugins/toe_off/hang_at_load.so" \
+  >"$scratch/start.txt" 2>&1 &
+daemon=$!
+sleep 1
+began=$SECONDS
+kill -TERM "$daemon"
+code=0
+wait "$daemon" || code=$?
+daemon=
+((code == 143 && SECONDS - began <= 2)) ||
+  fail "gaitd ended with $code after $((SECONDS - began)) s: $(cat "$scratch/start.txt")"
+# Nor does it wait for somebody to read its log.
+mkfifo "$scratch/log"
+expect 1 timeout 30 gaitd --clock lockstep --log "$scratch/log" >"$scratch/start.txt" 2>&1
+grep -q 'let somebody read the pipe' "$scratch/start.txt" || fail "$(cat "$scratch/start.txt")"
+echo "a start that hangs: ended"
+
 # A layer hangs: the status says that it is stale, an e-stop that nobody acts on it.
 start_daemon --clock lockstep --set log.enabled=false \
   --set "state_estimator.variant=$GAITD_BUILD/tests/bad_plugins/state_estimator.so"

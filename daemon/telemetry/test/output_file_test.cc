@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/telemetry/output_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <thread>
 
 #include "daemon/telemetry/test/fixture.h"
 
@@ -68,6 +73,30 @@ TEST_F(WrittenLog, ThatIsRemovedBeforeItsEndIsAnErrorThen) {
   std::remove(path_.c_str());
   EXPECT_FALSE(writer_.close());
   EXPECT_NE(writer_.error().find("removed"), std::string::npos) << writer_.error();
+}
+
+TEST(OutputFile, WaitsForNobodyToReadAPipe) {
+  const std::string path = test_path("pipe");
+  std::remove(path.c_str());
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  OutputFile file;
+  EXPECT_FALSE(file.open(path));
+  EXPECT_NE(file.error().find("let somebody read the pipe"), std::string::npos) << file.error();
+  // With a reader it is written, and waits while the pipe is full.
+  const int reader = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(reader, 0);
+  EXPECT_TRUE(file.open(path)) << file.error();
+  std::thread late([reader] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    char buffer[65536];
+    for (std::size_t left = 300000; left > 0;) {
+      const ssize_t n = read(reader, buffer, std::min(left, sizeof(buffer)));
+      if (n > 0) left -= static_cast<std::size_t>(n);
+    }
+  });
+  EXPECT_TRUE(file.write(std::string(300000, 'x'))) << file.error();
+  late.join();
+  close(reader);
 }
 
 TEST(OutputFile, IsNotOpenAfterAFailure) {
