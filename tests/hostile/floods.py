@@ -1,7 +1,9 @@
-"""Clients that flood gaitd: whatever they do, every e-stop of somebody else is acted on at once.
+"""Clients that flood gaitd: whatever they do, every e-stop of somebody else is acted on at once, and
+ticks are in time.
 
-floods.py FOLDER: the floods one after the other, each with 20 e-stops of a walking robot and 100 of
-one that has stopped. Prints a row for each flood beside one without.
+floods.py FOLDER: the floods one after the other, each with 20 e-stops of a walking robot and 1000 of
+one that has stopped. Prints a row for each flood beside one without. Then, in real time, commands that
+cost a tick most.
 """
 import json
 import os
@@ -18,6 +20,8 @@ STOPS = 20      # of a walking robot, for each flood
 LATCHED = 1000  # of one that has stopped, for each flood
 MAX_TICKS = 2
 MAX_MEDIAN = 5e-3  # s, from sending to the flag
+LATE = 0.25         # of the ticks, beyond the share without a flood
+COSTLY_TIME = 5.0   # s
 
 
 def line(method, params=None):
@@ -102,8 +106,19 @@ FLOODS = {
 }
 
 
+COSTLY = {
+    'none': (0, None),
+    'long walks': (2, lambda path: pipelined(
+        path, line('walk', {'steps': 1000, 'length': 0.2}) + line('abort'))),
+    'footsteps': (2, lambda path: pipelined(path, line('footsteps', {'replace': True, 'footsteps': [
+        {'side': side, 'x': 0.0, 'y': y, 'contact_polygon': [
+            [0.13, -0.064], [0.13, 0.064], [-0.13, 0.064], [-0.13, -0.064]]}
+        for side, y in 32 * [('left', 0.12), ('right', -0.12)]]}))),
+}
+
+
 def start_flood(name, path):
-    count, _ = FLOODS[name]
+    count, _ = {**FLOODS, **COSTLY}[name]
     return [subprocess.Popen([sys.executable, __file__, '--flood', name, path])
             for _ in range(count)]
 
@@ -152,6 +167,37 @@ def percentile(values, share):
     return sorted(values)[min(len(values) - 1, int(share * len(values)))]
 
 
+def costly(folder):
+    """What of the ticks is late while commands come that each look at many footsteps."""
+    failed = []
+    unflooded = 0.0
+    with Gaitd(folder, '--clock', 'realtime', '--set', 'log.enabled=false') as gaitd:
+        with gaitd.client() as operator:
+            for name in COSTLY:
+                operator.ask('sim.reset')
+                gaitd.wait('standing', operator)
+                flood = start_flood(name, gaitd.path)
+                time.sleep(0.5)
+                try:
+                    before = operator.ask('status')
+                    time.sleep(COSTLY_TIME)
+                    after = operator.ask('status')
+                finally:
+                    for one in flood:
+                        one.kill()
+                        one.wait()
+                ticks, late = (after[key] - before[key] for key in ('tick', 'overruns'))
+                share = late / max(1, ticks)
+                print(f'{name:<15}{ticks:>6} ticks, {late} of them late', flush=True)
+                if name == 'none':
+                    unflooded = share
+                elif share > unflooded + LATE:
+                    failed.append(f'{name}: {late} of {ticks} ticks were late')
+        if gaitd.stop() != 0:
+            failed.append('gaitd ended badly: ' + gaitd.said())
+    return failed
+
+
 def run(folder):
     failed = []
     with Gaitd(folder, '--clock', 'lockstep', '--set', 'log.enabled=false') as gaitd:
@@ -178,10 +224,11 @@ def run(folder):
                     failed.append(f'{name}: half of the flags took more than {1e3 * median:.1f} ms')
         if gaitd.stop() != 0:
             failed.append('gaitd ended badly: ' + gaitd.said())
+    failed += costly(folder)
     sys.exit('\n'.join(failed) or 0)
 
 
 if __name__ == '__main__':
     if sys.argv[1] == '--flood':
-        FLOODS[sys.argv[2]][1](sys.argv[3])
+        {**FLOODS, **COSTLY}[sys.argv[2]][1](sys.argv[3])
     run(sys.argv[1])
