@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "gaitd/sdk/bounds.h"
+
 namespace gaitd::daemon {
 namespace {
 
@@ -25,8 +27,10 @@ bool read_text(const json& params, const char* key, std::string* out) {
 
 RpcResult list(const LiveParameters& parameters, const json& params) {
   std::string glob;
-  if (!read_text(params, "match", &glob)) {
-    return invalid("param.list", R"(expected {"match": a glob like "gait.*"} or no params)");
+  if (!read_text(params, "match", &glob) || glob.size() > bounds::kYamlKey) {
+    return invalid("param.list", "expected {\"match\": a glob like \"gait.*\", at most " +
+                                     std::to_string(bounds::kYamlKey) +
+                                     " characters} or no params");
   }
   json rows = json::array();
   for (int i : parameters.match(glob)) rows.push_back(parameters.describe(i));

@@ -68,7 +68,8 @@ TEST_F(ParameterMethods, ListSelectsAndSaysWhatIsNearWhenNothingMatches) {
   const RpcError none = error("param.list", {{"match", "limits.torque_ration"}});
   EXPECT_EQ(none.code, rpc_code::kInvalidParams);
   EXPECT_NE(none.message.find("did you mean 'limits.torque_ratio'?"), std::string::npos);
-  for (const json& bad : {json{{"match", 3}}, json{{"matches", "x"}}, json::array({1})}) {
+  for (const json& bad : {json{{"match", 3}}, json{{"matches", "x"}}, json::array({1}),
+                          json{{"match", std::string(257, '*')}}}) {
     EXPECT_EQ(error("param.list", bad).code, rpc_code::kInvalidParams) << bad;
   }
 }
