@@ -310,7 +310,6 @@ void CommandServer::Impl::turn_away(Door& door) {
 }
 
 bool CommandServer::Impl::handle(const std::shared_ptr<Session>& session, std::string_view line) {
-  if (handle_estop(session, line)) return true;
   // The last holder of the session may be an answer: it comes back to this thread to end.
   const std::shared_ptr<void> end(nullptr, [this, session](void*) mutable {
     asio::post(io_, [session = std::move(session)] {});

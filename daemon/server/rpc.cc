@@ -44,6 +44,23 @@ json answer(const json& id, RpcResult result) {
 // An id that comes back as it came: larger integers and fractions become another number.
 bool is_id(const json& id) { return id.is_null() || id.is_string() || id.is_number_integer(); }
 
+// Without parsing, which a flood of lines with that word would make dear: "method": "estop"
+// somewhere.
+bool may_ask_for_estop(std::string_view line) {
+  constexpr std::string_view kKey = "\"method\"";
+  constexpr std::string_view kSpace = " \t\r";
+  for (std::size_t at = 0; (at = line.find(kKey, at)) != std::string_view::npos;) {
+    at += kKey.size();
+    const std::size_t colon = line.find_first_not_of(kSpace, at);
+    if (colon == std::string_view::npos) return false;
+    if (line[colon] != ':') continue;
+    const std::size_t value = line.find_first_not_of(kSpace, colon + 1);
+    if (value == std::string_view::npos) return false;
+    if (line.substr(value).starts_with("\"estop\"")) return true;
+  }
+  return false;
+}
+
 bool is_estop(const json& request) {
   return request.is_object() && request.value("method", json()) == "estop";
 }
@@ -314,7 +331,7 @@ RpcError no_right(const std::string& what, Role least, const Caller& caller) {
 }
 
 std::optional<EstopRequest> estop_request(std::string_view line) {
-  if (line.find("\"estop\"") == std::string_view::npos) return std::nullopt;
+  if (!may_ask_for_estop(line)) return std::nullopt;
   json value = json::parse(line, nullptr, false);
   if (!is_estop(value)) return std::nullopt;
   EstopRequest request;
@@ -326,7 +343,7 @@ std::optional<EstopRequest> estop_request(std::string_view line) {
 bool is_batch_with_estop(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t\r");
   if (first == std::string_view::npos || line[first] != '[') return false;
-  if (line.find("\"estop\"") == std::string_view::npos) return false;
+  if (!may_ask_for_estop(line)) return false;
   const json batch = json::parse(line, nullptr, false);
   return batch.is_array() && std::any_of(batch.begin(), batch.end(), is_estop);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/server/session.h"
 
+#include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/write.hpp>
 #include <utility>
@@ -89,11 +90,13 @@ void Session::take_lines(std::size_t searched) {
   for (; reading_ && end != std::string::npos; end = input_.find('\n', begin)) {
     std::string_view line(input_.data() + begin, end - begin);
     if (line.ends_with('\r')) line.remove_suffix(1);
-    if (line.size() <= limits_.max_line && !line.empty() && !on_line_(self, line)) {
+    const bool looked = begin < looked_;
+    const bool usable = line.size() <= limits_.max_line && !line.empty();
+    if (usable && (looked || !on_urgent_(self, line)) && !on_line_(self, line)) {
       paused_ = true;
       line_timer_.cancel();
+      looked_ = std::max(looked_, end + 1) - begin;
       input_.erase(0, begin);
-      looked_ = 0;
       return take_urgent();
     }
     begin = end + 1;
@@ -110,6 +113,7 @@ void Session::take_lines(std::size_t searched) {
   }
   const bool another = begin > 0 || searched == 0;  // than the one that the timer runs for
   input_.erase(0, begin);
+  looked_ = 0;
   if (another) watch_unfinished_line();
 }
 

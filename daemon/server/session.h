@@ -31,8 +31,8 @@ class Session : public std::enable_shared_from_this<Session> {
   /// False: there is no room for this line now; it comes again after resume(). Until then only
   /// e-stops are looked for in what the client sends, as much of it as one line may have.
   using OnLine = std::function<bool(const std::shared_ptr<Session>&, std::string_view line)>;
-  /// Of a line that has to wait, or that a client left without its end when it went: true if it was
-  /// an e-stop, and is done with.
+  /// Of each line before everything else, once, also of one that has to wait, and of what a client
+  /// left without its end when it went: true if it was an e-stop, and is done with.
   using OnUrgent = std::function<bool(const std::shared_ptr<Session>&, std::string_view line)>;
   /// Nothing more will be read.
   using OnEnd = std::function<void(const std::shared_ptr<Session>&)>;

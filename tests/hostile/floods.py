@@ -99,6 +99,8 @@ FLOODS = {
     'no JSON': (4, lambda path: pipelined(path, b'[' * 30 + b'1,' * 100000 + b'\n')),
     'nearly estop': (4, lambda path: pipelined(
         path, b'{"method": "status", "params": [' + b'"estop",' * 400 + b'1]}\n')),
+    'as if estop': (4, lambda path: pipelined(
+        path, b'{"method": "status", "params": [' + b'{"method": "estop"},' * 190 + b'1]}\n')),
     'idle': (1, lambda path: idle(path, 300)),
     'reconnecting': (4, reconnecting),
     'swaps': (2, lambda path: pipelined(
