@@ -179,8 +179,8 @@ void Safety::clamp(double dt, const TickData& d, GaitdJointCommands& commands) {
     if (rate < -fastest) torque = std::max(torque, 0.0);
     c.torque = torque;
     // Of a joint that has less room than two margins the middle is left.
-    const double margin = std::min(limits_[Limit::kPositionMargin],
-                                   0.5 * (joint.position_max - joint.position_min));
+    const double margin =
+        std::min(limits_[Limit::kPositionMargin], 0.5 * (joint.position_max - joint.position_min));
     c.position = std::clamp(c.position, joint.position_min + margin, joint.position_max - margin);
     c.velocity = std::clamp(c.velocity, -fastest, fastest);
     // While readying the drives make the torque: what they make now is where control takes over.
