@@ -71,6 +71,7 @@ std::vector<std::string> sockets_of(const std::string& place, daemon::Role role)
   if (role == Role::kObserve) order = {Role::kCommand, Role::kObserve, Role::kAdminister};
   if (role == Role::kAdminister) order = {Role::kAdminister, Role::kCommand};
   std::vector<std::string> paths;
+  paths.reserve(order.size());
   for (const Role one : order) paths.push_back(daemon::role_socket(place, one));
   return paths;
 }

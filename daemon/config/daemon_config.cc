@@ -90,7 +90,7 @@ void read_realtime(SettingReader* reader, Issues* issues, RealtimeConfig* realti
   reader->number("realtime.overrun_run", {0.0, 10.0, "s"}, &realtime->overrun_run);
 }
 
-void read_log(SettingReader* reader, Issues* issues, LogConfig* log) {
+void read_log(SettingReader* reader, LogConfig* log) {
   reader->boolean("log.enabled", &log->enabled);
   reader->text("log.directory", true, &log->directory);
   reader->text("log.file", true, &log->file);
@@ -152,7 +152,7 @@ DaemonConfig read_daemon_config(Settings* settings, Issues* issues) {
     reader.text(std::string(kLayerNames[layer]) + ".variant", false, &config.variants[layer]);
   }
   read_realtime(&reader, issues, &config.realtime);
-  read_log(&reader, issues, &config.log);
+  read_log(&reader, &config.log);
   reader.text("socket", true, &config.socket);
   read_plugin_folders(&reader, issues, &config.plugin_folders);
   return config;

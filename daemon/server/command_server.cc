@@ -297,7 +297,7 @@ void CommandServer::Impl::turn_away(Door& door) {
     const ssize_t size = recv(fd, request, sizeof(request), MSG_DONTWAIT);
     const std::string_view read(request, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
     if (const auto estop = estop_request(read.substr(0, read.find('\n')))) {
-      estops_.stop([](RpcResult) {});
+      estops_.stop([](const RpcResult&) {});
       poll_estops();
       line = answer_line(estop->id, nlohmann::json{{"accepted", true}});
     }
@@ -311,8 +311,8 @@ void CommandServer::Impl::turn_away(Door& door) {
 
 bool CommandServer::Impl::handle(const std::shared_ptr<Session>& session, std::string_view line) {
   // The last holder of the session may be an answer: it comes back to this thread to end.
-  const std::shared_ptr<void> end(nullptr, [this, session](void*) mutable {
-    asio::post(io_, [session = std::move(session)] {});
+  const std::shared_ptr<void> end(nullptr, [this, last = std::shared_ptr(session)](void*) mutable {
+    asio::post(io_, [last = std::move(last)] {});
   });
   const auto send = [this, session = std::weak_ptr(session), end](std::string answer) {
     asio::post(io_, [session, end, answer = std::move(answer)]() mutable {

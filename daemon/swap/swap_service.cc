@@ -188,7 +188,7 @@ std::vector<double> SwapService::values_for(int layer, const GaitdPluginDescript
                                             std::string* error) {
   if (table >= 0) return parts_.parameters->values(table);
   Issues issues;
-  const auto values =
+  auto values =
       parts_.settings->resolve(layer_name(layer), {d.parameters, d.parameter_count}, &issues, d.id);
   if (!issues.ok()) *error = one_line(issues.error_text());
   return values;
