@@ -45,7 +45,7 @@ done
 # The copy, without touching what has not changed.
 mkdir -p "$copy"
 git ls-files | while read -r file; do
-  cmp -s "$file" "$copy/$file" || { mkdir -p "$copy/${file%/*}" && cp -p "$file" "$copy/$file"; }
+  cmp -s "$file" "$copy/$file" || cp --parents "$file" "$copy"
 done
 [[ ! -d $copy/.git ]] || comm -13 <(git ls-files | sort) <(git -C "$copy" ls-files | sort) |
   while read -r file; do rm -f "$copy/$file"; done
