@@ -37,32 +37,32 @@ struct Contact {
   Eigen::Vector3d slide_direction = Eigen::Vector3d::Zero();  // unit, W: of friction, sliding
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // N, W, on the robot, of the last step
 
-  // f0 and G of the present mode for a step of `h` seconds. G is symmetric unless it slides.
-  void linearise(double h, Eigen::Vector3d* f0, Eigen::Matrix3d* g) const {
-    f0->setZero();
-    g->setZero();
+  // Of linearise(): N and N s/m, W.
+  Eigen::Vector3d f0 = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d g = Eigen::Matrix3d::Zero();
+
+  // Sets f0 and G of the present mode for a step of `h` seconds. G is symmetric unless it slides.
+  void linearise(double h) {
+    f0.setZero();
+    g.setZero();
     if (mode == ContactMode::kApart) return;
     const double kn = law.stiffness * (h + law.dissipation * depth);
     const double kt = law.stiffness * h + law.tangential_damping;
     const Eigen::Matrix3d nn = normal * normal.transpose();
-    *f0 = law.stiffness * depth * normal;
-    *g = kn * nn;
+    f0 = law.stiffness * depth * normal;
+    g = kn * nn;
     if (mode == ContactMode::kStick) {
-      *f0 -= law.stiffness * deflection;
-      *g += kt * (Eigen::Matrix3d::Identity() - nn);
+      f0 -= law.stiffness * deflection;
+      g += kt * (Eigen::Matrix3d::Identity() - nn);
     } else {
-      *f0 += law.stiffness * depth * friction * slide_direction;
-      *g += kn * friction * slide_direction * normal.transpose();
+      f0 += law.stiffness * depth * friction * slide_direction;
+      g += kn * friction * slide_direction * normal.transpose();
     }
   }
 
-  // Sets `force` for the velocity `v` (m/s, W) of the point after the step.
-  void update_force(double h, const Eigen::Vector3d& v) {
-    Eigen::Vector3d f0;
-    Eigen::Matrix3d g;
-    linearise(h, &f0, &g);
-    force = f0 - g * v;
-  }
+  // Sets `force` for the velocity `v` (m/s, W) of the point after the step, by the law that was
+  // linearised last.
+  void update_force(const Eigen::Vector3d& v) { force = f0 - g * v; }
 
   double normal_force() const { return force.dot(normal); }
 

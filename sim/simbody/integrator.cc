@@ -33,35 +33,36 @@ Integrator::Integrator(const GaitdModel& model, double h)
   joint_rate_.setZero(model.joint_count);
 }
 
-void Integrator::add_contacts(const DynamicsTerms& terms, const std::vector<Contact>& contacts) {
+void Integrator::gather_contacts(const DynamicsTerms& terms, std::vector<Contact>* contacts) {
   // Contacts come body by body, so those of one body are summed up before they go through its
   // Jacobian.
+  touched_.clear();
   size_t i = 0;
-  while (i < contacts.size()) {
-    const int body = contacts[i].body;
+  while (i < contacts->size()) {
+    const int body = (*contacts)[i].body;
     Matrix6 stiffness = Matrix6::Zero();
     Vector6 wrench = Vector6::Zero();
-    for (; i < contacts.size() && contacts[i].body == body; ++i) {
-      if (contacts[i].mode == ContactMode::kApart) continue;
-      Eigen::Vector3d f0;
-      Eigen::Matrix3d g;
-      contacts[i].linearise(h_, &f0, &g);
-      const Eigen::Vector3d arm = contacts[i].p_W - terms.origin();
+    for (; i < contacts->size() && (*contacts)[i].body == body; ++i) {
+      Contact& contact = (*contacts)[i];
+      contact.linearise(h_);
+      if (contact.mode == ContactMode::kApart) continue;
+      const Eigen::Vector3d arm = contact.p_W - terms.origin();
       const Eigen::Matrix3d across = cross_matrix(arm);
-      const Eigen::Matrix3d moment = across * g;
+      const Eigen::Matrix3d moment = across * contact.g;
       stiffness.topLeftCorner<3, 3>() -= moment * across;
       stiffness.topRightCorner<3, 3>() += moment;
-      stiffness.bottomLeftCorner<3, 3>() -= g * across;
-      stiffness.bottomRightCorner<3, 3>() += g;
-      wrench.head<3>() += arm.cross(f0);
-      wrench.tail<3>() += f0;
+      stiffness.bottomLeftCorner<3, 3>() -= contact.g * across;
+      stiffness.bottomRightCorner<3, 3>() += contact.g;
+      wrench.head<3>() += arm.cross(contact.f0);
+      wrench.tail<3>() += contact.f0;
     }
-    terms.add_stiffness(body, stiffness, h_, &matrix_);
-    terms.add_wrench(body, wrench, h_, &solution_);
+    touched_.push_back({body, stiffness, wrench});
   }
+  slides_ = std::any_of(contacts->begin(), contacts->end(),
+                        [](const Contact& contact) { return contact.mode == ContactMode::kSlide; });
 }
 
-void Integrator::solve(const DynamicsTerms& terms, const std::vector<Contact>& contacts) {
+void Integrator::solve(const DynamicsTerms& terms) {
   ++solves_;
   matrix_ = terms.mass_matrix();
   solution_ = constant_;
@@ -69,11 +70,11 @@ void Integrator::solve(const DynamicsTerms& terms, const std::vector<Contact>& c
     matrix_(6 + j, 6 + j) += h_ * joints_.slope(j);
     solution_[6 + j] += h_ * joints_.constant(j);
   }
-  add_contacts(terms, contacts);
-  const bool slides = std::any_of(contacts.begin(), contacts.end(), [](const Contact& contact) {
-    return contact.mode == ContactMode::kSlide;
-  });
-  if (slides) {
+  for (const TouchedBody& touched : touched_) {
+    terms.add_stiffness(touched.body, touched.stiffness, h_, &matrix_);
+    terms.add_wrench(touched.body, touched.wrench, h_, &solution_);
+  }
+  if (slides_) {
     sliding_factor_.compute(matrix_);
     solution_ = sliding_factor_.solve(solution_).eval();
   } else {
@@ -92,7 +93,7 @@ bool Integrator::update_contacts(const DynamicsTerms& terms, std::vector<Contact
       twist = terms.twist(body, solution_);
     }
     const Eigen::Vector3d angular = twist.head<3>();
-    contact.update_force(h_, twist.tail<3>() + angular.cross(contact.p_W - terms.origin()));
+    contact.update_force(twist.tail<3>() + angular.cross(contact.p_W - terms.origin()));
     slips |= contact.slips() && !contact.pulls();
   }
   // Points that stick where they should slide press and pull others that should not: let them
@@ -112,6 +113,7 @@ bool Integrator::update_contacts(const DynamicsTerms& terms, std::vector<Contact
 
 bool Integrator::update_modes(const DynamicsTerms& terms, std::vector<Contact>* contacts) {
   const bool changed = update_contacts(terms, contacts);
+  if (changed) gather_contacts(terms, contacts);
   joint_rate_ = solution_.tail(joint_count_);
   return joints_.revise(joint_rate_) || changed;
 }
@@ -123,9 +125,10 @@ bool Integrator::step(const Multibody& multibody, const DynamicsTerms& terms,
   constant_.noalias() = terms.mass_matrix() * state->u;
   constant_ += h_ * (external - bias_);
   joints_.begin_step(h_, state->q, drives);
+  gather_contacts(terms, contacts);
   solves_ = 0;
   do {
-    solve(terms, *contacts);
+    solve(terms);
     if (!solution_.allFinite()) return false;
   } while (update_modes(terms, contacts) && solves_ < kMaxSolves);
   joints_.end_step(joint_rate_);

@@ -38,8 +38,17 @@ class Integrator {
   int solves() const { return solves_; }
 
  private:
-  void solve(const DynamicsTerms& terms, const std::vector<Contact>& contacts);
-  void add_contacts(const DynamicsTerms& terms, const std::vector<Contact>& contacts);
+  // What all contacts of a body do to it, as force and moment about the origin of the terms.
+  struct TouchedBody {
+    int body;
+    Matrix6 stiffness;
+    Vector6 wrench;
+  };
+
+  void solve(const DynamicsTerms& terms);
+  // Linearises the contacts, which stay so until a mode changes: drives alone are revised more
+  // often.
+  void gather_contacts(const DynamicsTerms& terms, std::vector<Contact>* contacts);
   bool update_modes(const DynamicsTerms& terms, std::vector<Contact>* contacts);
   bool update_contacts(const DynamicsTerms& terms, std::vector<Contact>* contacts) const;
 
@@ -51,6 +60,8 @@ class Integrator {
   Eigen::VectorXd bias_;
   Eigen::VectorXd constant_;  // the right side without contacts, drives and stops
   Eigen::VectorXd joint_rate_;
+  std::vector<TouchedBody> touched_;
+  bool slides_ = false;  // does any contact?
   Eigen::MatrixXd matrix_;
   Eigen::VectorXd solution_;
   Eigen::LLT<Eigen::MatrixXd> factor_;

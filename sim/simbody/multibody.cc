@@ -18,6 +18,11 @@ SimTK::Vec3 vec(const double* v) { return SimTK::Vec3(v[0], v[1], v[2]); }
 
 Eigen::Vector3d eigen(const SimTK::Vec3& v) { return Eigen::Vector3d(v[0], v[1], v[2]); }
 
+// Both store their columns one after the other.
+Eigen::Matrix3d eigen(const SimTK::Rotation& r) {
+  return Eigen::Map<const Eigen::Matrix3d>(&r.asMat33()(0, 0));
+}
+
 SimTK::Body::Rigid make_body(const GaitdBody& body) {
   const double* i = body.inertia;
   const SimTK::Inertia central(i[0], i[3], i[5], i[1], i[2], i[4]);
@@ -36,6 +41,11 @@ struct Multibody::Impl {
   SimTK::MultibodySystem system;
   SimTK::SimbodyMatterSubsystem matter{system};
   std::vector<SimTK::MobilizedBody> bodies;
+  // Of each body, in the cache of `state`, and its entry of body_forces. They stay where they are;
+  // to ask Simbody for them ninety times in a step takes as long as half of its kinematics.
+  std::vector<const SimTK::Transform*> pose;
+  std::vector<const SimTK::SpatialVec*> velocity;
+  std::vector<SimTK::SpatialVec*> body_force;
   std::vector<SimTK::Vec3> weight;  // N, W
   std::vector<SimTK::Vec3> com;     // m, body frame
   std::vector<int> q_index;         // first coordinate of each body
@@ -98,6 +108,12 @@ Multibody::Multibody(const GaitdModel& model) : impl_(std::make_unique<Impl>()) 
   s.residual.resize(nu);
   s.body_forces.resize(s.matter.getNumBodies());
   s.body_forces = SimTK::SpatialVec(SimTK::Vec3(0), SimTK::Vec3(0));
+  s.system.realize(s.state, SimTK::Stage::Velocity);
+  for (const SimTK::MobilizedBody& body : s.bodies) {
+    s.pose.push_back(&body.getBodyTransform(s.state));
+    s.velocity.push_back(&body.getBodyVelocity(s.state));
+    s.body_force.push_back(&s.body_forces[body.getMobilizedBodyIndex()]);
+  }
 }
 
 Multibody::~Multibody() = default;
@@ -108,8 +124,8 @@ int Multibody::joint_count() const { return body_count() - 1; }
 
 void Multibody::set_state(const State& state) {
   Impl& s = *impl_;
-  SimTK::Vector& q = s.state.updQ();
-  SimTK::Vector& u = s.state.updU();
+  double* q = s.state.updQ().updContiguousScalarData();
+  double* u = s.state.updU().updContiguousScalarData();
   const int q0 = s.q_index[0];
   q[q0] = state.R_WB.w();
   q[q0 + 1] = state.R_WB.x();
@@ -123,15 +139,11 @@ void Multibody::set_state(const State& state) {
   }
   s.system.realize(s.state, SimTK::Stage::Velocity);
   for (size_t i = 0; i < s.bodies.size(); ++i) {
-    const SimTK::Transform& pose = s.bodies[i].getBodyTransform(s.state);
-    const SimTK::SpatialVec& velocity = s.bodies[i].getBodyVelocity(s.state);
     BodyMotion& motion = s.motion[i];
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) motion.R_WB(r, c) = pose.R().asMat33()(r, c);
-    }
-    motion.p_WB = eigen(pose.p());
-    motion.w_W = eigen(velocity[0]);
-    motion.v_W = eigen(velocity[1]);
+    motion.R_WB = eigen(s.pose[i]->R());
+    motion.p_WB = eigen(s.pose[i]->p());
+    motion.w_W = eigen((*s.velocity[i])[0]);
+    motion.v_W = eigen((*s.velocity[i])[1]);
   }
 }
 
@@ -144,15 +156,15 @@ const std::vector<BodyMotion>& Multibody::bodies() const { return impl_->motion;
 void Multibody::compute_bias(Eigen::VectorXd* c) const {
   const Impl& s = *impl_;
   for (size_t i = 0; i < s.bodies.size(); ++i) {
-    const SimTK::Vec3 arm = s.bodies[i].getBodyRotation(s.state) * s.com[i];
-    s.body_forces[s.bodies[i].getMobilizedBodyIndex()] =
-        SimTK::SpatialVec(SimTK::cross(arm, s.weight[i]), s.weight[i]);
+    const SimTK::Vec3 arm = s.pose[i]->R() * s.com[i];
+    *s.body_force[i] = SimTK::SpatialVec(SimTK::cross(arm, s.weight[i]), s.weight[i]);
   }
   s.matter.calcResidualForceIgnoringConstraints(s.state, s.mobility_forces, s.body_forces,
                                                 s.zero_udot, s.residual);
-  for (int k = 0; k < 6; ++k) (*c)[k] = s.residual[s.u_index[0] + k];
+  const double* residual = s.residual.getContiguousScalarData();
+  for (int k = 0; k < 6; ++k) (*c)[k] = residual[s.u_index[0] + k];
   for (int j = 0; j < joint_count(); ++j) {
-    (*c)[6 + j] = s.residual[s.u_index[static_cast<size_t>(j) + 1]];
+    (*c)[6 + j] = residual[s.u_index[static_cast<size_t>(j) + 1]];
   }
 }
 

@@ -113,6 +113,21 @@ TEST(ObjectiveBuilder, ContactsAreSoundAndBelongToTheirFoot) {
   w.walk();
 }
 
+TEST(ObjectiveBuilder, EveryContactCountsOnTheFrictionOfTheParameterAndNoMore) {
+  for (const double friction : {0.7, 0.3}) {
+    WalkWithObjectives w;
+    w.builder.set_objective_parameter(static_cast<int>(Objective::kFriction), friction);
+    w.with_toe_off = true;
+    int contacts = 0;
+    w.check = [&](const GaitdObjectives& o) {
+      for (int i = 0; i < o.contact_count; ++i) ASSERT_EQ(o.contacts[i].friction, friction);
+      contacts += o.contact_count;
+    };
+    w.walk();
+    EXPECT_GT(contacts, 1000);
+  }
+}
+
 TEST(ObjectiveBuilder, LoadLimitsHaveNoSteps) {
   WalkWithObjectives w;
   double last[2] = {-1.0, -1.0};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "daemon/log/bytes.h"
 #include "daemon/log/crc32.h"
 #include "daemon/log/glob.h"
@@ -21,6 +23,21 @@ TEST(Crc32, GoesOnFromAnyPlace) {
   for (int i = 0; i < 100; ++i) bytes += static_cast<char>(i * 37);
   for (std::size_t cut = 0; cut <= bytes.size(); ++cut) {
     EXPECT_EQ(crc32(bytes.substr(cut), crc32(bytes.substr(0, cut))), crc32(bytes));
+  }
+}
+
+TEST(Crc32, IsTheRemainderBitByBitForEveryLength) {
+  std::mt19937 random(1);
+  std::string bytes;
+  for (int size = 0; size < 400; ++size) {
+    const std::uint32_t so_far = random();
+    std::uint32_t crc = ~so_far;
+    for (const char byte : bytes) {
+      crc ^= static_cast<unsigned char>(byte);
+      for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1u) != 0 ? 0xEDB88320u : 0u);
+    }
+    ASSERT_EQ(crc32(bytes, so_far), ~crc) << size << " bytes";
+    bytes += static_cast<char>(random());
   }
 }
 
