@@ -1,6 +1,5 @@
 # A walk in lockstep, daemon and plant together, takes little of one processor: with ideal drives and with
-# hydraulic ones in a laboratory, which is what the issue of an honest plant asks for. docs/performance.md has
-# the figures.
+# hydraulic ones and the sensors of a laboratory. docs/performance.md has the figures.
 source "$(dirname "$0")/common.sh"
 
 core=$(taskset -cp $$ | sed -E 's/.*: ([0-9]+).*/\1/')
