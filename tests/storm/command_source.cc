@@ -142,7 +142,8 @@ Request CommandSource::refused_by_the_gait(const Scene& scene) {
   const int side = step["side"] == "left" ? 0 : 1;
   next["side"] = kSides[1 - side];
   Call call{"footsteps", nullptr};
-  switch (integer(0, 10)) {
+  const int what = integer(0, 10);
+  switch (what) {
     case 0:  // legs crossed, whichever way the robot faces
       next["x"] = step["x"].get<double>() + 0.01;
       break;
@@ -184,6 +185,7 @@ Request CommandSource::refused_by_the_gait(const Scene& scene) {
   }
   if (call.params.is_null()) call.params = {{"footsteps", {step, next}}, {"replace", chance(0.5)}};
   Request r = request(Request::Kind::kInvalid, call);
+  r.fills_a_tick = what == 6 || what == 9;
   r.code = -32000;
   return r;
 }

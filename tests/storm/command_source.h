@@ -24,6 +24,7 @@ struct Request {
   std::string line;     // without newline
   std::int64_t id = 0;  // 0: the request has none that can be read, or is a notification
   bool notification = false;
+  bool fills_a_tick = false;  // gaitd may take what comes behind it a tick later
   int code = 0;
   std::string names;  // what the message has to contain
 };

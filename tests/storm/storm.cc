@@ -114,16 +114,20 @@ void Storm::recover() {
 
 void Storm::burst() {
   next_burst_ = tick_ + source_.integer(5, 30);
-  for (int i = source_.integer(1, 3); i > 0; --i) {
+  for (int i = source_.integer(1, 3); i > 0 && !flooded_; --i) {
     Connection& c = connection(static_cast<std::size_t>(source_.integer(0, 3)));
     std::vector<Request> requests;
-    for (int j = source_.integer(1, 3); j > 0; --j) requests.push_back(source_.next(scene_));
+    for (int j = source_.integer(1, 3); j > 0 && !flooded_; --j) {
+      requests.push_back(source_.next(scene_));
+      flooded_ = requests.back().fills_a_tick;
+    }
     const bool batchable =
         std::all_of(requests.begin(), requests.end(), [](const Request& r) { return r.id != 0; });
     send(c, requests, batchable && source_.chance(0.3));
     // One client after the other: their order is part of what is repeated.
     synchronise(c);
   }
+  if (flooded_) return;
   if (source_.chance(0.02)) mishap();
   // Now and then more than the control thread takes at a time.
   if (!source_.chance(0.002)) return;
@@ -134,11 +138,15 @@ void Storm::burst() {
   flooded_ = true;
 }
 
-// The ticks that take a flood depend on the machine, and so would those of commands behind it.
+// Commands behind a flood, or behind a long one, are taken in a later tick: in the replay, which
+// has neither, they would be too early.
 void Storm::wait_for_the_flood() {
-  synchronise(connection(0));
+  for (Connection& c : connections_) {
+    if (c.socket) synchronise(c);
+  }
   flooded_ = std::any_of(pending_.begin(), pending_.end(), [](const auto& entry) {
-    return entry.second.request.kind == Request::Kind::kFlood;
+    const Request& request = entry.second.request;
+    return request.kind == Request::Kind::kFlood || request.fills_a_tick;
   });
 }
 

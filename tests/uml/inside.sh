@@ -64,29 +64,32 @@ stop_gaitd() {
   wait "$gaitd" || fail "gaitd ended with $?"
 }
 
-# wait_status SECONDS PATTERN: until the status, a line of JSON that is then in $status, matches.
+# wait_status SECONDS PATTERN: until the status, a line of JSON that is then in $status, matches. Only
+# that line comes to bash, which asks the kernel for each byte of a pipe: it would fall behind for long.
 wait_status() {
-  local end=$((SECONDS + $1)) lines piece part=
+  local end=$((SECONDS + $1)) lines piece
   status=
-  exec {lines}< <(watch_status)
-  # shellcheck disable=SC2053 # a pattern
-  while [[ $status != $2 ]]; do
-    [[ $status == *'"state":"fault"'* && $2 != *fault* ]] && fail "a fault, waiting for $2: $status"
-    ((SECONDS < end)) || fail "after $1 s, waiting for $2: $status"
-    if read -rt 1 -u "$lines" piece; then
-      status=$part$piece part=
-      continue
-    elif (($? > 128)); then
-      part+=$piece
-    else # It ends where a busy machine keeps it waiting for an answer.
-      exec {lines}< <(watch_status)
-      part=
-    fi
+  exec {lines}< <(watch_status "${2//\*/.*}")
+  while ! read -rt 1 -u "$lines" piece; do
+    status+=$piece
+    ((SECONDS < end)) || fail "after $1 s, waiting for $2: $(gaitctl --json status 2>&1)"
     [[ -z ${gaitd-} ]] || kill -0 "$gaitd" 2>/dev/null || fail "gaitd ended, waiting for $2"
   done
+  status+=$piece
   exec {lines}<&-
+  # shellcheck disable=SC2053 # a pattern
+  [[ $status == $2 ]] || fail "a fault, waiting for $2: $status"
 }
-watch_status() { exec gaitctl --json watch --reconnect --interval 0.1 2>/dev/null; }
+
+# watch_status EXPRESSION: the first status that matches, or that tells of a fault. It begins anew
+# where a busy machine lets the connection wait for too long.
+watch_status() {
+  local fault='"state":"fault"'
+  [[ $1 == *fault* ]] && fault=$1
+  set +o pipefail # grep ends first
+  until gaitctl --json watch --reconnect --interval 0.1 2>/dev/null |
+    busybox grep -m 1 -e "$1" -e "$fault"; do :; done
+}
 
 # wait_state STATE SECONDS
 wait_state() { wait_status "$2" "*\"state\":\"$1\"*"; }
