@@ -27,9 +27,9 @@ bool read_text(const json& params, const char* key, std::string* out) {
 
 RpcResult list(const LiveParameters& parameters, const json& params) {
   std::string glob;
-  if (!read_text(params, "match", &glob) || glob.size() > bounds::kYamlKey) {
+  if (!read_text(params, "match", &glob) || glob.size() > bounds::kParameterGlob) {
     return invalid("param.list", "expected {\"match\": a glob like \"gait.*\", at most " +
-                                     std::to_string(bounds::kYamlKey) +
+                                     std::to_string(bounds::kParameterGlob) +
                                      " characters} or no params");
   }
   json rows = json::array();

@@ -71,7 +71,7 @@ void Session::take_urgent() {
 void Session::take_end() {
   if (!reading_) return;
   const auto self = shared_from_this();
-  const std::size_t begin = input_.rfind('\n') == std::string::npos ? 0 : input_.rfind('\n') + 1;
+  const std::size_t begin = input_.rfind('\n') + 1;  // 0 where there is none: npos + 1
   const bool unfinished = begin < input_.size();
   if (unfinished && on_urgent_(self, std::string_view(input_).substr(begin))) {
     if (reading_) input_.erase(begin);

@@ -19,6 +19,8 @@ inline constexpr std::size_t kYamlValues = 200'000;
 inline constexpr std::size_t kYamlKey = 256;
 /// Keys of all sources together; there are 400 parameters.
 inline constexpr std::size_t kSettings = 2000;
+/// Characters of a glob that names parameters.
+inline constexpr std::size_t kParameterGlob = 256;
 
 // ---- URDF.
 

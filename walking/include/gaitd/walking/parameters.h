@@ -288,7 +288,7 @@ inline constexpr std::array<GaitdParameter, 52> kObjectiveParameters = {
                    "of the height and orientation of the swing foot"),
     real_parameter("swing_damping_ratio", "", 0, 5, 0.7, "of the swing foot"),
     real_parameter("swing_weight", "", 3, 1e6, 30, "of the position of the swing foot"),
-    real_parameter("swing_angular_weight", "", 0, 1e6, 5, "of its orientation"),
+    real_parameter("swing_angular_weight", "", 0.05, 1e6, 5, "of its orientation"),
     real_parameter("late_swing_weight", "1/s", 0, 1e4, 100,
                    "growth of both while a touchdown is overdue, over what they were"),
     real_parameter("late_pelvis_fade", "s", 0, 10, 0.1,
