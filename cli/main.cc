@@ -13,6 +13,7 @@
 #include "cli/completion_command.h"
 #include "cli/context.h"
 #include "cli/daemon_commands.h"
+#include "cli/drive_command.h"
 #include "cli/doctor/doctor_command.h"
 #include "cli/failure.h"
 #include "cli/joint_commands.h"
@@ -50,6 +51,7 @@ int run(int argc, char** argv) {
       "Exit codes: 0 done, 1 refused or failed, 2 usage, 3 no daemon, 4 done, but a log is "
       "damaged.");
   add_daemon_commands(&app, &context);
+  add_drive_command(&app, &context);
   add_plugin_commands(&app, &context);
   add_joint_commands(&app, &context);
   add_calibrate_command(&app, &context);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "cli/test/cli_process.h"
 #include "daemon/server/command_server.h"
@@ -38,6 +39,14 @@ class Gaitctl : public ::testing::Test {
         return json{{"accepted", true}, {"tick", 42}};
       });
     }
+    methods.add("drive", [this](const json& params) -> RpcResult {
+      const std::lock_guard lock(mutex_);
+      drives_.push_back(params);
+      if (drives_.size() > 2 && params["forward"] == 3.0) {
+        return RpcError{daemon::rpc_code::kRefused, "drive: taken over", {{"tick", 7}}};
+      }
+      return json{{"accepted", true}, {"tick", 42}, {"note", "slower than asked: 0.7 m/s"}};
+    });
     methods.add("resume", [](const json&) -> RpcResult {
       return RpcError{daemon::rpc_code::kRefused, "not paused; nothing to resume", {{"tick", 7}}};
     });
@@ -87,6 +96,7 @@ class Gaitctl : public ::testing::Test {
 
   Workspace workspace_;
   std::mutex mutex_;
+  std::vector<json> drives_;
   std::string method_;
   json params_;
   daemon::EstopFlag estop_;
@@ -126,6 +136,27 @@ TEST_F(Gaitctl, SendsOnlyTheOptionsOfWalkThatWereGiven) {
                   {"swing", 0.6},
                   {"transfer", 0.2},
                   {"first", "left"}}));
+}
+
+TEST_F(Gaitctl, DriveRenewsItsVelocityAndEndsWithAStand) {
+  EXPECT_EQ(gaitctl("drive").exit_code, 2);
+  const Outcome outcome = gaitctl("drive --forward 2 --turn -0.1 --for 0.5");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_HAS(outcome.out, "slower than asked");
+  EXPECT_EQ(outcome.out.find("slower"), outcome.out.rfind("slower")) << "told more than once";
+  ASSERT_GE(drives_.size(), 4u);
+  EXPECT_FALSE(drives_[0].contains("renew"));
+  for (std::size_t i = 1; i < drives_.size(); ++i) {
+    EXPECT_EQ(drives_[i]["renew"], true);
+    EXPECT_EQ(drives_[i]["session"], drives_[0]["session"]);
+    EXPECT_EQ(drives_[i]["forward"], i + 1 < drives_.size() ? 2.0 : 0.0);
+  }
+}
+
+TEST_F(Gaitctl, ADriveThatIsTakenOverEndsWithTheReason) {
+  const Outcome outcome = gaitctl("drive --forward 3 --for 60");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_HAS(outcome.err, "taken over");
 }
 
 TEST_F(Gaitctl, SendsModesAndPushes) {

@@ -30,6 +30,7 @@ enum class CommandType : std::uint8_t {
   kSwap,       // of a layer, by a scenario
   kJointTest,  // one joint, a small motion there and back, while disarmed
   kPose,       // of the pelvis, while standing
+  kDrive,      // walk at a velocity
 };
 
 struct JointTest {
@@ -44,6 +45,7 @@ struct Command {
   std::uint64_t estops = 0;   // of a client: e-stops that had been read before it
   int mode = GAITD_MODE_STAND;
   walking::WalkCommand walk;
+  walking::VelocityCommand drive;
   bool replace = false;
   // A footstep with swing_duration, transfer_duration or swing_height 0 takes the parameter of the
   // gait. contact_polygon and landing_region as in the footstep struct.

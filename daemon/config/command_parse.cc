@@ -16,6 +16,7 @@ namespace gaitd::daemon {
 namespace {
 
 constexpr int kMaxSteps = 1000;
+constexpr std::int64_t kMaxSession = std::int64_t{1} << 53;  // whole as a double
 constexpr Bounds kDuration = {0.05, 20.0, "s"};
 constexpr Bounds kSolePosition = {-1.0, 1.0, "m"};
 
@@ -76,6 +77,17 @@ void read_walk(MapReader* map, walking::WalkCommand* walk) {
   walk->swing_duration = map->number("swing", kDuration).value_or(0.0);
   walk->transfer_duration = map->number("transfer", kDuration).value_or(0.0);
   walk->first_side = map->choice("first", kSideNames).value_or(GAITD_BOTH);
+}
+
+// A scenario's velocity holds until its next command; a client's has to be renewed.
+void read_drive(MapReader* map, bool holds, walking::VelocityCommand* drive) {
+  drive->velocity.forward = map->number("forward", {-3.0, 3.0, "m/s"}).value_or(0.0);
+  drive->velocity.lateral = map->number("lateral", {-3.0, 3.0, "m/s"}).value_or(0.0);
+  drive->velocity.turn = map->number("turn", {-3.0, 3.0, "rad/s"}).value_or(0.0);
+  drive->holds = holds;
+  if (holds) return;
+  drive->session = map->integer("session", 0, kMaxSession).value_or(0);
+  drive->renewal = map->boolean("renew").value_or(false);
 }
 
 void read_contact_polygon(MapReader* map, GaitdFootstep* footstep) {
@@ -208,8 +220,8 @@ void read_pose(MapReader* map, walking::PoseCommand* pose) {
 
 const std::vector<std::string>& command_methods() {
   static const std::vector<std::string> kMethods = [] {
-    std::vector<std::string> names = {"mode", "walk",     "footsteps", "replace",
-                                      "pose", "sim.push", "joint.test"};
+    std::vector<std::string> names = {"mode",    "walk", "drive",    "velocity",  "footsteps",
+                                      "replace", "pose", "sim.push", "joint.test"};
     for (const PlainMethod& plain : kPlainMethods) names.emplace_back(plain.name);
     std::sort(names.begin(), names.end());
     return names;
@@ -235,6 +247,9 @@ std::optional<Command> parse_command(std::string_view method, const NodePtr& par
   } else if (method == "walk") {
     command.type = CommandType::kWalk;
     read_walk(&map, &command.walk);
+  } else if (method == "drive" || method == "velocity") {
+    command.type = CommandType::kDrive;
+    read_drive(&map, method == "velocity", &command.drive);
   } else if (method == "footsteps" || method == "replace") {
     command.type = CommandType::kFootsteps;
     read_footsteps(&map, method == "replace", &command);

@@ -11,6 +11,7 @@ namespace gaitd::daemon {
 namespace {
 
 // No footstep is done sooner: the shortest transfer and swing that a command may ask for (s).
+constexpr long long kStepsOfDrive = 10000;
 constexpr double kShortestStep = 0.1;
 
 std::string at_time(double time) {
@@ -56,6 +57,11 @@ class Story {
         break;
       case CommandType::kFootsteps:
         tell_footsteps(command);
+        break;
+      case CommandType::kDrive:
+        check_armed();
+        check_mode();
+        last_.reset();
         break;
       case CommandType::kJointTest:
         if (stopped_by_.empty()) {
@@ -172,6 +178,8 @@ CommandedSteps check_commands(const std::vector<ScenarioCommand>& commands, int 
       steps.advancing += command->walk.steps;
       ++steps.closing;
     }
+    // As many steps as there is time for.
+    if (command->type == CommandType::kDrive) steps.advancing += kStepsOfDrive;
     if (command->type == CommandType::kFootsteps) steps.advancing += command->footstep_count;
   }
   return steps;

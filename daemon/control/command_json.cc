@@ -50,6 +50,16 @@ void visit_walk(Walk& walk, Field&& field) {
   field("first_side", walk.first_side);
 }
 
+template <class Drive, class Field>
+void visit_drive(Drive& drive, Field&& field) {
+  field("forward", drive.velocity.forward);
+  field("lateral", drive.velocity.lateral);
+  field("turn", drive.velocity.turn);
+  field("session", drive.session);
+  field("renewal", drive.renewal);
+  field("holds", drive.holds);
+}
+
 struct Write {
   json* out;
   template <class T>
@@ -105,6 +115,9 @@ std::string input_text(const Command& c, int parameter_owner, int parameter_plac
     case CommandType::kPose:
       visit_pose(c.pose, Write{&out});
       break;
+    case CommandType::kDrive:
+      visit_drive(c.drive, Write{&out});
+      break;
     case CommandType::kSetParameter:
       out["owner"] = parameter_owner;
       out["place"] = parameter_place;
@@ -124,6 +137,7 @@ bool read_input(const json& in, Command* c, int* parameter_owner, int* parameter
     if (c->type == CommandType::kWalk) visit_walk(c->walk, Read{&in});
     if (c->type == CommandType::kJointTest) visit_joint_test(c->joint_test, Read{&in});
     if (c->type == CommandType::kPose) visit_pose(c->pose, Read{&in});
+    if (c->type == CommandType::kDrive) visit_drive(c->drive, Read{&in});
     if (c->type == CommandType::kFootsteps) {
       c->replace = in.at("replace").get<bool>();
       for (const json& step : in.at("footsteps")) {

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kNames[] = {"arm",        "disarm",    "estop",    "reset",     "mode",
                                   "walk",       "footsteps", "pause",    "resume",    "stop",
                                   "abort",      "param.set", "sim.push", "sim.reset", "plugin.swap",
-                                  "joint.test", "pose"};
+                                  "joint.test", "pose",      "drive"};
 
 class Writer {
  public:
@@ -54,6 +54,10 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
           c.walk.length, c.walk.lateral, c.walk.width, c.walk.turn);
     w.add(R"(,"swing":%.17g,"transfer":%.17g,"first":%d)", c.walk.swing_duration,
           c.walk.transfer_duration, c.walk.first_side);
+  }
+  if (c.type == CommandType::kDrive) {
+    w.add(R"(,"forward":%.17g,"lateral":%.17g,"turn":%.17g,"renew":%s)", c.drive.velocity.forward,
+          c.drive.velocity.lateral, c.drive.velocity.turn, c.drive.renewal ? "true" : "false");
   }
   if (c.type == CommandType::kFootsteps) {
     w.add(R"(,"count":%d,"replace":%s)", c.footstep_count, c.replace ? "true" : "false");

@@ -30,6 +30,7 @@ std::int64_t now_ns() {
 // What a command costs a tick: each footstep is looked at.
 int footsteps_of(const Command& command) {
   if (command.type == CommandType::kWalk) return command.walk.steps;
+  if (command.type == CommandType::kDrive) return walking::kFootstepsOfDrive;
   return command.type == CommandType::kFootsteps ? command.footstep_count : 0;
 }
 

@@ -69,6 +69,9 @@ bool Pipeline::apply(int owner, int index, double value) {
     case kSwapParameterOwner:
       set_swap_rule(index, value, &layers_.rules());
       return true;
+    case kDriveParameterOwner:
+      gait_.set_drive_parameter(index, value);
+      return true;
     case kLimitParameterOwner:
       safety_.set_limit(index, value);
       return true;
@@ -223,7 +226,7 @@ CommandReply Pipeline::execute(const Command& command) {
   const bool needs_control =
       command.type == CommandType::kWalk || command.type == CommandType::kFootsteps ||
       command.type == CommandType::kPause || command.type == CommandType::kResume ||
-      command.type == CommandType::kPose;
+      command.type == CommandType::kPose || command.type == CommandType::kDrive;
   const char* why = needs_control ? safety_.refusal(kRequestWalk, data_) : nullptr;
   if (why != nullptr) return refused(command, data_.time.tick, why);
   const char* note = command_note(command, safety_.state(), gait_.state());
@@ -248,6 +251,10 @@ CommandReply Pipeline::execute(const Command& command) {
       break;
     case CommandType::kWalk:
       refusal = gait_.walk(command.walk);
+      break;
+    case CommandType::kDrive:
+      refusal = gait_.drive(command.drive);
+      if (gait_.velocity_walk().limit().refused()) note = gait_.velocity_walk().limit().message;
       break;
     case CommandType::kFootsteps:
       refusal = gait_.footsteps(command.footsteps.data(), command.footstep_count, command.replace);
@@ -276,7 +283,8 @@ CommandReply Pipeline::execute(const Command& command) {
   }
   if (why != nullptr) return refused(command, data_.time.tick, why);
   if (refusal.refused()) return refused(command, data_.time.tick, refusal.message);
-  if (command.type == CommandType::kWalk || command.type == CommandType::kFootsteps) {
+  if (command.type == CommandType::kWalk || command.type == CommandType::kFootsteps ||
+      (command.type == CommandType::kDrive && !gait_.velocity_walk().idle())) {
     safety_.going_on();
   }
   reply.accepted = true;

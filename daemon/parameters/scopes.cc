@@ -20,6 +20,7 @@ constexpr DaemonScope kScopes[] = {
     {kSafetyParameterOwner, "safety", kSafetyParameters, "faults, readying, fall-backs"},
     {kLimitParameterOwner, "limits", kLimitParameters, "clamps behind the plugins"},
     {kSwapParameterOwner, "swap", kSwapParameters, "exchange of plugins while the robot walks"},
+    {kDriveParameterOwner, "drive", walking::kDriveParameters, "walking at a velocity"},
 };
 
 struct Rule {

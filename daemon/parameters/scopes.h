@@ -18,6 +18,7 @@ enum ParameterOwner : int {
   kSafetyParameterOwner,
   kLimitParameterOwner,
   kSwapParameterOwner,
+  kDriveParameterOwner,
   kParameterOwnerCount
 };
 

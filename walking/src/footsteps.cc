@@ -14,14 +14,14 @@ namespace {
 // that.
 constexpr double kEstimate = 0.005;  // m
 
+}  // namespace
+
 GaitdPose moved(const GaitdPose& pose, double x, double y, double yaw) {
   GaitdPose result;
   sdk::view(result.position) = sdk::transform(pose, {x, y, 0.0});
   sdk::store(sdk::quaternion(pose.orientation) * sdk::from_yaw(yaw), result.orientation);
   return result;
 }
-
-}  // namespace
 
 FootstepGenerator::FootstepGenerator(const WalkCommand& walk, const GaitdPose& middle,
                                      int first_side, double width, const GaitParameters& p)

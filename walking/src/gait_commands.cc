@@ -11,8 +11,6 @@
 namespace gaitd::walking {
 namespace {
 
-// Feet this close to side by side need no closing step (m).
-constexpr double kNoClosingStep = 0.03;
 // Of a walk: the first two are taken from where the feet stand, then one for each foot, and one
 // more for walks that end with the other foot.
 constexpr int kDistinctSteps = 5;
@@ -60,14 +58,15 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
     return refuse("walk: the gait mode is stand; choose one to walk in: gaitctl mode walk-bent");
   }
   if (walk.steps < 1) return refuse("walk: at least 1 step expected, got %d", walk.steps);
-  if (Refusal r = check_room(walk.steps + 1); r.refused()) return r;
+  const int kept = left_by_another();
+  if (Refusal r = check_room(walk.steps + 1 - (queue_.size() - kept)); r.refused()) return r;
   // The feet from which the first new footstep is taken: the last two places on the way.
   GaitdPose feet[2] = {state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose};
   for (int side = 0; side < 2; ++side) feet[side].position[2] -= height_offset_;
-  for (int i = 0; i < queue_.size(); ++i) feet[queue_[i].side] = queue_[i].pose;
+  for (int i = 0; i < kept; ++i) feet[queue_[i].side] = queue_[i].pose;
   int first = walk.first_side;
-  if (queue_.size() > 0) {
-    const int next = other_side(queue_[queue_.size() - 1].side);
+  if (kept > 0) {
+    const int next = other_side(queue_[kept - 1].side);
     if (first != GAITD_BOTH && first != next) {
       return refuse("walk: the last footstep ahead is %s, so the first must be %s",
                     next == GAITD_LEFT ? "right" : "left", next == GAITD_LEFT ? "left" : "right");
@@ -100,6 +99,8 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
     }
     at[step.side] = step.pose;
   }
+  queue_.truncate(kept);
+  drive_.end();
   FootstepGenerator generator(walk, middle, first, width, parameters_);
   for (int i = 0; i < generator.count(); ++i) {
     GaitdFootstep step = generator.next();
@@ -117,7 +118,7 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
   }
   // A transfer has chosen its foot: its footstep may be replaced by one of the same side only.
   const bool committed = state_.phase == GAITD_PHASE_TRANSFER && state_.transfer_final == 0;
-  const int kept = replace ? std::min(first_free(), queue_.size()) : queue_.size();
+  const int kept = replace ? std::min(first_free(), queue_.size()) : left_by_another();
   if (count < 1 && !(replace && !committed))
     return refuse("steps: at least one expected, got none");
   if (Refusal r = check_room(count - (queue_.size() - kept)); r.refused()) return r;
@@ -144,6 +145,7 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
     expected = other_side(step.side);
   }
   queue_.truncate(kept);
+  drive_.end();
   for (int i = 0; i < count; ++i) {
     GaitdFootstep step = steps[i];
     complete(step);
@@ -155,6 +157,7 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
 }
 
 Refusal GaitMachine::pause() {
+  drive_.end();
   state_.paused = 1;
   publish_footsteps();
   changed();
@@ -182,6 +185,7 @@ GaitdFootstep GaitMachine::closing_step(const GaitdPose& stance, int side) const
 }
 
 Refusal GaitMachine::stop() {
+  drive_.end();
   state_.paused = 0;
   const int kept = std::min(first_free(), queue_.size());
   GaitdPose stance;
@@ -219,11 +223,15 @@ Refusal GaitMachine::stop() {
   return {};
 }
 
+int GaitMachine::begun() const {
+  const bool chosen = state_.phase == GAITD_PHASE_TRANSFER && state_.transfer_final == 0;
+  return std::min(state_.phase == GAITD_PHASE_SWING || chosen ? 1 : 0, queue_.size());
+}
+
 Refusal GaitMachine::abort() {
+  drive_.end();
   state_.paused = 0;
-  const bool committed = state_.phase == GAITD_PHASE_SWING ||
-                         (state_.phase == GAITD_PHASE_TRANSFER && state_.transfer_final == 0);
-  queue_.truncate(committed ? 1 : 0);
+  queue_.truncate(begun());
   publish_footsteps();
   changed();
   return {};

@@ -38,6 +38,7 @@ GaitMachine::GaitMachine(const GaitdModel& model)
       parameters_(kGaitParameters),
       timing_(model),
       swing_limits_(model),
+      drive_(model),
       nominal_omega_(std::sqrt(model.gravity / model.nominal_com_height)) {
   const int separation = static_cast<int>(Gait::kMinFootSeparation);
   set_parameter(separation, kGaitParameters[separation].default_value);
@@ -62,6 +63,7 @@ void GaitMachine::set_parameter(int index, double value) {
 
 void GaitMachine::reset(const GaitdRobotState& robot) {
   queue_.truncate(0);
+  drive_.end();
   shift_.setZero();
   path_offset_.setZero();
   time_shift_ = 0.0;
@@ -171,6 +173,10 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   path_offset_ = kept(shift_);
   if (queue_.size() == 0) path_offset_.setZero();
   if (recovering_) close_after_recovery();
+  if (drive_.active() && !recovering_) {
+    path_offset_.setZero();  // the way begins anew where the foot is
+    drive_on(0, side);
+  }
   time_shift_ = 0.0;
   apply_pending_mode();
   begin_transfer(robot, other_side(side));
@@ -244,6 +250,7 @@ void GaitMachine::adjust(const GaitdStepAdjustment& adjustment) {
 void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcpPlan& plan,
                          const GaitdToeOff& toe_off, const GaitdStepAdjustment& adjustment) {
   state_.time_in_phase += dt;
+  if (drive_.wait(dt)) drive_on(begun(), GAITD_BOTH);
   const double end = state_.phase_duration - 0.5 * dt;
   const bool over = state_.time_in_phase >= end;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
@@ -257,6 +264,7 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
     case GAITD_PHASE_STAND:
       apply_pending_mode();
       if (recover(dt, robot)) break;
+      if (drive_.active() && queue_.size() == 0) rest_or_drive_on();
       if (queue_.size() > 0 && state_.paused == 0) begin_transfer(robot, GAITD_BOTH);
       break;
     case GAITD_PHASE_TRANSFER: {

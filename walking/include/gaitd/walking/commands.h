@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 #include "gaitd/abi/types.h"
 
 namespace gaitd::walking {
@@ -18,6 +20,25 @@ struct WalkCommand {
   double transfer_duration = 0.0;  // s; 0: the parameter gait.transfer_duration
   int first_side = GAITD_BOTH;     // GAITD_BOTH: the gait machine chooses
 };
+
+// In the frame of the middle of the feet, which goes along: forwards and to the left (m/s), turning
+// to the left (rad/s).
+struct Velocity {
+  double forward = 0.0;
+  double lateral = 0.0;
+  double turn = 0.0;
+};
+
+// A velocity to walk at until the next command, or until nobody renews it.
+struct VelocityCommand {
+  Velocity velocity;
+  std::int64_t session = 0;  // of whoever drives; a renewal is taken from him alone
+  bool renewal = false;
+  bool holds = false;  // need not be renewed
+};
+
+// That are made for a velocity at a time.
+inline constexpr int kFootstepsOfDrive = 4;
 
 // Largest number of explicit footsteps in one command.
 inline constexpr int kMaxFootstepsPerCommand = 64;

@@ -55,6 +55,9 @@ class FootstepGenerator {
   int made_ = 0;
 };
 
+// `pose` moved ahead and to the left (m), and turned to the left (rad), in its own frame.
+GaitdPose moved(const GaitdPose& pose, double x, double y, double yaw);
+
 // Pose half-way between two soles: mean position and height, mean yaw, level.
 GaitdPose middle_pose(const GaitdPose& a, const GaitdPose& b);
 

@@ -10,6 +10,7 @@
 #include "gaitd/walking/refusal.h"
 #include "gaitd/walking/step_timing.h"
 #include "gaitd/walking/swing_limits.h"
+#include "gaitd/walking/velocity_walk.h"
 
 namespace gaitd::walking {
 
@@ -20,6 +21,7 @@ class GaitMachine {
   explicit GaitMachine(const GaitdModel& model);
 
   void set_parameter(int index, double value);
+  void set_drive_parameter(int index, double value) { drive_.set_parameter(index, value); }
   const GaitParameters& parameters() const { return parameters_; }
 
   // Stands on both feet where `robot` says they are; drops all footsteps. Keeps the mode.
@@ -31,6 +33,10 @@ class GaitMachine {
   // Appends the footsteps, or replaces all that have not begun. `count` at most
   // kMaxFootstepsPerCommand. Zero durations and heights take the parameters.
   Refusal footsteps(const GaitdFootstep* steps, int count, bool replace);
+  // Walks at a velocity, in the place of the footsteps that have not begun. A walk or footsteps end
+  // it likewise, as stop and abort do.
+  Refusal drive(const VelocityCommand& command);
+  const VelocityWalk& velocity_walk() const { return drive_; }
   Refusal pause();
   Refusal resume();
   Refusal stop();
@@ -51,6 +57,7 @@ class GaitMachine {
 
  private:
   static constexpr int kQueueCapacity = 1024;
+  static constexpr double kNoClosingStep = 0.03;  // m, off side by side
 
   void begin_transfer(const GaitdRobotState& robot, int trailing_side);
   // Changes the durations of the step that begins where the legs would be too short for it.
@@ -75,6 +82,17 @@ class GaitMachine {
   // Copies the queue into the state, with shifts and height offset.
   void publish_footsteps();
   void changed() { ++state_.plan_revision; }
+  // Footsteps that are under way: of a swing, or the one that a transfer has chosen.
+  int begun() const;
+  // What another producer of footsteps leaves of those that are ahead.
+  int left_by_another() const { return drive_.active() ? begun() : queue_.size(); }
+  // Makes the footsteps of a velocity behind the first `kept`. `landed`: where none is kept, the foot
+  // that has just come down, GAITD_BOTH while standing.
+  void drive_on(int kept, int landed);
+  // Standing without footsteps: those of the velocity, or the end of a drive that nobody renews.
+  void rest_or_drive_on();
+  GaitdFootstep drive_step(const GaitdPose& middle, int side, const VelocityWalk::Step& step,
+                           double duration) const;
   // First footstep in the queue that has not begun.
   int first_free() const { return state_.phase == GAITD_PHASE_SWING ? 1 : 0; }
   GaitdFootstep closing_step(const GaitdPose& stance, int side) const;
@@ -96,6 +114,7 @@ class GaitMachine {
   double time_shift_ = 0.0;                                // s, of the current phase
   StepTiming timing_;
   SwingLimits swing_limits_;
+  VelocityWalk drive_;
   StepTiming::Changes time_changes_{};  // s, from the transfer of the current step on
   double time_unheld_ = 0.0;            // s, since the feet cannot hold the ICP
   double landed_impulse_ = 0.0;         // N s, of the load on the swing foot since it came

@@ -97,6 +97,18 @@ inline constexpr std::array<GaitdParameter, 31> kGaitParameters = {
         "ICP inside the edge of the feet at which the robot still steps; negative: past it"),
 };
 
+enum class Drive { kTimeout, kAcceleration, kMaxForward, kMaxLateral, kMaxTurn, kCount };
+inline constexpr std::array<GaitdParameter, 5> kDriveParameters = {
+    real_parameter("timeout", "s", 0.1, 5, 0.5,
+                   "without a renewal after which the robot comes to a stand"),
+    real_parameter("acceleration", "g", 0.002, 0.1, 0.03,
+                   "at most; of a turn, at a distance of the height of the CoM"),
+    real_parameter("max_forward", "sqrt(g h)", 0.01, 0.5, 0.23,
+                   "speed forwards, half of it backwards; h: height of the CoM"),
+    real_parameter("max_lateral", "sqrt(g h)", 0.01, 0.2, 0.075, "speed sideways"),
+    real_parameter("max_turn", "sqrt(g / h)", 0.01, 0.5, 0.15, "speed of a turn"),
+};
+
 enum class Swing {
   kTouchdownVelocity,
   kApexFraction,
