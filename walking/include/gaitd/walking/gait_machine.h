@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "gaitd/abi/types.h"
+#include "gaitd/walking/capture_check.h"
 #include "gaitd/walking/commands.h"
 #include "gaitd/walking/footsteps.h"
 #include "gaitd/walking/refusal.h"
@@ -82,6 +83,9 @@ class GaitMachine {
   // Whether the footstep can be taken, from `stance` by the foot that stands at `from` before.
   Refusal check(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
                 int number) const;
+  // Whether the weight gets over each of the footsteps in time, the first `kept` of the queue being
+  // those before them. `closing_number` names a closing one in the message.
+  Refusal check_capture(const GaitdFootstep* steps, int count, int kept, int closing_number) const;
   void complete(GaitdFootstep& step);
   // Of a footstep that gives none.
   void fill_in(GaitdFootstep& step) const;
@@ -96,6 +100,7 @@ class GaitMachine {
   double time_shift_ = 0.0;                                // s, of the current phase
   StepTiming timing_;
   SwingLimits swing_limits_;
+  CaptureCheck capture_check_;
   StepTiming::Changes time_changes_{};  // s, from the transfer of the current step on
   double time_unheld_ = 0.0;            // s, since the feet cannot hold the ICP
   double landed_impulse_ = 0.0;         // N s, of the load on the swing foot since it came
