@@ -144,31 +144,6 @@ TEST(IcpQp, ATransferIsShortenedByALeadOfTheIcpOnly) {
   EXPECT_GE(w.gait().phase_duration + out.time_shift, 0.1 - 1e-9);
 }
 
-// Toes and the foot ahead span a thin area: an ICP between the feet, but beside it, is no reason to
-// lift a foot, one beside both feet is.
-TEST(IcpQp, ATransferIsNotShortenedForAnIcpBesideTheToesButBetweenTheFeet) {
-  SyntheticWalk w;
-  ASSERT_FALSE(w.machine.walk({.steps = 5, .length = 0.7}).refused());
-  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 3));
-  w.tick();
-  const GaitdGaitState& gait = w.gait();
-  const int side = gait.trailing_side;
-  const double outwards = walking::side_sign(side);
-  w.toe_off.active = 1;
-  w.toe_off.side = side;
-  w.tick();
-  ASSERT_EQ(gait.footholds[side].contact, GAITD_CONTACT_TOE);
-  const GaitdPose& foot = gait.footholds[side].pose;
-  const Vector2d beside_toes(foot.position[0] + 0.12, foot.position[1] + outwards * 0.05);
-  ASSERT_LT(walking::support_polygon(atlas(), gait).inside_distance(beside_toes), 0.0);
-  for (const bool between : {true, false}) {
-    sdk::view(w.robot.icp) = beside_toes;
-    if (!between) w.robot.icp[1] += outwards * 0.1;
-    const double shift = with_error(w, 0.0, 0.0).time_shift;
-    EXPECT_EQ(shift == 0.0, between) << shift;
-  }
-}
-
 TEST(IcpQp, GoesOnFromAShiftThatAnotherVariantMade) {
   SyntheticWalk w = in_swing();
   IcpQp first(atlas());

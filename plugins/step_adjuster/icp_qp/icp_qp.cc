@@ -180,16 +180,8 @@ void IcpQp::shorten_transfer(const GaitdStepAdjusterInput& in) {
   if (speed < 1e-3) return;
   const GaitdGaitState& gait = *in.gait;
   double lead = velocity.dot(view(in.robot->icp) - planned) / speed;
-  // Feet that cannot hold the ICP had better step. A foot on its toes counts as a whole: beside the
-  // thin area that the toes leave, the ICP is still between the feet, and a foot that is lifted
-  // lets it fall back from a foot far ahead.
-  walking::ConvexPolygon feet;
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    GaitdFoothold foothold = gait.footholds[side];
-    foothold.contact = GAITD_CONTACT_FULL;
-    walking::add_foothold(foothold, model_.feet[side].toe_point, feet);
-  }
-  feet.make_hull();
+  // Feet that cannot hold the ICP had better step.
+  const walking::ConvexPolygon feet = walking::support_polygon(model_, gait);
   if (feet.inside_distance(view(in.robot->icp)) < 0.0) lead = speed * gait.time_remaining;
   if (lead <= p_[P::kLead]) return;
   const double least = std::max(p_[P::kShortestTransfer] - gait.time_in_phase, 0.0);
