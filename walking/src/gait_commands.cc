@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The commands of the gait machine: what operators and scenarios may ask of it.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "gaitd/sdk/views.h"
@@ -42,6 +43,33 @@ Refusal GaitMachine::check(const GaitdFootstep& step, const GaitdPose& stance,
   GaitdFootstep filled = step;
   fill_in(filled);
   return swing_limits_.check(filled, stance, from, number);
+}
+
+Refusal GaitMachine::check_capture(const GaitdFootstep* steps, int count, int kept,
+                                   int closing_number) const {
+  const auto at = [&](int i) -> const GaitdFootstep& {
+    return i < kept ? queue_[i] : steps[i - kept];
+  };
+  // A foot that lands, and what follows it.
+  std::array<GaitdFootstep, CaptureCheck::kAhead> ahead;
+  for (int landing = std::max(kept - 1, 0); landing + 1 < kept + count; ++landing) {
+    const int known = std::min(CaptureCheck::kAhead, kept + count - landing);
+    for (int i = 0; i < known; ++i) {
+      ahead[i] = at(landing + i);
+      fill_in(ahead[i]);
+    }
+    GaitdFoothold stance = landing > 0 ? foothold_of(model_, at(landing - 1))
+                                       : state_.footholds[other_side(ahead[0].side)];
+    stance.contact = GAITD_CONTACT_FULL;
+    const int number = ahead[1].closing != 0 ? closing_number : landing + 2 - kept;
+    if (Refusal r =
+            capture_check_.check(stance, ahead.data(), known,
+                                 parameters_[Gait::kFinalTransferDuration], state_.omega, number);
+        r.refused()) {
+      return r;
+    }
+  }
+  return {};
 }
 
 Refusal GaitMachine::set_mode(int mode) {
@@ -91,13 +119,18 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
   }
   FootstepGenerator trial(shorter, middle, first, width, parameters_);
   GaitdPose at[2] = {feet[GAITD_LEFT], feet[GAITD_RIGHT]};
+  std::array<GaitdFootstep, kDistinctSteps + 1> distinct;
   for (int i = 0; i < trial.count(); ++i) {
-    const GaitdFootstep step = trial.next();
+    const GaitdFootstep step = distinct[i] = trial.next();
     const int number = step.closing != 0 ? walk.steps + 1 : i + 1;
     if (Refusal r = check(step, at[other_side(step.side)], at[step.side], number); r.refused()) {
       return r;
     }
     at[step.side] = step.pose;
+  }
+  if (Refusal r = check_capture(distinct.data(), trial.count(), kept, walk.steps + 1);
+      r.refused()) {
+    return r;
   }
   queue_.truncate(kept);
   drive_.end();
@@ -144,6 +177,7 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
     feet[step.side] = step.pose;
     expected = other_side(step.side);
   }
+  if (Refusal r = check_capture(steps, count, kept, count); r.refused()) return r;
   queue_.truncate(kept);
   drive_.end();
   for (int i = 0; i < count; ++i) {

@@ -79,6 +79,7 @@ void GaitMachine::drive_on(int kept, int landed) {
       step = {v, drive_.width(v, duration, parameters_[Gait::kMinFootSeparation])};
       footstep = drive_step(middle, side, step, duration);
       refusal = check(footstep, feet[other_side(side)], feet[side], count + 1);
+      if (!refusal.refused()) refusal = check_capture(&footstep, 1, queue_.size(), count + 1);
       if (!refusal.refused()) break;
       drive_.set_limit(refusal);
     }

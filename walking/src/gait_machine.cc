@@ -38,6 +38,7 @@ GaitMachine::GaitMachine(const GaitdModel& model)
       parameters_(kGaitParameters),
       timing_(model),
       swing_limits_(model),
+      capture_check_(model),
       drive_(model),
       nominal_omega_(std::sqrt(model.gravity / model.nominal_com_height)) {
   const int separation = static_cast<int>(Gait::kMinFootSeparation);

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "gaitd/abi/types.h"
+#include "gaitd/walking/capture_check.h"
 #include "gaitd/walking/commands.h"
 #include "gaitd/walking/footsteps.h"
 #include "gaitd/walking/refusal.h"
@@ -86,8 +87,8 @@ class GaitMachine {
   int begun() const;
   // What another producer of footsteps leaves of those that are ahead.
   int left_by_another() const { return drive_.active() ? begun() : queue_.size(); }
-  // Makes the footsteps of a velocity behind the first `kept`. `landed`: where none is kept, the foot
-  // that has just come down, GAITD_BOTH while standing.
+  // Makes the footsteps of a velocity behind the first `kept`. `landed`: where none is kept, the
+  // foot that has just come down, GAITD_BOTH while standing.
   void drive_on(int kept, int landed);
   // Standing without footsteps: those of the velocity, or the end of a drive that nobody renews.
   void rest_or_drive_on();
@@ -100,6 +101,9 @@ class GaitMachine {
   // Whether the footstep can be taken, from `stance` by the foot that stands at `from` before.
   Refusal check(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
                 int number) const;
+  // Whether the weight gets over each of the footsteps in time, the first `kept` of the queue being
+  // those before them. `closing_number` names a closing one in the message.
+  Refusal check_capture(const GaitdFootstep* steps, int count, int kept, int closing_number) const;
   void complete(GaitdFootstep& step);
   // Of a footstep that gives none.
   void fill_in(GaitdFootstep& step) const;
@@ -114,6 +118,7 @@ class GaitMachine {
   double time_shift_ = 0.0;                                // s, of the current phase
   StepTiming timing_;
   SwingLimits swing_limits_;
+  CaptureCheck capture_check_;
   VelocityWalk drive_;
   StepTiming::Changes time_changes_{};  // s, from the transfer of the current step on
   double time_unheld_ = 0.0;            // s, since the feet cannot hold the ICP
