@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "gaitd/sdk/views.h"
-#include "gaitd/walking/polygon.h"
 #include "gaitd/walking/support.h"
 
 namespace gaitd::walking {
@@ -13,19 +12,6 @@ namespace {
 
 // Shorter pieces are treated as this long: the slope of the eCMP must stay finite.
 constexpr double kShortestPiece = 1e-3;
-constexpr double kRounding = 1e-9;  // m
-
-// What is inside the extent of an outline may be beside the outline: a triangle is half of it.
-Eigen::Vector2d inside_outline(const GaitdFoothold& foothold, const Eigen::Vector2d& p,
-                               double margin) {
-  ConvexPolygon outline;
-  for (int i = 0; i < foothold.polygon_count; ++i) {
-    outline.add({foothold.contact_polygon[i][0], foothold.contact_polygon[i][1]});
-  }
-  outline.make_hull();
-  if (outline.size() < 3 || outline.inside_distance(p) >= margin - kRounding) return p;
-  return outline.inset(margin).closest_point(p);
-}
 
 Eigen::Vector2d point_in_sole(const GaitdFoothold& foothold, int side, double x_fraction,
                               double inwards_fraction, double margin) {
@@ -37,8 +23,7 @@ Eigen::Vector2d point_in_sole(const GaitdFoothold& foothold, int side, double x_
   };
   const double x = at(e.x_min, e.x_max, x_fraction);
   const double y = at(e.y_min, e.y_max, -side_sign(side) * inwards_fraction);
-  const Eigen::Vector2d p = inside_outline(foothold, {x, y}, margin);
-  return sdk::transform(foothold.pose, {p.x(), p.y(), 0.0}).head<2>();
+  return sdk::transform(foothold.pose, {x, y, 0.0}).head<2>();
 }
 
 }  // namespace

@@ -159,24 +159,6 @@ TEST(IcpTrajectory, EndsAtRestMidwayBetweenTheLastFeet) {
   EXPECT_LT(s.icp_velocity.norm(), 1e-12);
 }
 
-// Half of the extent of a triangle is no part of it.
-TEST(IcpTrajectory, TheCmpOfATriangleIsOnIt) {
-  GaitdFoothold foothold =
-      whole_sole(testing::atlas(), GAITD_LEFT, GaitdPose{{0, 0, 0}, {0, 0, 0, 1}});
-  const double corners[3][2] = {{0.13, -0.064}, {0.13, 0.064}, {-0.13, 0.064}};
-  ConvexPolygon outline;
-  foothold.polygon_count = 3;
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 2; ++k) foothold.contact_polygon[i][k] = corners[i][k];
-    outline.add({corners[i][0], corners[i][1]});
-  }
-  const CmpOffsets offsets;
-  for (const Eigen::Vector2d& p : {entry_cmp(foothold, GAITD_LEFT, offsets),
-                                   exit_cmp(foothold, GAITD_LEFT, nullptr, offsets)}) {
-    EXPECT_GE(outline.inside_distance(p), offsets.margin - 1e-9);
-  }
-}
-
 TEST(IcpTrajectory, StandingHasNoPieceAndRestsBetweenTheFeet) {
   SyntheticWalk walk;
   const IcpTrajectory t = built(walk.gait());
