@@ -14,8 +14,7 @@ namespace gaitd::walking {
 namespace {
 
 // Over 1 / omega, the time in which an ICP runs away: by how much a foot may land early or late,
-// for ground that is not where it was said to be. Walks at the ends of what legs can do have room
-// for half as much again.
+// for ground that is not where it was said to be.
 constexpr double kLandingError = 0.2;
 // s, between the transfers that are tried for the advice, and the last of them.
 constexpr double kTransferStep = 0.05;
