@@ -81,6 +81,7 @@ int drive(const Context& context, const DriveOptions& options) {
     }
     last = over();
   }
+  if (!context.json && answer.is_object()) answer.erase("note");  // has been told
   if (!StopSignals::requested()) wait_for_the_stand(client.get());
   std::cout << (context.json ? json_text(answer) : result_text("drive", "drive", answer))
             << std::flush;

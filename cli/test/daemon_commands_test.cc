@@ -42,6 +42,7 @@ class Gaitctl : public ::testing::Test {
     methods.add("drive", [this](const json& params) -> RpcResult {
       const std::lock_guard lock(mutex_);
       drives_.push_back(params);
+      stopped_ = params["forward"] == 0.0;
       if (drives_.size() > 2 && params["forward"] == 3.0) {
         return RpcError{daemon::rpc_code::kRefused, "drive: taken over", {{"tick", 7}}};
       }
@@ -51,9 +52,9 @@ class Gaitctl : public ::testing::Test {
       return RpcError{daemon::rpc_code::kRefused, "not paused; nothing to resume", {{"tick", 7}}};
     });
     methods.add_snapshot("version", [] { return json{{"version", "9.9"}}; });
-    methods.add_snapshot("status", [] {
+    methods.add_snapshot("status", [this] {
       return json{
-          {"state", "walking"},
+          {"state", stopped_ ? "standing" : "walking"},
           {"time", 12.5},
           {"faults", json::array()},
           {"layers", {{{"layer", "icp_planner"}, {"variant", "heel_to_toe"}, {"p99_us", 3.25}}}}};
@@ -97,6 +98,7 @@ class Gaitctl : public ::testing::Test {
   Workspace workspace_;
   std::mutex mutex_;
   std::vector<json> drives_;
+  std::atomic<bool> stopped_{false};
   std::string method_;
   json params_;
   daemon::EstopFlag estop_;
