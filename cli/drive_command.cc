@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <iostream>
@@ -109,7 +108,7 @@ void add_drive_command(CLI::App* app, Context* context) {
                    "End after this time, s, 0.1 to 3600, when the robot stands; else at Ctrl-C")
       ->check(CLI::Range(0.1, 3600.0))
       ->type_name("S");
-  command->callback([context, options, command] {
+  command->callback([context, options] {
     if (options->velocity.empty()) {
       throw CLI::RequiredError("drive: one of --forward, --lateral and --turn");
     }

@@ -11,8 +11,9 @@ namespace gaitd::daemon {
 namespace {
 
 // No footstep is done sooner: the shortest transfer and swing that a command may ask for (s).
-constexpr long long kStepsOfDrive = 10000;
 constexpr double kShortestStep = 0.1;
+// A velocity asks for as many as there is time for.
+constexpr long long kStepsOfDrive = 10000;
 
 std::string at_time(double time) {
   char text[32];
@@ -178,7 +179,6 @@ CommandedSteps check_commands(const std::vector<ScenarioCommand>& commands, int 
       steps.advancing += command->walk.steps;
       ++steps.closing;
     }
-    // As many steps as there is time for.
     if (command->type == CommandType::kDrive) steps.advancing += kStepsOfDrive;
     if (command->type == CommandType::kFootsteps) steps.advancing += command->footstep_count;
   }

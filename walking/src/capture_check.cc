@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/icp_trajectory.h"
@@ -86,29 +87,23 @@ Refusal CaptureCheck::check(const GaitdFoothold& stance, const GaitdFootstep* st
                             double final_transfer, double omega, int number) const {
   const Room r = room(stance, steps, count, final_transfer, omega);
   if (r.capture >= r.error) return {};
-  const char* side = steps[1].side == GAITD_LEFT ? "left" : "right";
   std::array<GaitdFootstep, kAhead> slower;
   count = std::min(count, kAhead);
   std::copy(steps, steps + count, slower.begin());
   double& transfer = slower[1].transfer_duration;
+  char advice[64] = "take shorter steps";
   while (transfer < kLongestTransfer) {
     transfer += kTransferStep;
     const Room more = room(stance, slower.data(), count, final_transfer, omega);
     if (more.capture < more.error) continue;
-    return refuse(
-        "footstep %d (%s): when the foot before it lands %.2f s early or late, the capture point "
-        "is "
-        "off by %.3f m, and a transfer of %.2f s and a swing of %.2f s bring back %.3f; let the "
-        "transfer take %.2f s",
-        number, side, kLandingError / omega, r.error, steps[1].transfer_duration,
-        steps[1].swing_duration, r.capture, transfer);
+    std::snprintf(advice, sizeof(advice), "let the transfer take %.2f s", transfer);
+    break;
   }
   return refuse(
       "footstep %d (%s): when the foot before it lands %.2f s early or late, the capture point is "
-      "off by %.3f m, and a transfer of %.2f s and a swing of %.2f s bring back %.3f; take shorter "
-      "steps",
-      number, side, kLandingError / omega, r.error, steps[1].transfer_duration,
-      steps[1].swing_duration, r.capture);
+      "off by %.3f m, and a transfer of %.2f s and a swing of %.2f s bring back %.3f; %s",
+      number, steps[1].side == GAITD_LEFT ? "left" : "right", kLandingError / omega, r.error,
+      steps[1].transfer_duration, steps[1].swing_duration, r.capture, advice);
 }
 
 }  // namespace gaitd::walking
