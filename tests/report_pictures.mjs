@@ -21,7 +21,7 @@ async function open(renderer) {
 
 // A picture of the scene at a share of the log, as a URL with all of it.
 const draw = (page, share) => page.evaluate((share) => {
-  gaitd.scene.show(Math.floor(share * gaitd.log.rows));
+  gaitd.scene.show(gaitd.log.time[Math.floor(share * gaitd.log.rows)]);
   return gaitd.scene.renderer.domElement.toDataURL();
 }, share);
 

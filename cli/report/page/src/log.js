@@ -7,7 +7,14 @@ export class Log {
     this.index = new Map(this.signals.map((signal, i) => [signal.name, i]));
     this.columns = new Map();  // those that were asked for
     this.time = this.column('time');
+    // Beside what the robot did: {time, push: link, force, point, duration}.
+    this.pushes = this.events.filter(({text}) => text?.push && text.force)
+        .map(({time, text}) => ({time, ...text}));
+    this.all = [this, ...(this.others ?? []).map((other) => new Log(other))];
   }
+
+  get start() { return this.time[0]; }
+  get end() { return this.time[this.rows - 1]; }
 
   has(name) { return this.index.has(name); }
 
@@ -50,6 +57,14 @@ export class Log {
       if (this.time[middle] <= time) low = middle; else high = middle - 1;
     }
     return low;
+  }
+
+  // A signal at the times of another log; NaN where there is none of it.
+  columnAt(name, times) {
+    const column = this.column(name), {start, end} = this;
+    if (times === this.time) return column;
+    return Float32Array.from(times, (time) =>
+        time < start || time > end ? NaN : column[this.row(time)]);
   }
 
   // [from, to] in s of every stretch in which an enumeration has that word or a boolean is true.

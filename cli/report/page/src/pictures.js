@@ -41,7 +41,7 @@ function replay(log, element) {
   element.style.cssText = `width: ${kWidth}px; height: ${kHeight}px`;
   const scene = new Scene(element, log);
   scene.renderer.setPixelRatio(2);  // smooths the edges
-  scene.show(log.rows >> 1);
+  scene.show(log.time[log.rows >> 1]);
   const [canvas, context] = canvasOf(kWidth, kHeight);
   context.drawImage(scene.renderer.domElement, 0, 0, kWidth, kHeight);
   return canvas;

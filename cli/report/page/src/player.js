@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+import {listenToKeys} from './keys.js';
 import {addPlots} from './plots.js';
 import {kMarkers, Scene} from './scene.js';
+import {kPushColor} from './theme.js';
 
 const kControlsPeriod = 100;  // ms between updates of slider and clock while it plays
 
@@ -12,32 +14,63 @@ function row(table, cells, kind = '') {
   for (const cell of cells) line.insertCell().textContent = cell;
 }
 
-function fillTexts(log) {
-  document.title = $('title').textContent = log.title;
+function heading(table, text) {
+  const cell = document.createElement('th');
+  cell.colSpan = 5;
+  cell.textContent = text;
+  $(table).insertRow().append(cell);
+}
+
+function fillVerdict(log) {
   const {verdict} = log;
-  if (verdict) {
-    $('verdict').textContent = verdict.word;
-    $('verdict').className = verdict.good ? 'pass' : 'fail';
-    for (const text of log.damage) row('judgements', ['', 'damaged', text], 'fail');
-    for (const {name, figure, bound, note, pass} of verdict.expectations) {
-      row('judgements', [pass ? 'ok' : 'FAIL', name, figure, bound, note ?? ''], pass ? '' : 'fail');
-    }
-    for (const [name, value] of Object.entries(verdict.figures)) {
-      row('judgements', ['', name, `${value === null ? '-' : Number(value.toPrecision(4))} ${verdict.units[name] ?? ''}`]);
-    }
+  if (!verdict) return;
+  for (const text of log.damage) row('judgements', ['', 'damaged', text], 'fail');
+  for (const {name, figure, bound, note, pass} of verdict.expectations) {
+    row('judgements', [pass ? 'ok' : 'FAIL', name, figure, bound, note ?? ''], pass ? '' : 'fail');
   }
-  const fillWhenOpened = (id, rows) => $(id).closest('details').addEventListener(
-      'toggle', () => { for (const cells of rows) row(id, cells); }, {once: true});
-  fillWhenOpened('events', log.events.map(
+  for (const [name, value] of Object.entries(verdict.figures)) {
+    row('judgements', ['', name, `${value === null ? '-' : Number(value.toPrecision(4))} ${verdict.units[name] ?? ''}`]);
+  }
+}
+
+function fillTexts(log) {
+  const several = log.all.length > 1;
+  const head = (table, one) => several && heading(table, one.name);
+  document.title = $('title').textContent = log.all.map((one) => several ? one.name : one.title).join(' and ');
+  for (const one of log.all) {
+    if (!one.verdict) continue;
+    const word = Object.assign(document.createElement('span'), {
+        className: one.verdict.good ? 'pass' : 'fail',
+        textContent: (several ? `${one.name}: ` : '') + one.verdict.word});
+    $('verdict').append(word, ' ');
+    head('judgements', one);
+    fillVerdict(one);
+  }
+  const fillWhenOpened = (id, rowsOf) => $(id).closest('details').addEventListener('toggle', () => {
+    for (const one of log.all) {
+      head(id, one);
+      for (const cells of rowsOf(one)) row(id, cells);
+    }
+  }, {once: true});
+  fillWhenOpened('events', (one) => one.events.map(
       ({time, kind, text}) => [`${time.toFixed(3)} s`, kind, JSON.stringify(text)]));
-  fillWhenOpened('configuration', Object.entries(log.metadata));
-  $('legend').innerHTML = kMarkers.map(({name, color}) =>
-      `<span><i style="background:${color}"></i>${name}</span>`).join('');
+  fillWhenOpened('configuration', (one) => Object.entries(one.metadata));
+  const pushed = log.all.some((one) => one.pushes.length);
+  const marks = [...kMarkers, ...(pushed ? [{name: 'push', color: kPushColor}] : [])];
+  for (const {name, color} of marks) {
+    const mark = document.createElement('i');
+    mark.style.background = color;
+    const entry = document.createElement('span');
+    entry.append(mark, name);
+    $('legend').append(entry);
+  }
+  if (several) $('legend').append(`ghost: ${log.all.slice(1).map(({name}) => name).join(', ')}`);
 }
 
 // The page as one uses it: replay, slider and plots move together. Gives what it is made of.
 export function play(log) {
-  const [start, end] = [log.time[0], log.time[log.rows - 1]];
+  const start = Math.min(...log.all.map((one) => one.start));
+  const end = Math.max(...log.all.map((one) => one.end));
 
   const player = {time: start, playing: false, frames: 0, go};
 
@@ -71,6 +104,18 @@ export function play(log) {
     showControls();
   });
 
+  const faster = (by) => {
+    const speed = $('speed'), most = speed.options.length - 1;
+    speed.selectedIndex = Math.min(most, Math.max(0, speed.selectedIndex + by));
+  };
+  listenToKeys({
+    toggle: () => $('play').click(),
+    move: (seconds) => go(player.time + seconds),
+    rows: (count) => go(log.time[Math.min(log.rows - 1, Math.max(0, log.row(player.time) + count))]),
+    start: () => go(start), end: () => go(end),
+    faster: () => faster(1), slower: () => faster(-1),
+  });
+
   let last = performance.now(), controls = last;
   function frame(now) {
     if (player.playing) {
@@ -84,7 +129,7 @@ export function play(log) {
     }
     if (player.playing) scene.adapt(now - last);
     last = now;
-    scene.update(log.row(player.time));
+    scene.update(player.time);
     if (player.changed) {
       player.changed = false;
       for (const {plot} of plots) plot.placeTime?.();

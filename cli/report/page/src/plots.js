@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
+import {kPushColor, lineColor, theme} from './theme.js';
 
-const kColors = ['#1f77b4', '#d62728', '#2ca02c', '#ff7f0e', '#9467bd', '#8c564b', '#e377c2', '#17becf'];
 const kHeight = 190;
 
 // What is plotted over time: a title, a unit, and signals with their labels.
@@ -52,8 +52,29 @@ function shades(log) {
         if (right > left) ctx.fillRect(left, bbox.top + top, right - left, height);
       }
     };
-    fill(transfers, '#0000000f', 0, bbox.height);
+    fill(transfers, theme.phase, 0, bbox.height);
     fill(toeOffs, '#ff7f0e', 0, 4 * devicePixelRatio);
+    ctx.restore();
+  }]}};
+}
+
+// A band for the time of each push, its force above.
+function pushMarks(log) {
+  const pushes = log.all.flatMap((one) => one.pushes);
+  return {hooks: {draw: [(plot) => {
+    const {ctx, bbox} = plot;
+    ctx.save();
+    ctx.font = `${10 * devicePixelRatio}px sans-serif`;
+    ctx.textAlign = 'left';
+    ctx.textBaseline = 'top';
+    for (const {time, duration, force} of pushes) {
+      const left = plot.valToPos(time, 'x', true), right = plot.valToPos(time + duration, 'x', true);
+      if (right < bbox.left || left > bbox.left + bbox.width) continue;
+      ctx.fillStyle = `${kPushColor}40`;
+      ctx.fillRect(left, bbox.top, Math.max(devicePixelRatio, right - left), bbox.height);
+      ctx.fillStyle = kPushColor;
+      ctx.fillText(`push, ${Math.hypot(...force).toFixed(0)} N`, right + 3, bbox.top + 5 * devicePixelRatio);
+    }
     ctx.restore();
   }]}};
 }
@@ -63,7 +84,7 @@ function shades(log) {
 function stateBands(log) {
   const kBand = 11, kWordColor = '#ffffff';
   const bands = ['left', 'right'].map((side) => log.words(`leg/${side}/state`).flatMap((word, i) =>
-      log.spans(`leg/${side}/state`, word).map(([from, to]) => ({word, color: kColors[i], from, to}))));
+      log.spans(`leg/${side}/state`, word).map(([from, to]) => ({word, color: lineColor(i), from, to}))));
   return {hooks: {draw: [(plot) => {
     const {ctx, bbox} = plot, height = kBand * devicePixelRatio;
     ctx.save();
@@ -113,32 +134,48 @@ function cursor(player) {
   }};
 }
 
+const axis = (label, size) => ({label, ...size, stroke: theme.ink, grid: {stroke: theme.grid},
+                                ticks: {stroke: theme.grid}});
+
+// Of several logs each line says whose it is.
+const named = (log, one, label) => log.all.length > 1 ? `${label}, ${one.name}` : label;
+
 function timePlot(log, panel, player, element, width, height) {
+  // Over the times of the longest.
+  const {time} = log.all.reduce((longest, one) => one.end > longest.end ? one : longest);
   // Without values of its own: the words under the mouse, on a scale that is not the one of the lines.
   const states = panel.states ? {label: 'states', scale: 'states', points: {show: false},
-      value: (_, __, ___, row) => row === null ? '' :
-          ['left', 'right'].map((side) => log.word(`leg/${side}/state`, row)).join(', ')} : undefined;
-  const data = [log.time, ...panel.lines.map(({name, scale}) =>
-      scale === 1 ? log.column(name) : log.column(name).map((value) => value * scale))];
-  if (states) data.push(new Float32Array(log.rows).fill(NaN));
+      value: (_, __, ___, row) => row === null ? '' : ['left', 'right'].map(
+          (side) => log.word(`leg/${side}/state`, log.row(time[row]))).join(', ')} : undefined;
+  const lines = log.all.flatMap((one, k) => panel.lines.map((line, i) => ({...line, one, k, i}))
+      .filter(({name}) => one.has(name)));
+  const data = [time, ...lines.map(({one, name, scale}) => {
+    const column = one.columnAt(name, time);
+    return scale === 1 ? column : column.map((value) => value * scale);
+  })];
+  if (states) data.push(new Float32Array(time.length).fill(NaN));
   return new uPlot({
     width, height, cursor: {sync: {key: 'time'}},
     scales: {x: {time: false}, states: {range: [0, 1]}},
-    axes: [{label: 's', labelSize: 16, size: 32}, {label: panel.unit, size: 56}],
-    series: [{label: 't'}, ...panel.lines.map(({label}, i) => (
-        {label, stroke: kColors[i % kColors.length], width: 1})), ...(states ? [states] : [])],
-    plugins: [shades(log), cursor(player), ...(states ? [stateBands(log)] : [])],
+    axes: [axis('s', {labelSize: 16, size: 32}), axis(panel.unit, {size: 56})],
+    series: [{label: 't'}, ...lines.map(({label, one, k, i}) => ({
+        label: named(log, one, label), stroke: lineColor(i, k), width: 1, dash: k ? [6, 4] : undefined})),
+             ...(states ? [states] : [])],
+    plugins: [shades(log), cursor(player), ...(states ? [stateBands(log)] : []), pushMarks(log)],
   }, data, element);
 }
 
+const kPaths = {icp: 'capture point', 'icp/desired': 'planned', com: 'centre of mass'};
+
 function pathPlot(log, element, width, height) {
-  const path = (name) => [log.column(`${name}/x`), log.column(`${name}/y`)];
-  const names = ['icp', 'icp/desired', 'com'].filter((name) => log.has(`${name}/x`));
+  const paths = log.all.flatMap((one, k) => Object.keys(kPaths).map((name, i) => ({one, k, i, name}))
+      .filter(({name}) => one.has(`${name}/x`)));
   const draw = (plot, series) => {
-    const [xs, ys] = plot.data[series];
+    const [xs, ys] = plot.data[series], {i, k} = paths[series - 1];
     plot.ctx.save();
-    plot.ctx.strokeStyle = kColors[series - 1];
+    plot.ctx.strokeStyle = lineColor(i, k);
     plot.ctx.lineWidth = devicePixelRatio;
+    if (k) plot.ctx.setLineDash([6, 4]);
     plot.ctx.beginPath();
     for (let i = 0; i < xs.length; ++i) {
       plot.ctx.lineTo(plot.valToPos(xs[i], 'x', true), plot.valToPos(ys[i], 'y', true));
@@ -149,8 +186,8 @@ function pathPlot(log, element, width, height) {
   };
   const range = (axis) => () => {
     let low = Infinity, high = -Infinity;
-    for (const name of names) {
-      for (const v of log.column(`${name}/${axis}`)) {
+    for (const {one, name} of paths) {
+      for (const v of one.column(`${name}/${axis}`)) {
         low = Math.min(low, v);
         high = Math.max(high, v);
       }
@@ -161,10 +198,10 @@ function pathPlot(log, element, width, height) {
   return new uPlot({
     width, height, mode: 2, cursor: {show: false},
     scales: {x: {time: false, range: range('x')}, y: {range: range('y')}},
-    axes: [{label: 'x, m', labelSize: 16, size: 32}, {label: 'y, m', size: 56}],
-    series: [{}, ...names.map((label, i) => ({label: {icp: 'capture point', 'icp/desired': 'planned',
-        com: 'centre of mass'}[label], stroke: kColors[i], paths: draw}))],
-  }, [null, ...names.map(path)], element);
+    axes: [axis('x, m', {labelSize: 16, size: 32}), axis('y, m', {size: 56})],
+    series: [{}, ...paths.map(({one, k, i, name}) => (
+        {label: named(log, one, kPaths[name]), stroke: lineColor(i, k), paths: draw}))],
+  }, [null, ...paths.map(({one, name}) => [one.column(`${name}/x`), one.column(`${name}/y`)])], element);
 }
 
 // All plots: {id, title, make(player, element, width, height)}; `make` gives the uPlot.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
-import URDFLoader from 'urdf-loader';
 import {hull} from './hull.js';
+import {PushArrow} from './push_arrow.js';
 import {chooseRenderer} from './renderer.js';
+import {material, Robot} from './robot.js';
+import {theme} from './theme.js';
 
 export const kMarkers = [
   {name: 'ICP', prefix: 'icp', color: '#d62728'},
@@ -12,21 +14,7 @@ export const kMarkers = [
   {name: 'CoP', prefix: 'cop', color: '#1f77b4'},
 ];
 
-function material(color, opacity = 1) {
-  return new THREE.MeshLambertMaterial({color, opacity, transparent: opacity < 1});
-}
-
-// Few faces and plain shading: software renderers draw the robot too.
-function simplify(robot) {
-  const ball = new THREE.SphereGeometry(1, 16, 10), tube = new THREE.CylinderGeometry(1, 1, 1, 16);
-  robot.traverse((mesh) => {
-    if (!mesh.isMesh) return;
-    if (mesh.geometry.type === 'SphereGeometry') mesh.geometry = ball;
-    if (mesh.geometry.type === 'CylinderGeometry') mesh.geometry = tube;
-    const {color, opacity} = mesh.material;
-    if (color) mesh.material = material(color, opacity);
-  });
-}
+const kGhost = 0.3;  // opacity
 
 // ms: where drawing takes less, frames are not late for its sake.
 const kShortDrawing = 6;
@@ -52,11 +40,11 @@ function terrain(world) {
   const {boxes = [], ground_z: ground = boxes.length ? undefined : 0} = world?.terrain ?? {};
   if (ground !== undefined) {
     const plane = new THREE.Mesh(new THREE.PlaneGeometry(40, 40),
-                                 new THREE.MeshBasicMaterial({color: '#e9e7e1'}));
+                                 new THREE.MeshBasicMaterial({color: theme.ground}));
     plane.position.z = ground - 0.004;  // below the lines on it
     group.add(plane);
     const grid = new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(gridPoints()),
-                                        new THREE.LineBasicMaterial({color: '#b5b2aa'}));
+                                        new THREE.LineBasicMaterial({color: theme.ground_lines}));
     grid.position.z = ground;
     group.grid = grid;
     group.add(grid);
@@ -92,7 +80,7 @@ export class Scene {
     this.renderer.setPixelRatio(this.pixels);
     element.append(this.renderer.domElement);
     this.scene = new THREE.Scene();
-    this.scene.background = new THREE.Color('#f4f6f8');
+    this.scene.background = new THREE.Color(theme.sky);
     this.camera = new THREE.PerspectiveCamera(40, 1, 0.05, 100);
     this.camera.up.set(0, 0, 1);
     this.camera.position.set(2.2, -3.2, 1.6);
@@ -103,25 +91,19 @@ export class Scene {
     this.scene.add(light);
     this.terrain = terrain(log.world);
     this.scene.add(this.terrain);
-    this.addRobot();
+    this.addRobots();
     this.addMarkers();
     new ResizeObserver(() => this.resize()).observe(element);
     this.resize();
   }
 
-  addRobot() {
-    this.pelvis = new THREE.Group();
-    this.scene.add(this.pelvis);
-    if (!this.log.urdf) return;
-    const loader = new URDFLoader();
-    // Whoever wrote the log chose the addresses of its meshes: nothing is fetched from anywhere.
-    loader.loadMeshCb = (path, manager, done) => done(new THREE.Group());
-    this.robot = loader.parse(this.log.urdf);
-    simplify(this.robot);
-    this.pelvis.add(this.robot);
-    this.joints = Object.values(this.robot.joints)
-        .map((joint) => ({joint, column: this.log.column(`joint/${joint.urdfName}/position`)}))
-        .filter(({column}) => column !== undefined);
+  // Those of the other logs are ghosts.
+  addRobots() {
+    this.robots = this.log.all.map((log, i) => new Robot(log, i === 0 ? 1 : kGhost));
+    this.arrows = this.robots.map((robot) => new PushArrow(robot));
+    for (const {pelvis} of this.robots) this.scene.add(pelvis);
+    for (const {group} of this.arrows) this.scene.add(group);
+    [{pelvis: this.pelvis, joints: this.joints}] = this.robots;
   }
 
   addMarkers() {
@@ -148,8 +130,9 @@ export class Scene {
   }
 
   // Only what has changed is drawn again.
-  update(row) {
-    if (row !== this.row) this.show(row);
+  update(time) {
+    const rows = this.log.all.map((log) => log.row(time)).join();
+    if (rows !== this.rows) this.show(time);
     else if (this.stale) this.draw();
   }
 
@@ -189,12 +172,10 @@ export class Scene {
     return corners.map(([x, y]) => new THREE.Vector3(x, y, 0).applyMatrix4(matrix));
   }
 
-  show(row) {
-    const {log} = this;
-    this.pelvis.position.set(...log.point('pelvis', row));
-    this.pelvis.rotation.set(...['roll', 'pitch', 'yaw'].map((a) => log.value(`pelvis/${a}`, row)),
-                             'ZYX');
-    for (const {joint, column} of this.joints ?? []) joint.setJointValue(column[row]);
+  show(time) {
+    const {log} = this, row = log.row(time);
+    for (const robot of this.robots) robot.show(robot.log.row(time));
+    for (const arrow of this.arrows) arrow.show(time);
     const loaded = [];
     for (const side of ['left', 'right']) {
       setPoints(this.footsteps[side].geometry, this.outline(side, 'footstep', row));
@@ -215,7 +196,7 @@ export class Scene {
     for (const {prefix, mesh} of this.markers) {
       mesh.position.set(log.value(`${prefix}/x`, row), log.value(`${prefix}/y`, row), ground);
     }
-    this.row = row;
+    this.rows = log.all.map((one) => one.row(time)).join();
     this.follow();
     this.draw();
   }
