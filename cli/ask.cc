@@ -3,10 +3,12 @@
 
 #include <chrono>
 #include <iostream>
+#include <optional>
 #include <thread>
 
 #include "cli/failure.h"
 #include "cli/print.h"
+#include "cli/progress.h"
 
 namespace gaitd::cli {
 namespace {
@@ -72,6 +74,7 @@ int ask(const Context& context, const std::string& command, const std::string& m
         const json& params, std::chrono::milliseconds timeout) {
   auto client = connect(context, command, needed_role(method, params));
   if (!client) return kNoDaemon;
+  std::optional<Waiting> waiting(command);
   daemon::RpcResult result = client->call(method, params, timeout);
   // Whoever wants to stop the robot does not go away because many knock at the door.
   for (int again = 0; method == "estop" && again < kEstopTries && turned_away(result); ++again) {
@@ -81,6 +84,7 @@ int ask(const Context& context, const std::string& command, const std::string& m
     result = client->call(method, params, timeout);
   }
   if (auto* error = std::get_if<daemon::RpcError>(&result)) {
+    waiting.reset();
     // Two programs of different versions may not know the same methods and params.
     if (error->code == daemon::rpc_code::kMethodNotFound ||
         error->code == daemon::rpc_code::kInvalidParams) {
@@ -90,6 +94,7 @@ int ask(const Context& context, const std::string& command, const std::string& m
     return fail(context, command, method, *error);
   }
   if (method == "arm" || method == "sim.reset") wait_until_ready(client.get());
+  waiting.reset();
   json& value = std::get<json>(result);
   // Whoever did not name the socket learns which one it was.
   if (context.socket.empty() && value.is_object() && value.contains("accepted")) {

@@ -22,8 +22,10 @@
 #include "cli/campaign_search.h"
 #include "cli/campaign_settings.h"
 #include "cli/campaign_summary.h"
+#include "cli/completion_values.h"
 #include "cli/failure.h"
 #include "cli/print.h"
+#include "cli/terminal.h"
 #include "daemon/config/daemon_config.h"
 #include "daemon/config/library_paths.h"
 
@@ -146,7 +148,26 @@ PoolEnd play(const Campaign& campaign, const std::vector<CampaignRun>& runs,
   return end;
 }
 
+// Of a file that is not there: what beside it may be meant.
+std::string missing_file(const std::string& file) {
+  const fs::path path(file);
+  std::vector<std::string> names;
+  std::error_code ignored;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().filename().string());
+  }
+  const std::string near = daemon::closest_name(path.filename().string(), names);
+  return file + ": no such file; " +
+         (near.empty() ? "give the path of a campaign"
+                       : "did you mean '" + path.parent_path().append(near).string() + "'?");
+}
+
 int run(const Context& context, const Arguments& arguments) {
+  std::error_code ignored;
+  if (!fs::exists(arguments.file, ignored)) {
+    return fail(context, kFailed, "campaign", missing_file(arguments.file));
+  }
   daemon::Issues issues;
   std::optional<Campaign> campaign = load_campaign(arguments.file, &issues);
   if (!campaign) return fail(context, kFailed, "campaign", issues.error_text());
@@ -175,7 +196,6 @@ int run(const Context& context, const Arguments& arguments) {
   if (!results.open(folder / "results.csv", &error)) {
     return fail(context, kFailed, "campaign", error);
   }
-  std::error_code ignored;
   RunnerOptions options;
   options.gaitctl = fs::read_symlink("/proc/self/exe", ignored);
   options.folder = folder;
@@ -198,9 +218,9 @@ int run(const Context& context, const Arguments& arguments) {
   if (end == PoolEnd::kFailed) return fail(context, kFailed, "campaign", error);
   const nlohmann::json summary = summary_json(*campaign, runs, results.results(), &order, options);
   if (campaign->plot) write_plots(*campaign, order.found(), folder);
-  std::ofstream(folder / "summary.txt") << summary_text(summary);
+  std::ofstream(folder / "summary.txt") << summary_text(summary, 0);
   std::ofstream(folder / "summary.json") << json_text(summary);
-  std::cout << (context.json ? json_text(summary) : summary_text(summary));
+  std::cout << (context.json ? json_text(summary) : summary_text(summary, output_columns()));
   if (end == PoolEnd::kInterrupted) {
     std::cerr << "interrupted; the same command goes on\n";
     return kInterrupted;
@@ -232,12 +252,15 @@ void add_campaign_command(CLI::App* app, Context* context) {
                    "Folder for results, summary and the logs of the worst runs; by default the "
                    "name of the file and -results")
       ->type_name("FOLDER");
-  command
-      ->add_option("--set", arguments->settings,
-                   "Any key of the configuration or the scenario, for every run; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->take_all()
-      ->expected(1);
+  auto* setting =
+      command
+          ->add_option(
+              "--set", arguments->settings,
+              "Any key of the configuration or the scenario, for every run; may be repeated")
+          ->type_name("KEY=VALUE")
+          ->take_all()
+          ->expected(1);
+  context->values[setting] = [](const auto&) { return setting_names(); };
   command->add_flag("--trust", arguments->trust,
                     "Load libraries that the campaign or its scenarios name by path");
   command

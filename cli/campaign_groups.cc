@@ -6,6 +6,7 @@
 
 #include "cli/campaign_summary.h"
 #include "cli/print.h"
+#include "cli/table.h"
 
 namespace gaitd::cli {
 namespace {
@@ -172,7 +173,7 @@ json targets_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
   return targets;
 }
 
-std::string groups_text(const json& groups) {
+std::string groups_text(const json& groups, std::size_t columns) {
   std::string text;
   for (const json& group : groups) {
     std::vector<std::string> header = group["by"];
@@ -184,7 +185,7 @@ std::string groups_text(const json& groups) {
                                  interval_text(row), row["falls"].dump(), row["refusals"].dump()});
       rows.push_back(std::move(cells));
     }
-    text += (text.empty() ? "" : "\n") + table(header, rows);
+    text += (text.empty() ? "" : "\n") + table(header, rows, columns);
   }
   return text;
 }

@@ -27,8 +27,8 @@ nlohmann::json groups_json(const Campaign& campaign, const std::vector<CampaignR
 nlohmann::json targets_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
                             const std::map<int, CampaignResult>& results);
 
-/// Both as they stand in the summary.
-std::string groups_text(const nlohmann::json& groups);
+/// Both as they stand in the summary; tables are at most `columns` wide, 0: no limit.
+std::string groups_text(const nlohmann::json& groups, std::size_t columns);
 std::string targets_text(const nlohmann::json& targets);
 
 /// A share as a percentage.

@@ -11,6 +11,7 @@
 #include "cli/campaign_runner.h"
 #include "cli/campaign_sweep.h"
 #include "cli/print.h"
+#include "cli/table.h"
 #include "daemon/verdict/number_text.h"
 
 namespace gaitd::cli {
@@ -184,7 +185,7 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
           {"results", (folder / "results.csv").string()}};
 }
 
-std::string summary_text(const json& summary) {
+std::string summary_text(const json& summary, std::size_t columns) {
   const bool searches = !summary["searched"].is_null();
   std::vector<std::vector<std::string>> rows;
   for (const json& cell : summary["cells"]) {
@@ -209,8 +210,8 @@ std::string summary_text(const json& summary) {
                                      "FALLS",    "REFUSED", "SETTINGS"};
   if (searches)
     header = {"SCENARIO", "LARGEST " + summary["searched"].get<std::string>(), "SETTINGS"};
-  const std::string groups = groups_text(summary["groups"]);
-  text += groups.empty() ? table(header, rows) : groups;
+  const std::string groups = groups_text(summary["groups"], columns);
+  text += groups.empty() ? table(header, rows, columns) : groups;
   if (!summary["targets"].empty()) text += "\ntargets\n" + targets_text(summary["targets"]);
   text += "\nworst runs\n";
   for (const json& run : summary["worst"]) {

@@ -26,6 +26,7 @@ SuccessInterval wilson_interval(int successes, int runs);
 nlohmann::json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
                             const std::map<int, CampaignResult>& results, RunOrder* order,
                             const RunnerOptions& options);
-std::string summary_text(const nlohmann::json& summary);
+/// Tables are at most `columns` wide; 0: no limit.
+std::string summary_text(const nlohmann::json& summary, std::size_t columns);
 
 }  // namespace gaitd::cli

@@ -14,7 +14,9 @@
 
 #include "cli/failure.h"
 #include "cli/print.h"
+#include "cli/progress.h"
 #include "cli/scenario_run.h"
+#include "cli/table.h"
 #include "daemon/config/daemon_config.h"
 #include "daemon/config/paths.h"
 
@@ -108,8 +110,8 @@ int compare(const Context& context, const Arguments& arguments) {
       options.log = fs::path(arguments.folder) / (std::string(1, static_cast<char>('a' + i)) + "-" +
                                                   fs::path(overlay).stem().string() + ".mcap");
     }
-    std::cerr << "running " << arguments.scenario << " with " << overlay << std::endl;
-    runs[i] = run_scenario(arguments.scenario, options, {});
+    runs[i] =
+        run_with_progress(arguments.scenario, options, arguments.scenario + " with " + overlay);
     if (!runs[i].verdict) {
       std::string why = overlay + ":";
       for (const std::string& problem : runs[i].problems) why += " " + problem;
@@ -142,7 +144,7 @@ void add_compare_command(CLI::App* app, Context* context) {
       command->add_option("SCENARIO", arguments->scenario, "Name of a scenario, or its file")
           ->required()
           ->type_name("NAME|FILE");
-  context->values[scenario] = [] { return daemon::Paths::detect().scenarios(); };
+  context->values[scenario] = [](const auto&) { return daemon::Paths::detect().scenarios(); };
   command->add_option("CONFIGURATION", arguments->overlays, "The two configurations")
       ->required()
       ->expected(2)

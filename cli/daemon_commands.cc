@@ -53,12 +53,14 @@ void add_walk(CLI::App* app, Context* context) {
           "Number of advancing footfalls")
       ->required()
       ->check(kPositiveCount);
-  number("--length", "length", "Each footfall ahead of the previous one, m");
-  number("--lateral", "lateral", "Each footfall beside the previous one, m, positive to the left");
-  number("--width", "width", "Distance between the soles, m");
-  number("--turn", "turn", "Turn per footfall, rad, positive to the left");
-  number("--swing", "swing", "Duration of a swing, s");
-  number("--transfer", "transfer", "Duration of a transfer (double support), s");
+  number("--length", "length", "Each footfall ahead of the previous one, m; default 0");
+  number("--lateral", "lateral",
+         "Each footfall beside the previous one, m, positive to the left; default 0");
+  number("--width", "width", "Distance between the soles, m; by default as in the standing posture");
+  number("--turn", "turn", "Turn per footfall, rad, positive to the left; default 0");
+  number("--swing", "swing", "Duration of a swing, s; by default gait.swing_duration");
+  number("--transfer", "transfer",
+         "Duration of a transfer (double support), s; by default gait.transfer_duration");
   command
       ->add_option_function<std::string>(
           "--first", [params](const std::string& value) { (*params)["first"] = value; },

@@ -9,12 +9,16 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <thread>
 
 #include "cli/ask.h"
+#include "cli/completion_values.h"
 #include "cli/failure.h"
 #include "cli/print.h"
+#include "cli/progress.h"
+#include "cli/table.h"
 
 namespace gaitd::cli {
 namespace {
@@ -83,6 +87,7 @@ int test(const Context& context, const Arguments& arguments) {
   double farthest = 0.0;
   double torque = 0.0;
   std::string state;
+  std::optional<Waiting> waiting("joint test " + arguments.joint);
   do {
     std::this_thread::sleep_for(milliseconds(10));
     const json joint = find_joint(client.get(), arguments.joint);
@@ -92,6 +97,7 @@ int test(const Context& context, const Arguments& arguments) {
     torque = std::max(torque, std::abs(joint.value("torque", 0.0)));
     state = call(client.get(), "status", nullptr).value("state", "");
   } while (state == "testing");
+  waiting.reset();
   const double share = farthest / arguments.amplitude;
   const bool passed = state == "disarmed" && share > 0.5 && share < 1.5;
   const json result = {{"joint", arguments.joint}, {"amplitude", arguments.amplitude},
@@ -119,7 +125,9 @@ void add_joint_commands(CLI::App* app, Context* context) {
   auto* command = joint->add_subcommand(
       "test", "Move one joint a little and back, the others off; the robot hangs, disarmed");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("NAME", arguments->joint, "Joint of the robot")->required();
+  const auto* name =
+      command->add_option("NAME", arguments->joint, "Joint of the robot")->required();
+  context->values[name] = [](const auto&) { return joint_names(); };
   command->add_option("--amplitude", arguments->amplitude, "How far, rad; negative: the other way")
       ->check(CLI::Range(-0.3, 0.3))
       ->capture_default_str();

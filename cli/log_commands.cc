@@ -7,13 +7,16 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/failure.h"
 #include "cli/log_damage.h"
 #include "cli/print.h"
+#include "cli/progress.h"
 #include "cli/replay_command.h"
+#include "cli/table.h"
 #include "daemon/log/export_csv.h"
 #include "daemon/log/log_info.h"
 #include "daemon/log/log_reader.h"
@@ -78,7 +81,10 @@ int export_log(const Context& context, const ExportOptions& options) {
     if (!file) return failed(options.output + ": cannot write: " + std::strerror(errno));
   }
   std::ostream& out = to_file ? file : std::cout;
+  std::optional<Waiting> waiting;
+  if (to_file) waiting.emplace("writing " + options.output);
   if (!daemon::export_csv(*log, csv, out, &error)) return failed(error);
+  waiting.reset();
   out.flush();
   if (!out) {
     return failed((to_file ? options.output : "output") +

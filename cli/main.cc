@@ -4,28 +4,17 @@
 #include <algorithm>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <string>
 #include <string_view>
 
-#include "cli/calibrate/calibrate_command.h"
-#include "cli/campaign_command.h"
-#include "cli/compare_command.h"
-#include "cli/completion_command.h"
+#include "cli/commands.h"
 #include "cli/context.h"
-#include "cli/daemon_commands.h"
-#include "cli/doctor/doctor_command.h"
-#include "cli/drive_command.h"
 #include "cli/failure.h"
-#include "cli/joint_commands.h"
-#include "cli/log_commands.h"
+#include "cli/help.h"
 #include "cli/man_text.h"
-#include "cli/param_commands.h"
 #include "cli/plain_output.h"
-#include "cli/plugin_commands.h"
-#include "cli/report/report_command.h"
-#include "cli/run_command.h"
 #include "cli/usage_error.h"
-#include "cli/watch_command.h"
 #include "gaitd/abi/plugin.h"
 
 namespace {
@@ -39,6 +28,7 @@ int run(int argc, char** argv) {
   using namespace gaitd::cli;  // NOLINT(google-build-using-namespace)
   CLI::App app("Commands the walking daemon gaitd.", "gaitctl");
   Context context;
+  app.formatter(std::make_shared<HelpFormatter>());  // of all commands, added later
   app.require_subcommand(1);
   app.fallthrough();
   app.set_version_flag("--version", version(), "Show the version and exit");
@@ -50,20 +40,7 @@ int run(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 done, 1 refused or failed, 2 usage, 3 no daemon, 4 done, but a log is "
       "damaged.");
-  add_daemon_commands(&app, &context);
-  add_drive_command(&app, &context);
-  add_plugin_commands(&app, &context);
-  add_joint_commands(&app, &context);
-  add_calibrate_command(&app, &context);
-  add_param_commands(&app, &context);
-  add_watch_command(&app, &context);
-  add_run_command(&app, &context);
-  add_campaign_command(&app, &context);
-  add_compare_command(&app, &context);
-  add_log_commands(&app, &context);
-  add_report_command(&app, &context);
-  add_doctor_command(&app, &context);
-  add_completion_command(&app, &context);
+  add_commands(&app, &context);
   const auto man = [&app] { return gaitd::usage::man_page(app, man_text()); };
   if (gaitd::usage::answer_hidden_request(argc, argv, app, context.values, man)) return kDone;
   try {

@@ -5,11 +5,11 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "cli/ask.h"
+#include "cli/completion_values.h"
 #include "cli/print.h"
 #include "daemon/config/node.h"
 #include "daemon/config/paths.h"
@@ -25,19 +25,10 @@ void read_installed(daemon::LiveParameters* all) {
   daemon::add_all_parameters(daemon::PluginDirectory(paths.plugin_folders()).list(), all);
 }
 
-// For completion: of the daemon and of every installed plugin.
-std::vector<std::string> all_names() {
-  daemon::LiveParameters all;
-  read_installed(&all);
-  std::set<std::string> names;
-  for (int i = 0; i < all.size(); ++i) names.insert(all.row(i).key);
-  return {names.begin(), names.end()};
-}
-
 CLI::Option* add_name(CLI::App* command, Context* context, std::string* name) {
   CLI::Option* option = command->add_option("NAME", *name, "Its key, e.g. gait.swing_height");
   option->required();
-  context->values[option] = all_names;
+  context->values[option] = [](const auto&) { return parameter_names(); };
   return option;
 }
 
@@ -47,7 +38,7 @@ void add_list(CLI::App* param, Context* context) {
   auto glob = std::make_shared<std::string>();
   CLI::Option* option = command->add_option(
       "GLOB", *glob, "Only those that match: 'gait.*', '*damping*', or a scope: gait");
-  context->values[option] = all_names;
+  context->values[option] = [](const auto&) { return parameter_names(); };
   command->callback([context, glob] {
     context->action = [context, glob] {
       return ask(*context, "param list", "param.list",

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cli/print.h"
+#include "cli/table.h"
 #include "daemon/parameters/reference.h"
 
 namespace gaitd::cli {

@@ -7,14 +7,17 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "cli/ask.h"
+#include "cli/completion_values.h"
 #include "cli/failure.h"
 #include "cli/plugin_new.h"
 #include "cli/print.h"
+#include "cli/progress.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/robot.h"
 #include "daemon/conformance/check_plugin.h"
@@ -25,8 +28,8 @@ namespace gaitd::cli {
 namespace {
 
 using daemon::CheckResult;
+using daemon::CheckVerdict;
 using daemon::PluginReport;
-using daemon::Verdict;
 using nlohmann::json;
 
 struct Arguments {
@@ -38,7 +41,8 @@ struct Arguments {
 json report_json(const PluginReport& report) {
   json checks = json::array();
   for (const CheckResult& check : report.checks) {
-    const char* verdict = check.verdict == Verdict::kFail ? "fail" : verdict_text(check.verdict);
+    const char* verdict =
+        check.verdict == CheckVerdict::kFail ? "fail" : check_verdict_text(check.verdict);
     checks.push_back({{"name", check.name},
                       {"demands", check.demands},
                       {"verdict", verdict},
@@ -60,7 +64,7 @@ std::string counted(int count, const char* noun) {
 std::string report_text(const PluginReport& report) {
   std::ostringstream out;
   for (const CheckResult& check : report.checks) {
-    std::string verdict = verdict_text(check.verdict);
+    std::string verdict = check_verdict_text(check.verdict);
     verdict.resize(8, ' ');
     std::string name = check.name;
     name.resize(12, ' ');
@@ -68,11 +72,11 @@ std::string report_text(const PluginReport& report) {
     if (!check.detail.empty()) out << "\n         " << std::string(12, ' ') << ' ' << check.detail;
     out << '\n';
   }
-  const int failures = report.count(Verdict::kFail);
-  const int warnings = report.count(Verdict::kWarning);
+  const int failures = report.count(CheckVerdict::kFail);
+  const int warnings = report.count(CheckVerdict::kWarning);
   out << (failures == 0 ? "passed: " : "failed: ") << report.file << ": "
       << counted(failures, "failure") << ", " << counted(warnings, "warning") << ", "
-      << report.count(Verdict::kPass) << " passed, " << report.count(Verdict::kSkipped)
+      << report.count(CheckVerdict::kPass) << " passed, " << report.count(CheckVerdict::kSkipped)
       << " skipped\n";
   return out.str();
 }
@@ -81,11 +85,9 @@ int check(const Context& context, const Arguments& arguments) {
   const daemon::Paths paths = daemon::Paths::detect();
   const auto robot_file = paths.robot(arguments.robot);
   if (!robot_file) {
-    std::string there;
-    for (const std::string& name : paths.robots()) there += " " + name;
     return fail(context, kFailed, "plugin check",
-                "no robot '" + arguments.robot + "'; give a robot.yaml with --robot, or one of:" +
-                    (there.empty() ? " (none found)" : there));
+                "no robot '" + arguments.robot + "'; give a robot.yaml or a name with --robot; " +
+                    daemon::suggestion(arguments.robot, paths.robots()));
   }
   daemon::Settings settings;
   daemon::Issues issues;
@@ -94,7 +96,9 @@ int check(const Context& context, const Arguments& arguments) {
   if (!robot) return fail(context, kFailed, "plugin check", issues.error_text());
   daemon::CheckOptions options;
   options.timeout = std::chrono::milliseconds(static_cast<long>(1000.0 * arguments.timeout));
+  std::optional<Waiting> waiting("trying " + arguments.file);
   const PluginReport report = daemon::check_plugin(arguments.file, robot->model, options);
+  waiting.reset();
   std::cout << (context.json ? json_text(report_json(report)) : report_text(report));
   return report.pass() ? kDone : kFailed;
 }
@@ -119,8 +123,11 @@ void add_swap(CLI::App* plugin, Context* context) {
   auto layer = std::make_shared<std::string>();
   auto to = std::make_shared<std::string>();
   add_layer(command, layer.get());
-  command->add_option("VARIANT", *to, "An installed variant, or the file of a library (with a /)")
-      ->required();
+  const auto* variant =
+      command
+          ->add_option("VARIANT", *to, "An installed variant, or the file of a library (with a /)")
+          ->required();
+  context->values[variant] = variant_names;
   command->callback([context, layer, to] {
     context->action = [context, layer, to] {
       std::string what = *to;
@@ -157,9 +164,11 @@ void add_plugin_commands(CLI::App* app, Context* context) {
   auto arguments = std::make_shared<Arguments>();
   command->add_option("FILE", arguments->file, "The library, e.g. build/toe_off/my_variant.so")
       ->required();
-  command
-      ->add_option("--robot", arguments->robot, "Robot that it is tried with, name or robot.yaml")
-      ->capture_default_str();
+  const auto* robot = command
+                          ->add_option("--robot", arguments->robot,
+                                       "Robot that it is tried with, name or robot.yaml")
+                          ->capture_default_str();
+  context->values[robot] = [](const auto&) { return daemon::Paths::detect().robots(); };
   command
       ->add_option("--timeout", arguments->timeout,
                    "Time of one child process before it counts as "

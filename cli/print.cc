@@ -5,18 +5,12 @@
 #include <cstdio>
 
 #include "cli/param_view.h"
+#include "cli/table.h"
 
 namespace gaitd::cli {
 namespace {
 
 using nlohmann::json;
-
-// Characters, not bytes: µ is one wide.
-std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
-  }));
-}
 
 // A scalar as a person writes it; lists joined; anything deeper as JSON.
 std::string plain(const json& value) {
@@ -89,7 +83,7 @@ std::string object_text(const json& object, const std::vector<std::string>& firs
   }
   std::size_t widest = 0;
   for (const std::string& key : keys) {
-    if (!is_list_of_objects(object[key])) widest = std::max(widest, width(key));
+    if (!is_list_of_objects(object[key])) widest = std::max(widest, width_of(key));
   }
   std::string lines;
   std::string tables;
@@ -98,7 +92,7 @@ std::string object_text(const json& object, const std::vector<std::string>& firs
     if (is_list_of_objects(value)) {
       tables += "\n" + key + "\n" + object_table(value);
     } else {
-      lines += key + std::string(widest + 2 - width(key), ' ') + plain(value) + "\n";
+      lines += key + std::string(widest + 2 - width_of(key), ' ') + plain(value) + "\n";
     }
   }
   return lines + tables;
@@ -125,29 +119,6 @@ std::string plugin_list_text(const json& result) {
 }
 
 }  // namespace
-
-std::string table(const std::vector<std::string>& header,
-                  const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths;
-  const auto measure = [&](const std::vector<std::string>& row) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
-  };
-  measure(header);
-  for (const auto& row : rows) measure(row);
-  std::string out;
-  const auto print = [&](const std::vector<std::string>& row) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      line += row[i] + std::string(widths[i] + 2 - width(row[i]), ' ');
-    }
-    const std::size_t end = line.find_last_not_of(' ');
-    out += line.substr(0, end == std::string::npos ? 0 : end + 1) + "\n";
-  };
-  print(header);
-  for (const auto& row : rows) print(row);
-  return out;
-}
 
 std::string result_text(const std::string& command, const std::string& method, const json& result) {
   if (!result.is_object()) return plain(result) + "\n";

@@ -7,12 +7,16 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/completion_values.h"
 #include "cli/failure.h"
 #include "cli/log_damage.h"
 #include "cli/print.h"
+#include "cli/progress.h"
+#include "cli/table.h"
 #include "daemon/config/paths.h"
 #include "daemon/replay/replay.h"
 
@@ -95,7 +99,9 @@ int replay(const Context& context, const Arguments& arguments) {
   options.plugin_folders = daemon::Paths::detect().plugin_folders();
   options.set = arguments.set;
   options.trust = arguments.trust;
+  std::optional<Waiting> waiting("replaying " + file);
   const auto report = daemon::replay(*log, options, &error);
+  waiting.reset();
   if (!report) return fail(context, kFailed, "log replay", error);
   if (context.json) {
     json result = report_json(file, *report);
@@ -123,11 +129,14 @@ void add_replay_command(CLI::App* log, Context* context) {
   command->add_option("FILE", arguments->file, "A log of gaitd (.mcap)")
       ->required()
       ->type_name("FILE");
-  command
-      ->add_option("--set", arguments->set,
-                   "Change a configuration key, e.g. whole_body_controller.variant=com_height_qp")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  auto* setting =
+      command
+          ->add_option(
+              "--set", arguments->set,
+              "Change a configuration key, e.g. whole_body_controller.variant=com_height_qp")
+          ->type_name("KEY=VALUE")
+          ->allow_extra_args(false);
+  context->values[setting] = [](const auto&) { return setting_names(); };
   command->add_flag("--trust", arguments->trust,
                     "Load a library from where the log says that it was, if the installed one is "
                     "another");

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/run_command.h"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -12,11 +10,14 @@
 #include <system_error>
 #include <vector>
 
+#include "cli/completion_values.h"
 #include "cli/failure.h"
 #include "cli/print.h"
+#include "cli/progress.h"
 #include "cli/scenario_run.h"
+#include "cli/table.h"
+#include "cli/terminal.h"
 #include "daemon/config/paths.h"
-#include "daemon/config/printable.h"
 
 namespace gaitd::cli {
 namespace {
@@ -30,12 +31,23 @@ struct Arguments {
   std::vector<std::string> settings;
   std::string log;
   bool trust = false;
+  bool verbose = false;
 };
 
-void show_progress(const std::string& scenario, double time, double duration) {
-  std::fprintf(stderr, "\r%s: %.1f of %.1f s simulated\033[K", daemon::printable(scenario).c_str(),
-               time, duration);
-  std::fflush(stderr);
+// One line for each of several scenarios, then how many passed.
+void print_summary(const std::vector<RunReport>& reports) {
+  std::vector<std::vector<std::string>> rows;
+  std::size_t passed = 0;
+  for (const RunReport& report : reports) {
+    passed += report.pass() ? 1 : 0;
+    rows.push_back({report.scenario, report.pass() ? "PASS" : "FAIL", what_failed(report)});
+  }
+  std::cout << "\n" << table({"scenario", "verdict", "what failed"}, rows);
+  const bool all = passed == reports.size();
+  print_colored(all, all ? "all " + std::to_string(passed) + " passed"
+                         : std::to_string(reports.size() - passed) + " of " +
+                               std::to_string(reports.size()) + " FAILED");
+  std::cout << std::endl;
 }
 
 int run(const Context& context, const Arguments& arguments) {
@@ -47,29 +59,29 @@ int run(const Context& context, const Arguments& arguments) {
         "--log " + arguments.log + ": one file for several scenarios; give a folder (ending in /)");
   }
   const RunOptions options{gaitd_program(), arguments.settings, arguments.log, arguments.trust};
-  const bool terminal = isatty(STDERR_FILENO) != 0;
-  bool pass = true;
-  bool interrupted = false;
-  bool damaged = false;
-  std::size_t done = 0;
-  nlohmann::json reports = nlohmann::json::array();
+  std::vector<RunReport> reports;
   for (const std::string& scenario : arguments.scenarios) {
-    if (!terminal) std::cerr << "running " << scenario << std::endl;
-    const RunReport report =
-        run_scenario(scenario, options, terminal ? Progress(show_progress) : Progress());
-    if (terminal) std::fputs("\r\033[K", stderr);
-    pass &= report.pass();
-    damaged |= report.damaged;
-    ++done;
-    if (context.json) {
-      reports.push_back(report_json(report));
-    } else {
-      std::cout << (done > 1 ? "\n" : "") << report_text(report) << std::flush;
+    reports.push_back(run_with_progress(scenario, options, scenario));
+    const RunReport& report = reports.back();
+    if (!context.json) {
+      std::cout << (reports.size() > 1 ? "\n" : "")
+                << report_text(report, arguments.verbose, output_columns());
+      print_colored(report.pass(), verdict_line(report));
+      std::cout << std::endl;
     }
-    interrupted = report.interrupted;
-    if (interrupted) break;
+    if (report.interrupted) break;
   }
-  if (context.json) std::cout << json_text({{"pass", pass}, {"scenarios", reports}});
+  const auto any = [&](auto is) { return std::any_of(reports.begin(), reports.end(), is); };
+  const bool pass = !any([](const RunReport& report) { return !report.pass(); });
+  const bool damaged = any([](const RunReport& report) { return report.damaged; });
+  const bool interrupted = any([](const RunReport& report) { return report.interrupted; });
+  if (context.json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const RunReport& report : reports) list.push_back(report_json(report));
+    std::cout << json_text({{"pass", pass}, {"scenarios", list}});
+  } else if (reports.size() > 1) {
+    print_summary(reports);
+  }
   if (interrupted) return kInterrupted;
   if (damaged) return kDamaged;
   return pass ? kDone : kFailed;
@@ -89,14 +101,16 @@ void add_run_command(CLI::App* app, Context* context) {
                        "Name of a scenario (flat-0.35), or the path of a scenario file")
           ->required()
           ->type_name("NAME|FILE");
-  context->values[scenario] = [] { return daemon::Paths::detect().scenarios(); };
-  command
-      ->add_option(
-          "--set", arguments->settings,
-          "Any key of the configuration or the scenario, the value in YAML; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->take_all()
-      ->expected(1);
+  context->values[scenario] = [](const auto&) { return daemon::Paths::detect().scenarios(); };
+  auto* setting =
+      command
+          ->add_option(
+              "--set", arguments->settings,
+              "Any key of the configuration or the scenario, the value in YAML; may be repeated")
+          ->type_name("KEY=VALUE")
+          ->take_all()
+          ->expected(1);
+  context->values[setting] = [](const auto&) { return setting_names(); };
   const auto* backend =
       command
           ->add_option_function<std::string>(
@@ -106,13 +120,14 @@ void add_run_command(CLI::App* app, Context* context) {
               },
               "The simulation to play them in: simbody, mujoco, or the path of a plugin")
           ->type_name("NAME|FILE");
-  context->values[backend] = [] { return std::vector<std::string>{"simbody", "mujoco"}; };
+  context->values[backend] = [](const auto&) { return simulation_names(); };
   command
       ->add_option("--log", arguments->log,
                    "Log file, or folder for several (ending in /); by default a new file in "
                    "$XDG_STATE_HOME/gaitd/logs (~/.local/state/gaitd/logs). The output of gaitd "
                    "goes beside it as .txt")
       ->type_name("FILE|FOLDER/");
+  command->add_flag("-v,--verbose", arguments->verbose, "Show every figure of the walk too");
   command->add_flag("--trust", arguments->trust,
                     "Load libraries that a scenario or its robot.yaml names by path");
   command->callback([context, arguments] {

@@ -15,6 +15,7 @@
 
 #include "cli/private_daemon.h"
 #include "cli/rpc_client.h"
+#include "cli/verdict_view.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/scenario.h"
 #include "daemon/log/log_reader.h"
@@ -66,11 +67,9 @@ std::optional<Scenario> load(const RunOptions& options, RunReport* report) {
   const daemon::Paths paths = daemon::Paths::detect();
   const auto file = paths.scenario(report->scenario);
   if (!file) {
-    std::string there;
-    for (const std::string& name : paths.scenarios()) there += " " + name;
-    report->problems.push_back(
-        "no scenario '" + report->scenario +
-        "'; give the path of a file, or one of:" + (there.empty() ? " (none found)" : there));
+    report->problems.push_back("no scenario '" + report->scenario +
+                               "'; give a name or the path of a file; " +
+                               daemon::suggestion(report->scenario, paths.scenarios()));
     return std::nullopt;
   }
   report->file = file->string();
@@ -216,15 +215,34 @@ RunReport run_scenario(const std::string& name, const RunOptions& options,
   return report;
 }
 
-std::string report_text(const RunReport& report) {
-  std::string out = report.scenario + ": " + (report.pass() ? "PASS" : "FAIL") + "\n";
+std::string report_text(const RunReport& report, bool figures, std::size_t columns) {
+  std::string out;
   for (const std::string& refusal : refusals(report)) {
     out += with_newline("  refused at " + refusal);
   }
   for (const std::string& problem : report.problems) out += with_newline("  " + problem);
-  if (report.verdict) out += with_newline(daemon::verdict_text(*report.verdict));
+  if (report.verdict) {
+    out += expectations_text(*report.verdict, columns);
+    if (figures) out += figures_text(*report.verdict);
+  }
   if (!report.log.empty()) out += "log: " + report.log + "\n";
   return out;
+}
+
+std::string verdict_line(const RunReport& report) {
+  const bool fell = report.verdict && report.verdict->figure("falls") > 0.0;
+  return report.scenario + ": " + (report.pass() ? "PASS" : "FAIL") +
+         (report.pass() && fell ? ", a fall that the scenario allows" : "");
+}
+
+std::string what_failed(const RunReport& report) {
+  std::string out;
+  for (const std::string& problem : report.problems) {
+    out += (out.empty() ? "" : ", ") + problem.substr(0, problem.find_first_of(";\n"));
+  }
+  if (!report.verdict) return out;
+  const std::string expectations = failed_expectations(*report.verdict);
+  return out + (out.empty() || expectations.empty() ? "" : ", ") + expectations;
 }
 
 json report_json(const RunReport& report) {

@@ -42,8 +42,17 @@ struct RunReport {
 RunReport run_scenario(const std::string& scenario, const RunOptions& options,
                        const Progress& progress);
 
-/// The report for people, with every figure, and for --json.
-std::string report_text(const RunReport& report);
+/// The report for people, without its verdict: what went wrong, every expectation, with `figures`
+/// every figure, and the log. Tables are at most `columns` wide; 0: no limit.
+std::string report_text(const RunReport& report, bool figures, std::size_t columns);
+
+/// "flat-0.35: PASS", the line for people that is last.
+std::string verdict_line(const RunReport& report);
+
+/// What failed, in a few words; empty if nothing did.
+std::string what_failed(const RunReport& report);
+
+/// The report for --json.
 nlohmann::json report_json(const RunReport& report);
 
 /// Where logs go when none is asked for: $XDG_STATE_HOME/gaitd/logs or ~/.local/state/gaitd/logs;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "cli/ask.h"
+#include "cli/completion_values.h"
 
 namespace gaitd::cli {
 namespace {
@@ -56,10 +57,12 @@ void add_sim_commands(CLI::App* app, Context* context) {
   sim->require_subcommand(1);
   auto* push = sim->add_subcommand("push", "Push a link with a constant force for a while");
   auto params = std::make_shared<json>(json::object());
-  push->add_option_function<std::string>(
-          "--link", [params](const std::string& value) { (*params)["link"] = value; },
-          "Link of the robot")
-      ->required();
+  const auto* link =
+      push->add_option_function<std::string>(
+              "--link", [params](const std::string& value) { (*params)["link"] = value; },
+              "Link of the robot")
+          ->required();
+  context->values[link] = [](const auto&) { return link_names(); };
   push->add_option_function<std::string>(
           "--force",
           [params](const std::string& value) { (*params)["force"] = vector_json(value); },

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "cli/print.h"
+#include "cli/table.h"
 
 namespace gaitd::cli {
 namespace {

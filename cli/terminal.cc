@@ -7,6 +7,9 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
 
 #include "cli/stop_signals.h"
 #include "daemon/config/printable.h"
@@ -20,6 +23,9 @@ constexpr const char* kEnter = "\033[?1049h\033[?25l\033[2J";  // alternate scre
 constexpr const char* kLeave = "\033[?25h\033[?1049l";
 constexpr const char* kHome = "\033[H";
 constexpr const char* kClearLine = "\033[K";
+constexpr const char* kGreen = "\033[32m";
+constexpr const char* kRed = "\033[1;31m";
+constexpr const char* kNoColor = "\033[0m";
 constexpr const char* kClearBelow = "\033[J";
 
 volatile std::sig_atomic_t resized = 0;
@@ -46,6 +52,27 @@ bool write_all(const std::string& text) {
 }
 
 }  // namespace
+
+std::size_t output_columns() {
+  winsize size{};
+  if (isatty(STDOUT_FILENO) == 0 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return 0;
+  return size.ws_col;
+}
+
+bool shows_colors(int descriptor) {
+  const char* none = std::getenv("NO_COLOR");
+  const char* kind = std::getenv("TERM");
+  return isatty(descriptor) != 0 && (none == nullptr || *none == '\0') && kind != nullptr &&
+         std::strcmp(kind, "dumb") != 0;
+}
+
+void print_colored(bool good, const std::string& text) {
+  const bool colors = shows_colors(STDOUT_FILENO);
+  std::cout << std::flush;
+  if (colors) write_all(good ? kGreen : kRed);
+  std::cout << text << std::flush;
+  if (colors) write_all(kNoColor);
+}
 
 std::string cut_to_width(const std::string& line, std::size_t width) {
   std::size_t characters = 0;

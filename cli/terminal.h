@@ -35,6 +35,17 @@ class Screen {
   termios before_{};
 };
 
+/// Of the terminal of standard output; 0 if that is none, or does not know.
+std::size_t output_columns();
+
+/// Colours only for a person who sees them: `descriptor` is a terminal that has some, and NO_COLOR
+/// is not set (https://no-color.org).
+bool shows_colors(int descriptor);
+
+/// `text` on standard output, green or red where that shows colours. Foreign text may be in it:
+/// only the colours pass PlainOutput by.
+void print_colored(bool good, const std::string& text);
+
 /// At most `width` characters of a line of UTF-8.
 std::string cut_to_width(const std::string& line, std::size_t width);
 

@@ -117,11 +117,10 @@ void add_watch_command(CLI::App* app, Context* context) {
   command->footer("Exit code 0 when you end it, 3 when gaitd ends.");
   auto options = std::make_shared<WatchOptions>();
   command->add_flag("--once", options->once, "Show it once, on one line, and end");
-  command
-      ->add_option("--interval", options->interval,
-                   "Time between refreshes, s, 0.02 to 3600; 0.2 if left out")
+  command->add_option("--interval", options->interval, "Time between refreshes, s, 0.02 to 3600")
       ->check(CLI::Range(0.02, 3600.0))
-      ->type_name("S");
+      ->type_name("S")
+      ->capture_default_str();
   command->add_flag("--reconnect", options->reconnect,
                     "Wait for a daemon if there is none, and for the next when it ends");
   command->callback([context, options] {

@@ -6,8 +6,8 @@ real=(--set actuators.model=hydraulic --set sensors.noise=lab --set seed=2)
 
 # The other bounds of the scenarios are of other drives.
 for scenario in flat-0.35 straight-0.35; do
-  gaitctl run "$scenario" --log with.mcap "${real[@]}" --set calibration=hydraulic >with.txt 2>&1 || true
-  grep -q '^verdict' with.txt || { cat with.txt; fail "$scenario: no verdict"; }
+  gaitctl run "$scenario" -v --log with.mcap "${real[@]}" --set calibration=hydraulic >with.txt 2>&1 || true
+  grep -qE "^$scenario: (PASS|FAIL)" with.txt || { cat with.txt; fail "$scenario: no verdict"; }
   grep -Eq 'FAIL +(no_fall|steps_taken|played_to_the_end|toe_off)' with.txt &&
     { cat with.txt; fail "$scenario with its calibration"; }
   echo "$scenario: $(grep -E '^ +icp_error_rms ' with.txt | tail -n 1)"

@@ -24,7 +24,8 @@ walk_commands() {
     in_page gaitctl.1 "${*:+$* }$command"
     count=$((count + 1))
     walk_commands "$@" "$command"
-  done < <(awk '/^Subcommands:/ { on = 1; next } /^[^ ]/ { on = 0 } on && /^  [a-z]/ { print $1 }' \
+  done < <(awk '/^[A-Z][A-Za-z ]*:$/ { on = !/^(Positionals|Options|Example):/; next } /^[^ ]/ { on = 0 }
+    on && /^  [a-z]/ { print $1 }' \
     <<<"$help")
 }
 count=0
@@ -54,6 +55,20 @@ offers left gaitctl walk --first ''
 offers left gaitctl walk --first = ''
 offers walk-bent gaitctl mode walk-
 offers flat-0.35 gaitctl run f
+offers never gaitctl plugin swap toe_off n
+complete_words gaitctl plugin swap toe_off '' >/dev/null || true
+grep -qx single_cmp <<<"$(printf '%s\n' "${COMPREPLY[@]}")" && fail "a variant of another layer is offered"
+offers utorso gaitctl sim push --link u
+offers l_leg_kny gaitctl joint test l_leg_k
+offers gait.swing_height= gaitctl run stand --set gait.sw
+offers toe_off.variant=never gaitctl run stand --set toe_off.v
+offers never gaitctl run stand --set toe_off.variant = n
+offers never gaitctl run stand --set toe_off.variant =
+offers simbody gaitctl run stand --backend ''
+complete_words gaitctl run stand --backend '' >/dev/null || true
+for backend in socketcan mock; do
+  grep -qx "$backend" <<<"$(printf '%s\n' "${COMPREPLY[@]}")" && fail "run offers $backend, which does not simulate"
+done
 offers info gaitctl log ''
 offers realtime gaitd --clock ''
 offers atlas gaitd --robot a

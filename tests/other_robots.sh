@@ -60,7 +60,7 @@ sed 's/noise: nominal/noise: none/; s/model: nominal/model: ideal/' \
   "$scratch/small-walk-straight-kinematic_inertial.yaml" >"$scratch/small-ideal.yaml"
 
 # Two at a time, as tests run beside each other.
-ls "$scratch"/*.yaml | xargs -P2 -I{} bash -c 'gaitctl run {} --log {}.glog >{}.txt 2>&1 || touch {}.failed'
+ls "$scratch"/*.yaml | xargs -P2 -I{} bash -c 'gaitctl run {} -v --log {}.glog >{}.txt 2>&1 || touch {}.failed'
 for failed in "$scratch"/*.failed; do
   if [[ -e $failed ]]; then fail "$(cat "${failed%.failed}.txt")"; fi
 done

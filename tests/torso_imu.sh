@@ -9,7 +9,7 @@ grep -q 'link: utorso, xyz' robot/robot.yaml || fail "the robot has no IMU to be
 for estimator in kinematic_inertial invariant_ekf; do
   for scenario in stand flat-0.35 straight-0.35 turn sideways backward; do
     sed 's|^robot: .*|robot: robot/robot.yaml|' "$GAITD_SOURCE/sim/scenarios/$scenario.yaml" >"$scenario.yaml"
-    gaitctl run "$scenario.yaml" --log walk.mcap --set "state_estimator.variant=$estimator" \
+    gaitctl run "$scenario.yaml" -v --log walk.mcap --set "state_estimator.variant=$estimator" \
       >run.txt 2>&1 || {
       cat run.txt
       fail "$scenario with $estimator"

@@ -7,15 +7,19 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/calibrate/calibration_text.h"
 #include "cli/calibrate/live_motions.h"
+#include "cli/completion_values.h"
 #include "cli/failure.h"
 #include "cli/log_damage.h"
 #include "cli/print.h"
+#include "cli/progress.h"
 #include "cli/scenario_run.h"
+#include "daemon/config/paths.h"
 #include "daemon/replay/robot_of_log.h"
 
 namespace gaitd::cli {
@@ -110,7 +114,9 @@ int estimate(const Context& context, const Arguments& arguments, const std::stri
                     std::to_string(recording->postures.size()) +
                     "; let it take the postures of the scenario calibration");
   }
+  std::optional<Waiting> waiting("estimating the calibration");
   const calibrate::Result result = measure(*robot, *recording, arguments.prior);
+  waiting.reset();
   const bool damaged = !growing || log->damaged() > 0;
   const std::string output = output_of(arguments, *robot);
   if (const int failed = write(context, output,
@@ -130,9 +136,9 @@ int estimate(const Context& context, const Arguments& arguments, const std::stri
 
 int simulate(const Context& context, const Arguments& arguments) {
   RunOptions options{gaitd_program(), arguments.settings, arguments.simulated_log, arguments.trust};
-  const RunReport report = run_scenario(arguments.motions, options, Progress());
+  const RunReport report = run_with_progress(arguments.motions, options, arguments.motions);
   if (!report.pass()) {
-    std::cerr << report_text(report);
+    std::cerr << report_text(report, true, 0);
     return fail(context, kFailed, kCommand,
                 arguments.motions + ": the robot did not get through its motions");
   }
@@ -169,12 +175,13 @@ void add_calibrate_command(CLI::App* app, Context* context) {
       ->type_name("FILE");
   command->add_flag("--simulate", arguments->simulate,
                     "With a simulated robot on a private gaitd, in lockstep");
-  command
-      ->add_option("--set", arguments->settings,
-                   "With --simulate: any key of the configuration or the scenario")
-      ->type_name("KEY=VALUE")
-      ->take_all()
-      ->expected(1);
+  auto* setting = command
+                      ->add_option("--set", arguments->settings,
+                                   "With --simulate: any key of the configuration or the scenario")
+                      ->type_name("KEY=VALUE")
+                      ->take_all()
+                      ->expected(1);
+  context->values[setting] = [](const auto&) { return setting_names(); };
   command
       ->add_option("--log", arguments->simulated_log,
                    "With --simulate: log file; by default a new file in $XDG_STATE_HOME/gaitd/logs "
@@ -183,10 +190,12 @@ void add_calibrate_command(CLI::App* app, Context* context) {
   command->add_flag("--trust", arguments->trust,
                     "With --simulate: load libraries that the scenario or its robot.yaml names by "
                     "path");
-  command
-      ->add_option("--motions", arguments->motions,
-                   "Scenario whose commands are the motions; by default calibration")
-      ->type_name("NAME|FILE");
+  const auto* motions =
+      command
+          ->add_option("--motions", arguments->motions, "Scenario whose commands are the motions")
+          ->type_name("NAME|FILE")
+          ->capture_default_str();
+  context->values[motions] = [](const auto&) { return daemon::Paths::detect().scenarios(); };
   command
       ->add_option("-o,--output", arguments->output,
                    "Where to write; by default calibration/measured.yaml beside robot.yaml")

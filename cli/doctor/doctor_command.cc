@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "cli/doctor/log_doctor.h"
@@ -16,6 +17,7 @@
 #include "cli/failure.h"
 #include "cli/log_damage.h"
 #include "cli/print.h"
+#include "cli/progress.h"
 #include "daemon/config/paths.h"
 #include "daemon/log/log_reader.h"
 
@@ -50,7 +52,9 @@ int of_log(const Context& context, const std::string& file) {
   if (log->tick_count() == 0) {
     return fail(context, kFailed, "doctor", file + ": holds no tick, nothing to look at");
   }
+  std::optional<Waiting> waiting("reading " + file);
   const doctor::LogDiagnosis diagnosis = doctor::diagnose_log(*log);
+  waiting.reset();
   if (context.json) {
     nlohmann::json result = doctor::diagnosis_json(file, diagnosis);
     add_damage(*log, &result);
@@ -77,7 +81,12 @@ int of_robot(const Context& context, const std::string& name) {
 }
 
 int run(const Context& context, const std::string& file) {
-  if (file.empty()) return show(context, "machine", "this machine", doctor::diagnose_machine());
+  if (file.empty()) {
+    std::optional<Waiting> waiting("looking at this machine");
+    const doctor::Findings findings = doctor::diagnose_machine();
+    waiting.reset();
+    return show(context, "machine", "this machine", findings);
+  }
   return is_log(file) ? of_log(context, file) : of_robot(context, file);
 }
 

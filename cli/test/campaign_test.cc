@@ -90,6 +90,15 @@ TEST(Wilson, GivesTheKnownIntervals) {
   EXPECT_EQ(wilson_interval(0, 0).high, 1.0);
 }
 
+TEST_F(CampaignTest, AMistypedFileGetsASuggestion) {
+  workspace_.write("push-map.yaml", "");
+  const Outcome outcome =
+      run_shell(workspace_,
+                file("gaitctl") + " campaign " + file("psuh-map.yaml") + " -o " + file("results"));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_HAS(outcome.err, "did you mean '" + file("push-map.yaml") + "'?");
+}
+
 TEST_F(CampaignTest, TriesEveryCombinationWithEverySeed) {
   campaign("scenarios: [" + file("good.yaml") + ", " + file("bad.yaml") +
            "]\nset: {gait.swing_height: [0.1, 0.2], toe_off.variant: [never]}\nseeds: [3, 7]\n");

@@ -49,6 +49,47 @@ TEST_F(Run, PassesWhenEveryExpectationHolds) {
   EXPECT_HAS(outcome.out, "log: " + workspace_.file("state") + "/gaitd/logs/stand-");
 }
 
+TEST_F(Run, TheVerdictIsTheLastLineAndFiguresAreForV) {
+  const Outcome brief = run(workspace_.file("stand.yaml"));
+  EXPECT_TRUE(brief.out.ends_with("stand.yaml: PASS\n")) << brief.out;
+  EXPECT_EQ(brief.out.find("realtime_factor"), std::string::npos) << brief.out;
+  const Outcome verbose = run("-v " + workspace_.file("stand.yaml"));
+  EXPECT_TRUE(verbose.out.ends_with("stand.yaml: PASS\n")) << verbose.out;
+  EXPECT_HAS(verbose.out, "figures\n");
+  EXPECT_HAS(verbose.out, "realtime_factor");
+}
+
+TEST_F(Run, SeveralEndWithATableOfWhatFailed) {
+  scenario("low", "  checks: [{signal: com/z, stat: max, max: 0.5}]\n");
+  const Outcome outcome = run(workspace_.file("stand.yaml") + " " + workspace_.file("low.yaml"));
+  EXPECT_EQ(outcome.exit_code, 1);
+  const std::string table = outcome.out.substr(outcome.out.find("\nscenario"));
+  EXPECT_HAS(table, "stand.yaml  PASS\n");
+  EXPECT_HAS(table, "low.yaml    FAIL     com/z max");
+  EXPECT_TRUE(table.ends_with("1 of 2 FAILED\n")) << table;
+}
+
+TEST_F(Run, ColoursAreForATerminalThatWantsThem) {
+  const std::string green = "\033[32m" + workspace_.file("stand.yaml") + ": PASS\033[0m";
+  const auto on_terminal = [&](const std::string& environment) {
+    return run_shell(workspace_, environment + " XDG_STATE_HOME=" + workspace_.file("state") +
+                                     " script -qec '" + workspace_.file("gaitctl") + " run " +
+                                     workspace_.file("stand.yaml") + "' /dev/null </dev/null");
+  };
+  EXPECT_HAS(on_terminal("env -u NO_COLOR TERM=xterm").out, green);
+  EXPECT_EQ(on_terminal("NO_COLOR=1 TERM=xterm").out.find("\033[32m"), std::string::npos);
+  EXPECT_EQ(on_terminal("env -u NO_COLOR TERM=dumb").out.find("\033[32m"), std::string::npos);
+  EXPECT_EQ(run(workspace_.file("stand.yaml")).out.find('\033'), std::string::npos);
+}
+
+TEST_F(Run, AMistypedScenarioGetsASuggestion) {
+  const Outcome outcome =
+      run_shell(workspace_, "GAITD_PATH=" GAITD_SOURCE_DIR "/sim " + workspace_.file("gaitctl") +
+                                " run falt-0.35");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_HAS(outcome.out, "did you mean 'flat-0.35'?");
+}
+
 TEST_F(Run, FailsWhenOneExpectationDoesNot) {
   scenario("low", "  checks: [{signal: com/z, stat: max, max: 0.5}]\n");
   const Outcome outcome =

@@ -16,15 +16,17 @@ void add_options(CLI::App* app, Options* options, usage::ValueSources* values) {
                                         "Simulation or robot: simbody, mujoco, socketcan, "
                                         "or the path of a plugin")
                             ->type_name("NAME|FILE");
-  (*values)[backend] = [] { return std::vector<std::string>{"simbody", "mujoco", "socketcan"}; };
+  (*values)[backend] = [](const auto&) {
+    return std::vector<std::string>{"simbody", "mujoco", "socketcan"};
+  };
   const auto* robot =
       app->add_option("--robot", options->robot, "Name of a robot or path of a robot.yaml")
           ->type_name("NAME|FILE");
-  (*values)[robot] = [] { return Paths::detect().robots(); };
+  (*values)[robot] = [](const auto&) { return Paths::detect().robots(); };
   const auto* scenario =
       app->add_option("--scenario", options->scenario, "Scenario to play: name or file")
           ->type_name("NAME|FILE");
-  (*values)[scenario] = [] { return Paths::detect().scenarios(); };
+  (*values)[scenario] = [](const auto&) { return Paths::detect().scenarios(); };
   app->add_option("--clock", options->clock, "realtime or lockstep")
       ->check(CLI::IsMember({"realtime", "lockstep"}));
   app->add_option("--socket", options->socket, "Unix socket for commands")->type_name("FILE");

@@ -53,6 +53,11 @@ json status_of(const Telemetry& telemetry) {
   for (const char* name : {"mode", "phase", "support", "step_index", "footsteps_ahead", "paused"}) {
     status[name] = get(std::string("gait/") + name);
   }
+  // No step is under way while it does not walk; the gait machine keeps the phase of a walk that a
+  // fault has ended until the next one begins.
+  const json now = status["state"];
+  const bool idle = now == "disarmed" || now == "readying" || now == "testing";
+  if (idle && status["phase"].is_string()) status["phase"] = "stand";
   const auto pose = [&](const std::string& frame) {
     json axes;
     for (const char* axis : {"x", "y", "z", "yaw"}) axes[axis] = get(frame + "/" + axis);

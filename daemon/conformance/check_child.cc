@@ -58,11 +58,17 @@ void CheckRun::begin(const char* check) {
 void CheckRun::end(int verdict, const std::string& detail) {
   report_line(std::to_string(verdict) + " " + check_ + " " + detail);
 }
-void CheckRun::pass(const std::string& detail) { end(static_cast<int>(Verdict::kPass), detail); }
-void CheckRun::warn(const std::string& detail) { end(static_cast<int>(Verdict::kWarning), detail); }
-void CheckRun::skip(const std::string& detail) { end(static_cast<int>(Verdict::kSkipped), detail); }
+void CheckRun::pass(const std::string& detail) {
+  end(static_cast<int>(CheckVerdict::kPass), detail);
+}
+void CheckRun::warn(const std::string& detail) {
+  end(static_cast<int>(CheckVerdict::kWarning), detail);
+}
+void CheckRun::skip(const std::string& detail) {
+  end(static_cast<int>(CheckVerdict::kSkipped), detail);
+}
 bool CheckRun::fail(const std::string& detail) {
-  end(static_cast<int>(Verdict::kFail),
+  end(static_cast<int>(CheckVerdict::kFail),
       detail + (log_.empty() ? "" : " (it logged: " + log_ + ")"));
   return false;
 }

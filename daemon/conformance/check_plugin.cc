@@ -78,7 +78,8 @@ CheckResult& find(PluginReport& report, std::string_view name) {
                        [&](const CheckResult& c) { return c.name == name; });
 }
 
-void set(PluginReport& report, std::string_view name, Verdict verdict, const std::string& detail) {
+void set(PluginReport& report, std::string_view name, CheckVerdict verdict,
+         const std::string& detail) {
   CheckResult& check = find(report, name);
   check.verdict = verdict;
   check.detail += (check.detail.empty() ? "" : "; ") + detail;
@@ -90,17 +91,17 @@ bool check_file(PluginReport& report) {
   const auto file = read_plugin_file(report.file, std::nullopt, &refusal);
   for (CheckResult& check : report.checks) check.detail.clear();
   for (const Refusal::Reason& reason : refusal.reasons) {
-    set(report, check_of(reason.what), Verdict::kFail,
+    set(report, check_of(reason.what), CheckVerdict::kFail,
         reason.what + ": has " + reason.has + ", needs " + reason.needed + "; " + reason.remedy);
   }
   if (!file) {
-    const bool readable = find(report, "file").verdict != Verdict::kFail;
-    if (readable) set(report, "file", Verdict::kPass, "");
+    const bool readable = find(report, "file").verdict != CheckVerdict::kFail;
+    if (readable) set(report, "file", CheckVerdict::kPass, "");
     return false;
   }
   report.descriptor = file->descriptor;
   for (const char* name : {"file", "descriptor", "symbols", "thread_local"}) {
-    set(report, name, Verdict::kPass, "");
+    set(report, name, CheckVerdict::kPass, "");
   }
   const bool layer = file->descriptor.layer != GAITD_LAYER_BACKEND;
   find(report, "descriptor").detail = std::string(layer_name(file->descriptor.layer)) + "/" +
@@ -108,16 +109,16 @@ bool check_file(PluginReport& report) {
                                       std::to_string(file->descriptor.parameter_count) +
                                       " parameters";
   if (file->unique.empty()) {
-    set(report, "sharing", Verdict::kPass, "");
+    set(report, "sharing", CheckVerdict::kPass, "");
   } else {
-    set(report, "sharing", layer ? Verdict::kFail : Verdict::kWarning,
+    set(report, "sharing", layer ? CheckVerdict::kFail : CheckVerdict::kWarning,
         std::to_string(file->unique.size()) + " unique symbols, among them " + file->unique[0] +
             "; compile with -fno-gnu-unique -fvisibility=hidden");
   }
   if (file->binds_now) {
-    set(report, "binding", Verdict::kPass, "");
+    set(report, "binding", CheckVerdict::kPass, "");
   } else {
-    set(report, "binding", Verdict::kWarning,
+    set(report, "binding", CheckVerdict::kWarning,
         "a symbol may be resolved at its first use, in a tick; link with -Wl,-z,now");
   }
   return true;
@@ -135,7 +136,7 @@ void collect(const ChildEnd& end, PluginReport& report) {
     if (first == "begin") running = name;
     if (first.size() != 1 || first[0] < '0' || first[0] > '3') continue;
     CheckResult& check = find(report, name);
-    check.verdict = static_cast<Verdict>(first[0] - '0');
+    check.verdict = static_cast<CheckVerdict>(first[0] - '0');
     check.detail = detail;
     if (running == name) running.clear();
   }
@@ -143,22 +144,22 @@ void collect(const ChildEnd& end, PluginReport& report) {
   if (what.empty()) what = end.last("error ");
   if (what.empty()) return;
   if (running.empty()) {
-    const bool loaded = find(report, "load").verdict == Verdict::kPass;
+    const bool loaded = find(report, "load").verdict == CheckVerdict::kPass;
     running = loaded ? report.checks.back().name : "load";
   }
   CheckResult& check = find(report, running);
-  check.verdict = Verdict::kFail;
+  check.verdict = CheckVerdict::kFail;
   check.detail = what;
 }
 
 }  // namespace
 
-const char* verdict_text(Verdict verdict) {
+const char* check_verdict_text(CheckVerdict verdict) {
   constexpr std::array<const char*, 4> kTexts = {"pass", "warning", "FAIL", "skipped"};
   return kTexts[static_cast<std::size_t>(verdict)];
 }
 
-int PluginReport::count(Verdict verdict) const {
+int PluginReport::count(CheckVerdict verdict) const {
   return static_cast<int>(std::count_if(
       checks.begin(), checks.end(), [&](const CheckResult& c) { return c.verdict == verdict; }));
 }
@@ -169,7 +170,7 @@ PluginReport check_plugin(const std::filesystem::path& file, const GaitdModel& m
   report.file = file.string();
   report.descriptor.layer = -1;
   for (const Demand& demand : kSuite) {
-    report.checks.push_back({demand.name, demand.demands, Verdict::kSkipped, ""});
+    report.checks.push_back({demand.name, demand.demands, CheckVerdict::kSkipped, ""});
   }
   const bool loadable = check_file(report);
   const bool backend = report.descriptor.layer == GAITD_LAYER_BACKEND;
@@ -183,20 +184,20 @@ PluginReport check_plugin(const std::filesystem::path& file, const GaitdModel& m
                   [&](const CheckResult& check) { return check.name == demand.name; });
   }
   for (CheckResult& check : report.checks) {
-    if (check.verdict != Verdict::kSkipped) continue;
+    if (check.verdict != CheckVerdict::kSkipped) continue;
     check.detail = loadable && backend && !simulation
                        ? "nothing of a backend is called that may touch hardware"
                        : "not tried after the failure above";
   }
   const auto run = [&](const char* group) {
-    const int before = report.count(Verdict::kFail);
+    const int before = report.count(CheckVerdict::kFail);
     const std::string path = std::filesystem::absolute(file).string();
     collect(run_child({.executable = options.executable,
                        .arguments = {kCheckArgument, group, path},
                        .model = &model,
                        .timeout = options.timeout}),
             report);
-    return report.count(Verdict::kFail) == before;
+    return report.count(CheckVerdict::kFail) == before;
   };
   if (!loadable) return report;
   if (backend) {

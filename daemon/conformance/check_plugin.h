@@ -10,7 +10,7 @@
 
 namespace gaitd::daemon {
 
-enum class Verdict {
+enum class CheckVerdict {
   kPass,
   kWarning,  ///< worth a look; the plugin is accepted
   kFail,
@@ -18,12 +18,12 @@ enum class Verdict {
 };
 
 /// "pass", "warning", "FAIL", "skipped".
-const char* verdict_text(Verdict verdict);
+const char* check_verdict_text(CheckVerdict verdict);
 
 struct CheckResult {
   std::string name;     ///< one word, e.g. "repeatable"
   std::string demands;  ///< what a plugin must fulfil
-  Verdict verdict = Verdict::kSkipped;
+  CheckVerdict verdict = CheckVerdict::kSkipped;
   std::string detail;  ///< what was found; with a failure what to do as well
 };
 
@@ -32,8 +32,8 @@ struct PluginReport {
   GaitdPluginDescriptor descriptor{};  ///< layer -1 if it could not be read
   std::vector<CheckResult> checks;     ///< every check, in the order of the suite
 
-  int count(Verdict verdict) const;
-  bool pass() const { return count(Verdict::kFail) == 0; }
+  int count(CheckVerdict verdict) const;
+  bool pass() const { return count(CheckVerdict::kFail) == 0; }
 };
 
 struct CheckOptions {

@@ -38,14 +38,27 @@ struct Place {
   const CLI::App* app;
   std::size_t positional = 0;            // values that it has already
   const CLI::Option* waiting = nullptr;  // for its value
+  std::string joined{};                  // "KEY=", the part of the value that is a word of its own
 };
 
 Place walk(const CLI::App& app, const std::vector<std::string>& words) {
   Place place{&app};
+  const CLI::Option* taken = nullptr;  // whose value the word before was
+  const auto continues = [&](std::size_t i) { return taken != nullptr && words[i] == "="; };
   for (std::size_t i = 0; i + 1 < words.size(); ++i) {
     const std::string& word = words[i];
+    if (continues(i)) {  // and of that of --option KEY=value
+      place.waiting = taken;
+      place.joined = words[i - 1] + "=";
+      taken = nullptr;
+      continue;
+    }
+    taken = nullptr;
     if (place.waiting != nullptr) {
-      if (word != "=") place.waiting = nullptr;  // bash makes a word of the = of --option=value
+      if (word == "=") continue;  // bash makes a word of the = of --option=value
+      if (place.joined.empty()) taken = place.waiting;
+      place.waiting = nullptr;
+      place.joined.clear();
     } else if (is_option(word)) {
       const std::string name = word.substr(0, word.find('='));
       const CLI::Option* option = find_option(place.app, name);
@@ -57,24 +70,34 @@ Place walk(const CLI::App& app, const std::vector<std::string>& words) {
       ++place.positional;
     }
   }
+  if (!words.empty() && continues(words.size() - 1)) {
+    place.waiting = taken;
+    place.joined = words[words.size() - 2] + "=";
+  }
   return place;
 }
 
 class Collector {
  public:
-  Collector(std::string prefix, const ValueSources& sources)
-      : prefix_(std::move(prefix)), sources_(sources) {}
+  // `words`: the command line, the last of which begins with `prefix` or is the "=" before it.
+  Collector(std::string prefix, const std::vector<std::string>& words, const ValueSources& sources)
+      : prefix_(std::move(prefix)), words_(words), sources_(sources) {}
 
   void add(const std::string& word, const std::string& description) {
     if (word.starts_with(prefix_)) {
       result_.candidates.push_back({word, first_line(description)});
     }
   }
-  // `before`: what stands in the same word before the value.
-  void add_values(const CLI::Option& option, const std::string& before) {
+  // `before`: what stands in the same word before the value; `joined`: what of the value stands in
+  // the words before.
+  void add_values(const CLI::Option& option, const std::string& before,
+                  const std::string& joined = "") {
     for (const std::string& word : fixed_words(option)) add(before + word, "");
     if (const auto source = sources_.find(&option); source != sources_.end()) {
-      for (const std::string& word : source->second()) add(before + word, "");
+      const std::size_t last = words_.empty() ? 0 : words_.size() - 1;
+      for (const std::string& word : source->second({words_.begin(), words_.begin() + last})) {
+        if (word.starts_with(joined)) add(before + word.substr(joined.size()), "");
+      }
     }
     result_.files = takes_files(option);
   }
@@ -91,6 +114,7 @@ class Collector {
 
  private:
   std::string prefix_;
+  const std::vector<std::string>& words_;
   const ValueSources& sources_;
   Completion result_;
 };
@@ -140,11 +164,11 @@ Completion complete(const CLI::App& app, const std::vector<std::string>& words,
   const std::string last = words.empty() ? "" : words.back();
   const Place place = walk(app, words);
   if (place.waiting != nullptr) {
-    Collector collector(last == "=" ? "" : last, sources);
-    collector.add_values(*place.waiting, "");
+    Collector collector(last == "=" ? "" : last, words, sources);
+    collector.add_values(*place.waiting, "", place.joined);
     return collector.take();
   }
-  Collector collector(last, sources);
+  Collector collector(last, words, sources);
   const std::size_t equals = last.find('=');
   if (is_option(last) && equals != std::string::npos) {
     const CLI::Option* option = find_option(place.app, last.substr(0, equals));

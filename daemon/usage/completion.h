@@ -11,7 +11,8 @@
 namespace gaitd::usage {
 
 /// Values that an option or positional can take, known only when asked: names of files, say.
-using ValueSource = std::function<std::vector<std::string>()>;
+/// `words` stand before the value.
+using ValueSource = std::function<std::vector<std::string>(const std::vector<std::string>& words)>;
 using ValueSources = std::map<const CLI::Option*, ValueSource>;
 
 /// What may stand at the end of a command line.

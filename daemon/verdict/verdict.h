@@ -57,7 +57,6 @@ struct VerdictWord {
 };
 VerdictWord verdict_word(const Verdict& verdict, bool judged, bool damaged);
 
-std::string verdict_text(const Verdict& verdict);
 std::string verdict_json(const Verdict& verdict);
 
 }  // namespace gaitd::daemon

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -12,11 +11,6 @@ namespace gaitd::daemon {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
-
-std::string pad(std::string text, std::size_t width) {
-  if (text.size() < width) text.append(width - text.size(), ' ');
-  return text;
-}
 
 // JSON has neither NaN nor infinity.
 OrderedJson number(double value) {
@@ -40,33 +34,6 @@ VerdictWord verdict_word(const Verdict& verdict, bool judged, bool damaged) {
   if (damaged) return {"not judged: the log is damaged", false};
   if (!judged) return {"not judged: the log holds no expectations", false};
   return {"passed", true};
-}
-
-std::string verdict_text(const Verdict& verdict) {
-  std::size_t name_width = 0;
-  std::size_t figure_width = 0;
-  std::size_t bound_width = 0;
-  for (const Judgement& judgement : verdict.judgements) {
-    name_width = std::max(name_width, judgement.name.size());
-    figure_width = std::max(figure_width, judgement.figure.size());
-    bound_width = std::max(bound_width, judgement.bound.size());
-  }
-  std::string text;
-  for (const Judgement& judgement : verdict.judgements) {
-    std::string line = judgement.pass ? "  ok    " : "  FAIL  ";
-    line += pad(judgement.name, name_width + 2) + pad(judgement.figure, figure_width + 2) +
-            pad(judgement.bound, bound_width + 2) + judgement.note;
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
-  }
-  text += "figures\n";
-  std::size_t width = 0;
-  for (const Figure& figure : verdict.figures) width = std::max(width, figure.name.size());
-  for (const Figure& figure : verdict.figures) {
-    text += "  " + pad(figure.name, width + 2) + number_text(figure.value, figure.unit) + "\n";
-  }
-  text += verdict.pass ? "verdict: pass\n" : "verdict: FAIL\n";
-  return text;
 }
 
 std::string verdict_json(const Verdict& verdict) {

@@ -28,7 +28,7 @@ PluginReport report_of(const std::string& file, int timeout_ms = 120000) {
 std::string text(const PluginReport& report) {
   std::string out;
   for (const CheckResult& c : report.checks) {
-    out += std::string(verdict_text(c.verdict)) + " " + c.name + " " + c.detail + "\n";
+    out += std::string(check_verdict_text(c.verdict)) + " " + c.name + " " + c.detail + "\n";
   }
   return out;
 }
@@ -56,7 +56,7 @@ TEST_P(Zoo, IsNamedByTheSuite) {
                 fault.timeout_ms);
   EXPECT_FALSE(report.pass());
   const CheckResult& c = check(report, fault.check);
-  EXPECT_EQ(c.verdict, Verdict::kFail) << text(report);
+  EXPECT_EQ(c.verdict, CheckVerdict::kFail) << text(report);
   EXPECT_NE(c.detail.find(fault.message), std::string::npos) << text(report);
 }
 
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(InTheFileOrAtLoad, Zoo, ::testing::ValuesIn(host_faults
 TEST(Conformance, ASoundPluginPassesEverything) {
   const PluginReport report = report_of(zoo("sound"));
   EXPECT_TRUE(report.pass()) << text(report);
-  EXPECT_EQ(report.count(Verdict::kPass) + (allocations_are_counted() ? 0 : 1),
+  EXPECT_EQ(report.count(CheckVerdict::kPass) + (allocations_are_counted() ? 0 : 1),
             static_cast<int>(report.checks.size()))
       << text(report);
   EXPECT_STREQ(report.descriptor.id, "sound");
@@ -137,17 +137,17 @@ TEST(Conformance, ASoundPluginPassesEverything) {
 
 TEST(Conformance, WhatIsOnlyWorthALookIsAWarning) {
   const PluginReport slow = report_of(zoo("slow"));
-  EXPECT_EQ(check(slow, "time").verdict, Verdict::kWarning) << text(slow);
+  EXPECT_EQ(check(slow, "time").verdict, CheckVerdict::kWarning) << text(slow);
   EXPECT_TRUE(slow.pass()) << text(slow);
   const PluginReport lazy = report_of(zoo("lazy"));
-  EXPECT_EQ(check(lazy, "binding").verdict, Verdict::kWarning) << text(lazy);
+  EXPECT_EQ(check(lazy, "binding").verdict, CheckVerdict::kWarning) << text(lazy);
   EXPECT_TRUE(lazy.pass()) << text(lazy);
 }
 
 TEST(Conformance, AfterAFailureOfTheFileNothingIsLoaded) {
   const PluginReport report = report_of(host_plugin("wrong_major"));
   for (const char* name : {"load", "create", "process"}) {
-    EXPECT_EQ(check(report, name).verdict, Verdict::kSkipped) << text(report);
+    EXPECT_EQ(check(report, name).verdict, CheckVerdict::kSkipped) << text(report);
   }
 }
 
@@ -172,17 +172,17 @@ TEST(Conformance, FilesThatAreNoPluginFailTheFirstCheck) {
                          "machine 183", "no regular file", "needs a readable shared library"};
   for (std::size_t i = 0; i < std::size(files); ++i) {
     const PluginReport report = report_of(files[i]);
-    EXPECT_EQ(check(report, "file").verdict, Verdict::kFail) << text(report);
+    EXPECT_EQ(check(report, "file").verdict, CheckVerdict::kFail) << text(report);
     EXPECT_NE(check(report, "file").detail.find(needs[i]), std::string::npos) << text(report);
-    EXPECT_EQ(report.count(Verdict::kPass), 0) << text(report);
+    EXPECT_EQ(report.count(CheckVerdict::kPass), 0) << text(report);
   }
   std::filesystem::remove_all(folder);
 }
 
 TEST(Conformance, ABackendIsMadeButNotStarted) {
   const PluginReport report = report_of(host_plugin("backend"));
-  EXPECT_EQ(check(report, "destroy").verdict, Verdict::kPass) << text(report);
-  EXPECT_EQ(check(report, "process").verdict, Verdict::kSkipped);
+  EXPECT_EQ(check(report, "destroy").verdict, CheckVerdict::kPass) << text(report);
+  EXPECT_EQ(check(report, "process").verdict, CheckVerdict::kSkipped);
 }
 
 }  // namespace

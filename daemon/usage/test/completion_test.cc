@@ -31,7 +31,7 @@ TEST(Completion, OffersCommandsAndTheirCommands) {
 TEST(Completion, OffersOptionsWithThoseOfTheProgram) {
   EXPECT_EQ(offered({"--"}), "--help --socket --json");
   EXPECT_EQ(offered({"plugin", "swap", "--l"}), "--length");
-  EXPECT_EQ(offered({"run", "--s"}), "--side --socket");
+  EXPECT_EQ(offered({"run", "--s"}), "--set --side --socket");
 }
 
 TEST(Completion, OffersValuesOfOptionsInEveryForm) {
@@ -43,11 +43,19 @@ TEST(Completion, OffersValuesOfOptionsInEveryForm) {
   EXPECT_EQ(offered({"--socket", ""}), "+files");
 }
 
+TEST(Completion, OffersKeysAndValuesOfSettings) {
+  EXPECT_EQ(offered({"run", "--set", "g"}), "gain=");
+  EXPECT_EQ(offered({"run", "--set", "toe_off=n"}), "toe_off=never");
+  EXPECT_EQ(offered({"run", "--set", "toe_off", "=", "n"}), "never");  // as bash splits it
+  EXPECT_EQ(offered({"run", "--set", "toe_off", "="}), "never always");
+  EXPECT_EQ(offered({"run", "--set", "toe_off", "=", "never", "--si"}), "--side");
+}
+
 TEST(Completion, OffersValuesOfPositionalsByTheirPlace) {
   EXPECT_EQ(offered({"mode", ""}), "stand walk");
   EXPECT_EQ(offered({"mode", "stand", ""}), "");
   EXPECT_EQ(offered({"plugin", "swap", "i"}), "icp_planner");
-  EXPECT_EQ(offered({"plugin", "swap", "toe_off", ""}), "+files");
+  EXPECT_EQ(offered({"plugin", "swap", "toe_off", ""}), "of_toe_off+files");
   EXPECT_EQ(offered({"plugin", "swap", "--length", "3", "t"}), "toe_off");
   EXPECT_EQ(offered({"run", "a", "b", ""}), "+files");  // repeated
 }

@@ -32,11 +32,21 @@ struct SampleApp {
     plugin->require_subcommand(1);
     auto* swap = plugin->add_subcommand("swap", "Change one");
     auto* layer_option = swap->add_option("LAYER", layer, "A layer")->required();
-    values[layer_option] = [] { return std::vector<std::string>{"toe_off", "icp_planner"}; };
-    swap->add_option("VARIANT", variant, "A variant or a file")->type_name("NAME|FILE");
+    values[layer_option] = [](const auto&) {
+      return std::vector<std::string>{"toe_off", "icp_planner"};
+    };
+    auto* variant_option =
+        swap->add_option("VARIANT", variant, "A variant or a file")->type_name("NAME|FILE");
+    values[variant_option] = [](const std::vector<std::string>& words) {
+      return std::vector<std::string>{"of_" + words.back()};
+    };
     swap->add_option("-l,--length", length, "Length, m")->type_name("M");
     auto* run = app.add_subcommand("run", "Run -files with 'quotes' and .dots");
     run->add_option("FILE", files, "Files")->required()->type_name("FILE");
+    auto* set = run->add_option("--set", output, "A setting");
+    values[set] = [](const auto&) {
+      return std::vector<std::string>{"gain=", "toe_off=never", "toe_off=always"};
+    };
     run->add_option("--side", output, "A side")->check(CLI::IsMember({"left", "right"}));
     run->footer("Lines\n  that stay");
     app.add_subcommand("hidden", "Not to be seen")->group("");
