@@ -56,7 +56,8 @@ void add_walk(CLI::App* app, Context* context) {
   number("--length", "length", "Each footfall ahead of the previous one, m; default 0");
   number("--lateral", "lateral",
          "Each footfall beside the previous one, m, positive to the left; default 0");
-  number("--width", "width", "Distance between the soles, m; by default as in the standing posture");
+  number("--width", "width",
+         "Distance between the soles, m; by default as in the standing posture");
   number("--turn", "turn", "Turn per footfall, rad, positive to the left; default 0");
   number("--swing", "swing", "Duration of a swing, s; by default gait.swing_duration");
   number("--transfer", "transfer",

@@ -37,3 +37,20 @@ for name in replay icp-path icp-x icp-y com-height knees torques forces step-adj
     fail "$name.png is no PNG"
 done
 (($(ls -A pictures | wc -l) == 10)) || fail "more than the pictures: $(ls -A pictures)"
+
+# Two logs over each other, the second robot pushed.
+cat >pushed.yaml <<SCENARIO
+schema: gaitd.scenario/1
+name: pushed
+robot: atlas
+duration: 8
+mode: walk-bent
+commands: [{at: 2.0, walk: {steps: 2, length: 0.2}}]
+disturbances: [{when: {time: 1.5}, link: pelvis, force: [0, 150, 0], duration: 0.1}]
+expect: {no_fall: true}
+SCENARIO
+expect 0 gaitctl run pushed.yaml --log pushed.mcap >run.txt
+expect 0 gaitctl report walk.mcap pushed.mcap -o two.html
+expect 0 node "$GAITD_SOURCE/tests/report_two.mjs" "$playwright" "$scratch/two.html"
+expect 4 gaitctl --json report walk.mcap cut.mcap -o damaged.html >damaged.json 2>cut.txt
+grep -q '"logs"' damaged.json || fail "nothing of each log: $(cat damaged.json)"

@@ -7,11 +7,14 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/failure.h"
 #include "cli/log_damage.h"
 #include "cli/print.h"
+#include "cli/progress.h"
 #include "cli/report/pictures.h"
 #include "cli/report/report_data.h"
 #include "daemon/log/log_reader.h"
@@ -20,19 +23,25 @@ namespace gaitd::cli {
 namespace {
 
 struct Arguments {
-  std::string log;
+  std::vector<std::string> logs;
   std::string output = "report.html";
   std::string png;
 };
 
 int run(const Context& context, const Arguments& arguments) {
   std::string error;
-  const auto log = daemon::LogReader::open(arguments.log, &error);
-  if (!log) return fail(context, kFailed, "report", error);
-  if (log->tick_count() == 0) {
-    return fail(context, kFailed, "report", arguments.log + ": holds no tick, nothing to show");
+  std::optional<Waiting> waiting("drawing " + arguments.output);
+  std::vector<std::unique_ptr<daemon::LogReader>> logs;
+  std::size_t ticks = 0;
+  for (const std::string& file : arguments.logs) {
+    logs.push_back(daemon::LogReader::open(file, &error));
+    if (!logs.back()) return fail(context, kFailed, "report", error);
+    if (logs.back()->tick_count() == 0) {
+      return fail(context, kFailed, "report", file + ": holds no tick, nothing to show");
+    }
+    ticks += logs.back()->tick_count();
   }
-  const std::string page = report_page(report_data(*log), &error);
+  const std::string page = report_page(report_data(logs), &error);
   if (page.empty()) return fail(context, kFailed, "report", error);
   std::ofstream out(arguments.output, std::ios::binary | std::ios::trunc);
   out << page << std::flush;
@@ -44,25 +53,36 @@ int run(const Context& context, const Arguments& arguments) {
     error = draw_pictures(arguments.output, arguments.png);
     if (!error.empty()) return fail(context, kFailed, "report", error);
   }
+  waiting.reset();
   if (context.json) {
-    nlohmann::json result = {{"report", arguments.output}, {"ticks", log->tick_count()}};
-    add_damage(*log, &result);
+    nlohmann::json result = {{"report", arguments.output}, {"ticks", ticks}};
+    if (logs.size() == 1) add_damage(*logs.front(), &result);
+    for (std::size_t i = 0; logs.size() > 1 && i < logs.size(); ++i) {
+      nlohmann::json one = {{"file", arguments.logs[i]}, {"ticks", logs[i]->tick_count()}};
+      add_damage(*logs[i], &one);
+      result["logs"].push_back(std::move(one));
+    }
     std::cout << json_text(result);
   } else {
     std::cout << "report: " << arguments.output << "\n";
     if (!arguments.png.empty()) std::cout << "pictures: " << arguments.png << "\n";
   }
-  return tell_damage("report", *log, kDone);
+  int code = kDone;
+  for (const auto& log : logs) code = tell_damage("report", *log, code);
+  return code;
 }
 
 }  // namespace
 
 void add_report_command(CLI::App* app, Context* context) {
   auto* command = app->add_subcommand(
-      "report", "A page that replays a log in 3-D beside its plots; one file, no network");
-  command->footer("Exit code 4: done, but the log is damaged; what is missing is said.");
+      "report", "A page that replays logs in 3-D beside their plots; one file, no network");
+  command->footer(
+      "Several logs are laid over each other: their lines in the same plots, the robots of all "
+      "but\n"
+      "the first as ghosts. Exit code 4: done, but a log is damaged; what is missing is said.");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("FILE", arguments->log, "A log of gaitd (.mcap)")
+  command->add_option("FILE", arguments->logs, "Logs of gaitd (.mcap)")
       ->required()
       ->type_name("FILE");
   command->add_option("-o,--output", arguments->output, "Page to write")

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <vector>
@@ -128,12 +129,11 @@ void add_robot(const LogReader& log, json* data) {
   if (urdf != nullptr) (*data)["urdf"] = read_file(file->parent_path() / urdf->value->text);
 }
 
-}  // namespace
-
-std::string report_data(const LogReader& log) {
+json data_of(const LogReader& log) {
   json data;
+  data["name"] = fs::path(log.path()).stem().string();
   data["title"] = log.metadata_value("scenario").value_or("");
-  if (data["title"] == "") data["title"] = fs::path(log.path()).stem().string();
+  if (data["title"] == "") data["title"] = data["name"];
   json metadata = json::object();
   for (const auto& [key, value] : log.metadata()) {
     if (!key.starts_with("robot_")) metadata[key] = value;  // they have places of their own
@@ -152,6 +152,27 @@ std::string report_data(const LogReader& log) {
   }
   add_robot(log, &data);
   add_signals(log, &data);
+  return data;
+}
+
+}  // namespace
+
+std::string report_data(const std::vector<std::unique_ptr<LogReader>>& logs) {
+  json data;
+  std::map<std::string, int> names;
+  for (const auto& log : logs) {
+    json one = data_of(*log);
+    const auto name = one["name"].get<std::string>();
+    if (const int before = names[name]++; before > 0) {
+      one["name"] = name + " " + std::to_string(before + 1);
+    }
+    if (data.is_null()) {
+      data = std::move(one);
+      data["others"] = json::array();
+    } else {
+      data["others"].push_back(std::move(one));
+    }
+  }
   std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
   std::string safe;
   safe.reserve(text.size());

@@ -83,9 +83,8 @@ TEST_F(Run, ColoursAreForATerminalThatWantsThem) {
 }
 
 TEST_F(Run, AMistypedScenarioGetsASuggestion) {
-  const Outcome outcome =
-      run_shell(workspace_, "GAITD_PATH=" GAITD_SOURCE_DIR "/sim " + workspace_.file("gaitctl") +
-                                " run falt-0.35");
+  const Outcome outcome = run_shell(workspace_, "GAITD_PATH=" GAITD_SOURCE_DIR "/sim " +
+                                                    workspace_.file("gaitctl") + " run falt-0.35");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_HAS(outcome.out, "did you mean 'flat-0.35'?");
 }

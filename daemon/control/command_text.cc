@@ -87,6 +87,16 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
   return w.text();
 }
 
+std::string_view push_text(const GaitdDisturbance& push, const char* link, char* buffer,
+                           std::size_t size) {
+  Writer w(buffer, size);
+  w.add(R"({"push":"%s","force":[%.17g,%.17g,%.17g])", link, push.force[0], push.force[1],
+        push.force[2]);
+  w.add(R"(,"point":[%.17g,%.17g,%.17g],"duration":%.17g})", push.point[0], push.point[1],
+        push.point[2], push.duration);
+  return w.text();
+}
+
 std::string_view parameter_text(const char* key, const Command& c, const CommandReply& reply,
                                 char* buffer, std::size_t size) {
   Writer w(buffer, size);

@@ -17,4 +17,8 @@ std::string_view command_text(const Command& command, const CommandReply& reply,
 std::string_view parameter_text(const char* key, const Command& command, const CommandReply& reply,
                                 char* buffer, std::size_t size);
 
+// {"push": link, "force", "point", "duration"} of a push that was made. [rt]
+std::string_view push_text(const GaitdDisturbance& push, const char* link, char* buffer,
+                           std::size_t size);
+
 }  // namespace gaitd::daemon

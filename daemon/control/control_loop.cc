@@ -219,9 +219,16 @@ CommandReply ControlLoop::refuse_outdated(const Command& command) {
 // Of the scenario: one that is not made would pass for one that was withstood.
 void ControlLoop::push_robot(const GaitdDisturbance& push) {
   const char* why = sim_push(backend_, push);
-  if (why == nullptr) return;
+  if (why == nullptr) return tell_push(push);
   end(RunEnd::kPush,
       std::string("the push on ") + model_.bodies[push.body].name + " was not made: " + why);
+}
+
+// For whoever looks at the log: what came from the simulation's side.
+void ControlLoop::tell_push(const GaitdDisturbance& push) {
+  char text[kMaxEventText];
+  telemetry_->push_event(EventKind::kNote, tick_, static_cast<double>(tick_) * options_.period,
+                         push_text(push, model_.bodies[push.body].name, text, sizeof(text)));
 }
 
 void ControlLoop::backend_failed(const char* what) {
@@ -251,6 +258,7 @@ CommandReply ControlLoop::simulate(const Command& command) {
       std::snprintf(reply.message.data(), reply.message.size(), "sim push: %s", why);
     } else {
       reply.accepted = true;
+      tell_push(command.push);
     }
   } else if (backend_.vtable->reset == nullptr ||
              backend_.vtable->reset(backend_.self) != GAITD_OK) {

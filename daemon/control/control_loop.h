@@ -76,6 +76,7 @@ class ControlLoop {
   CommandReply simulate(const Command& command);
   CommandReply request_swap(const Command& command);
   void push_robot(const GaitdDisturbance& push);
+  void tell_push(const GaitdDisturbance& push);
   void raise(Fault fault, const char* name);
   void backend_failed(const char* what);
   void end(RunEnd how, const std::string& problem = "");

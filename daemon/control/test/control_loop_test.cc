@@ -218,10 +218,11 @@ TEST_F(ControlLoopTest, APushThatTheBackendRefusesEndsTheRunAsAFailure) {
   EXPECT_NE(report.problem.find("pelvis"), std::string::npos);
 }
 
-TEST_F(ControlLoopTest, APushThatIsMadeIsNoFailure) {
+TEST_F(ControlLoopTest, APushThatIsMadeIsToldAndNoFailure) {
   const LoopReport report = run(pushed());
   EXPECT_EQ(report.end, RunEnd::kDuration);
   EXPECT_EQ(report.problem, "");
+  EXPECT_TRUE(told(EventKind::kNote, R"({"push":"pelvis","force":[100,0,0])"));
 }
 
 TEST_F(ControlLoopTest, AHeadThatFailsIsToldAndTheRobotGoesOn) {
