@@ -131,9 +131,10 @@ void add_robot(const LogReader& log, json* data) {
 
 json data_of(const LogReader& log) {
   json data;
-  data["name"] = fs::path(log.path()).stem().string();
-  data["title"] = log.metadata_value("scenario").value_or("");
-  if (data["title"] == "") data["title"] = data["name"];
+  const std::string name = fs::path(log.path()).stem().string();
+  const std::string scenario = log.metadata_value("scenario").value_or("");
+  data["name"] = name;
+  data["title"] = scenario.empty() ? name : scenario;
   json metadata = json::object();
   for (const auto& [key, value] : log.metadata()) {
     if (!key.starts_with("robot_")) metadata[key] = value;  // they have places of their own
