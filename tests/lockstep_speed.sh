@@ -14,7 +14,7 @@ walk() {
   shift 2
   for _ in {1..5}; do
     before=$(taskset -c "$core" "$GAITD_BUILD/tests/calibration")
-    { time taskset -c "$core" gaitctl run "$@" --log "$scratch/walk.mcap" >"$scratch/out" 2>&1; } \
+    { time taskset -c "$core" gaitctl run -v "$@" --log "$scratch/walk.mcap" >"$scratch/out" 2>&1; } \
       2>"$scratch/time" || true  # the verdict is for others
     after=$(taskset -c "$core" "$GAITD_BUILD/tests/calibration")
     seconds=$(awk '{ print $1 + $2 }' "$scratch/time")
