@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
+#include <system_error>
 #include <utility>
 
 #include "daemon/config/printable.h"
@@ -26,7 +27,12 @@ void write_line(const std::string& text) {
 }  // namespace
 
 Waiting::Waiting(std::string what) : what_(std::move(what)) {
-  if (on_terminal()) thread_ = std::thread([this] { show(); });
+  if (!on_terminal()) return;
+  try {
+    thread_ = std::thread([this] { show(); });
+  } catch (const std::system_error&) {
+    // No thread to be had: whoever stops the robot does so without being told how long it takes.
+  }
 }
 
 Waiting::~Waiting() {

@@ -129,10 +129,14 @@ export class Scene {
     this.scene.add(this.support);
   }
 
+  // The row of each log at that time: what the scene shows.
+  rowsAt(time) {
+    return this.log.all.map((one) => one.row(time)).join();
+  }
+
   // Only what has changed is drawn again.
   update(time) {
-    const rows = this.log.all.map((log) => log.row(time)).join();
-    if (rows !== this.rows) this.show(time);
+    if (this.rowsAt(time) !== this.rows) this.show(time);
     else if (this.stale) this.draw();
   }
 
@@ -196,7 +200,7 @@ export class Scene {
     for (const {prefix, mesh} of this.markers) {
       mesh.position.set(log.value(`${prefix}/x`, row), log.value(`${prefix}/y`, row), ground);
     }
-    this.rows = log.all.map((one) => one.row(time)).join();
+    this.rows = this.rowsAt(time);
     this.follow();
     this.draw();
   }
