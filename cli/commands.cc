@@ -15,6 +15,7 @@
 #include "cli/plugin_commands.h"
 #include "cli/report/report_command.h"
 #include "cli/run_command.h"
+#include "cli/view/view_command.h"
 #include "cli/watch_command.h"
 
 namespace gaitd::cli {
@@ -27,6 +28,7 @@ void add_commands(CLI::App* app, Context* context) {
   add_calibrate_command(app, context);
   add_param_commands(app, context);
   add_watch_command(app, context);
+  add_view_command(app, context);
   add_run_command(app, context);
   add_campaign_command(app, context);
   add_compare_command(app, context);

@@ -26,7 +26,7 @@ struct Group {
 const std::vector<Group>& groups() {
   static const std::vector<Group> kGroups = {
       {"Command the robot",
-       {"status", "watch", "arm", "disarm", "estop", "reset", "mode", "walk", "steps", "drive",
+       {"status", "watch", "view", "arm", "disarm", "estop", "reset", "mode", "walk", "steps", "drive",
         "pose", "pause", "resume", "stop", "abort"}},
       {"Play scenarios", {"run", "campaign", "compare", "sim"}},
       {"Read logs", {"report", "log", "doctor"}},
@@ -39,6 +39,7 @@ const std::map<std::string, const char*>& examples() {
   static const std::map<std::string, const char*> kExamples = {
       {"status", "gaitctl status"},
       {"watch", "gaitctl watch --interval 0.5"},
+      {"view", "gaitctl view --open"},
       {"arm", "gaitctl arm"},
       {"disarm", "gaitctl disarm"},
       {"estop", "gaitctl estop"},

@@ -147,7 +147,9 @@ std::unique_ptr<RpcClient> RpcClient::connect(const Destination& destination, st
   return nullptr;
 }
 
-RpcClient::~RpcClient() { close(fd_); }
+RpcClient::~RpcClient() {
+  if (fd_ >= 0) close(fd_);
+}
 
 daemon::RpcResult RpcClient::call(const std::string& method, const json& params,
                                   std::chrono::milliseconds timeout) {
@@ -169,6 +171,7 @@ daemon::RpcResult RpcClient::call(const std::string& method, const json& params,
     const std::string line = read_line(deadline, &problem);
     if (!problem.message.empty()) return problem;
     json answer = json::parse(line, nullptr, false);
+    if (answer.is_object() && answer.contains("method")) continue;  // of a subscription
     if (!answer.is_object() || (!answer.contains("result") && !answer.contains("error"))) {
       return broken("what listens on the socket does not speak the protocol of gaitd");
     }

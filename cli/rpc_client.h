@@ -41,6 +41,8 @@ class RpcClient {
   RpcClient& operator=(const RpcClient&) = delete;
 
   const std::string& path() const { return path_; }  ///< of the socket
+  /// Hands over the connected descriptor; nothing may be called any more.
+  int release() { return std::exchange(fd_, -1); }
 
   /// Sends one request and waits for its answer. Params may be null. A lost connection, silence
   /// beyond the time and bytes that are no answer come back as errors too.

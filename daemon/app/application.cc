@@ -46,7 +46,11 @@ nlohmann::json settings_json(const Settings& settings) {
 
 Application::Application(const Options& options)
     : options_(options), paths_(Paths::detect()), directory_(paths_.plugin_folders()) {}
-Application::~Application() = default;
+
+Application::~Application() {
+  if (live_) live_->stop();             // before the server, to whose clients it sends
+  if (telemetry_) telemetry_->close();  // whose last events it still takes
+}
 
 void Application::report_issues(const Issues& issues) const {
   const auto each_line = [](spdlog::level::level_enum level, const std::string& text) {
@@ -330,8 +334,10 @@ bool Application::start_telemetry() {
   options.input_text = [](const Input& input) {
     return input_text(input.command, input.parameter_owner, input.parameter_place);
   };
+  options.on_event = [this](const Event& event) { live_->publish(event); };
   telemetry_ = std::make_unique<Telemetry>(
       make_signal_table(robot_->model, known_variants_, simulation_), options);
+  live_ = std::make_unique<LiveFeed>(telemetry_.get());
   if (config_.log.enabled) {
     log_file_ = default_log_file();
     McapOptions mcap;
@@ -398,6 +404,17 @@ void Application::prepare_status() {
   status_ = std::make_unique<StatusReport>(std::move(sources));
 }
 
+nlohmann::json Application::describe_robot() const {
+  nlohmann::json description = robot_description(*robot_);
+  LogMetadata log;
+  add_robot_metadata(robot_->model, &log);
+  description["log"] = log;
+  description["backend"] = backend_id_;
+  description["simulation"] = simulation_;
+  description["world"] = scenario_ ? scenario_->simulator_config() : nlohmann::json();
+  return description;
+}
+
 bool Application::start_server() {
   tick_watch_ = std::make_unique<TickWatch>(config_.period);
   bridge_ = std::make_unique<CommandBridge>();
@@ -418,8 +435,11 @@ bool Application::start_server() {
   prepare_status();
   methods.add_snapshot("status", [this] { return status_->status(); });
   methods.add_snapshot("joint.list", [this] { return status_->joints(); });
-  methods.add_snapshot("version", [] {
+  methods.add_snapshot("robot.describe", [description = describe_robot()] { return description; });
+  live_->add_methods(&methods);
+  methods.add_query("version", [](const Caller& caller) {
     return nlohmann::json{
+        {"role", role_name(caller.role)},
         {"version", GAITD_VERSION},
         {"build", GAITD_BUILD},
         {"abi", std::to_string(GAITD_ABI_MAJOR) + "." + std::to_string(GAITD_ABI_MINOR)}};
@@ -439,6 +459,7 @@ bool Application::start_server() {
     spdlog::error("{}", error);
     return false;
   }
+  live_->start();
   spdlog::info("commands: {}", server_->socket_path());
   return true;
 }
@@ -511,6 +532,7 @@ int Application::run() {
   watch.join();
   manager.reset();
   swaps_->stop();
+  live_->stop();
   server_.reset();
   const double simulated = static_cast<double>(report.ticks) * config_.period;
   const double factor = report.wall_seconds > 0.0 ? simulated / report.wall_seconds : 0.0;

@@ -17,6 +17,7 @@
 #include "daemon/control/signals.h"
 #include "daemon/host/loaded_plugin.h"
 #include "daemon/host/plugin_directory.h"
+#include "daemon/live/live_feed.h"
 #include "daemon/parameters/live_parameters.h"
 #include "daemon/server/command_server.h"
 #include "daemon/swap/swap_service.h"
@@ -69,6 +70,7 @@ class Application {
   bool start_telemetry();
   void prepare_swaps();
   void prepare_status();
+  nlohmann::json describe_robot() const;
   bool start_server();
   std::string default_log_file() const;
   // On the control thread. False: not what is required.
@@ -96,6 +98,7 @@ class Application {
   bool simulation_ = false;
   std::string log_file_;
   std::unique_ptr<Telemetry> telemetry_;
+  std::unique_ptr<LiveFeed> live_;
   EstopFlag estop_;
   std::unique_ptr<CommandBridge> bridge_;
   std::unique_ptr<SwapService> swaps_;

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string>
 
+#include "daemon/config/node.h"
 #include "daemon/control/tick_data.h"
 
 namespace gaitd::daemon {
@@ -52,6 +53,14 @@ std::string content(const std::string& file) {
 }
 
 }  // namespace
+
+json robot_description(const Robot& robot) {
+  Issues issues;
+  const NodePtr yaml = load_yaml_file(robot.file, &issues);
+  return {{"name", robot.name},
+          {"robot", yaml ? to_json(*yaml) : json()},
+          {"urdf", content(robot.urdf)}};
+}
 
 void add_replay_metadata(const Robot& robot, json start, LogMetadata* metadata) {
   start["robot_file"] = robot.file;

@@ -27,6 +27,7 @@
 #include "daemon/server/listening_socket.h"
 #include "daemon/server/request_worker.h"
 #include "daemon/server/session.h"
+#include "daemon/server/session_stream.h"
 #include "daemon/server/socket_path.h"
 
 namespace gaitd::daemon {
@@ -95,6 +96,7 @@ class CommandServer::Impl {
   };
   struct Client {
     std::shared_ptr<Session> session;
+    std::shared_ptr<SessionStream> stream;
     Door* door = nullptr;
     std::optional<Guest> guest;
   };
@@ -187,6 +189,7 @@ void CommandServer::Impl::close_everything() {
   estops_.abandon();
   for (const auto& [id, client] : std::exchange(clients_, {})) {
     if (client.guest) client.guest->timer->cancel();
+    client.stream->end();
     client.session->close();
   }
 }
@@ -227,7 +230,7 @@ void CommandServer::Impl::welcome(Door& door, Session::Socket socket) {
         return handle_estop(s, line);
       },
       [this](const std::shared_ptr<Session>& s) { forget(s); });
-  Client client{session, &door, {}};
+  Client client{session, std::make_shared<SessionStream>(&io_, session), &door, {}};
   if (door.clients >= options_.max_clients) {
     if (!make_room_for_guest()) {
       session->send(busy());
@@ -278,6 +281,7 @@ void CommandServer::Impl::forget(const std::shared_ptr<Session>& session) {
   } else {
     --found->second.door->clients;
   }
+  found->second.stream->end();
   clients_.erase(found);
   worker_.retire(session->caller().connection);
 }
@@ -321,6 +325,9 @@ bool CommandServer::Impl::handle(const std::shared_ptr<Session>& session, std::s
   };
   Caller caller = session->caller();
   caller.estops = estop_->asked();
+  if (const auto client = clients_.find(caller.connection); client != clients_.end()) {
+    caller.stream = client->second.stream;
+  }
   if (!worker_.has_room(caller.connection, line.size())) return false;
   if (line.size() <= bounds::kEstopBytes && is_batch_with_estop(line)) {
     caller.estop = estop_->raise();

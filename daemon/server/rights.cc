@@ -26,10 +26,13 @@ constexpr MethodRight kRights[] = {
     {"pose", Role::kCommand},
     {"reset", Role::kCommand},
     {"resume", Role::kCommand},
+    {"robot.describe", Role::kObserve},
     {"sim.push", Role::kAdminister},
     {"sim.reset", Role::kAdminister},
     {"status", Role::kObserve},
     {"stop", Role::kCommand},
+    {"telemetry.subscribe", Role::kObserve},
+    {"telemetry.unsubscribe", Role::kObserve},
     {"version", Role::kObserve},
     {"walk", Role::kCommand},
 };

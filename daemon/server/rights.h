@@ -5,10 +5,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string_view>
 
 namespace gaitd::daemon {
+
+class Stream;  // daemon/server/stream.h
 
 /// Each role may do what those before it may.
 enum class Role : std::uint8_t { kObserve, kCommand, kAdminister };
@@ -23,6 +26,7 @@ struct Caller {
   Role role = Role::kAdminister;
   std::uint64_t estops = 0;  ///< that had been read before the request was (EstopFlag)
   std::uint64_t estop = 0;   ///< number of the one that was raised for it as it was read; 0: none
+  std::shared_ptr<Stream> stream = nullptr;  ///< back to it; null where there is none
 };
 
 struct MethodRight {

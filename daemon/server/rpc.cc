@@ -354,12 +354,15 @@ void Methods::add(const std::string& name, Handler handler) {
 }
 
 void Methods::add_snapshot(const std::string& name, std::function<json()> snapshot) {
-  add(name, [name, snapshot = std::move(snapshot)](const json& params) -> RpcResult {
-    if (!params.empty()) {
-      return RpcError{rpc_code::kInvalidParams,
-                      name + ": takes no params, got " + shortened(dump(params), kMaxQuoted)};
-    }
-    return snapshot();
+  add_query(name, [snapshot = std::move(snapshot)](const Caller&) { return snapshot(); });
+}
+
+void Methods::add_query(const std::string& name, std::function<json(const Caller&)> query) {
+  add_async(name, [name, query = std::move(query)](const json& params, const Caller& caller,
+                                                   const Respond& respond) {
+    if (params.empty()) return respond(query(caller));
+    respond(RpcError{rpc_code::kInvalidParams,
+                     name + ": takes no params, got " + shortened(dump(params), kMaxQuoted)});
   });
 }
 

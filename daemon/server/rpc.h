@@ -61,6 +61,8 @@ class Methods {
   /// Answers with what `snapshot` returns. It is called like a handler and must not touch the
   /// real-time thread other than by reading a wait-free snapshot. Refuses params.
   void add_snapshot(const std::string& name, std::function<nlohmann::json()> snapshot);
+  /// The same for what depends on who asks.
+  void add_query(const std::string& name, std::function<nlohmann::json(const Caller&)> query);
 
   /// Null if there is no such method.
   const AsyncHandler* find(const std::string& name) const;

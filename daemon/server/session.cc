@@ -148,18 +148,28 @@ void Session::end_reading() {
 
 void Session::send(std::string line) {
   if (!socket_.is_open() || closing_) return;
-  line += '\n';
-  output_bytes_ += line.size();
-  if (output_bytes_ > limits_.max_output) return drop();
-  output_.push_back(std::move(line));
+  const std::size_t before = output_bytes_;
+  output_bytes_ += line.size() + 1;
+  if (before > 0 && output_bytes_ > limits_.max_output) return drop();
+  queue({std::move(line), nullptr, true});
+}
+
+void Session::send_uncounted(std::string line, std::shared_ptr<void> ticket) {
+  if (!socket_.is_open() || closing_) return;
+  queue({std::move(line), std::move(ticket), false});
+}
+
+void Session::queue(Output output) {
+  output.line += '\n';
+  output_.push_back(std::move(output));
   if (output_.size() == 1) write();
 }
 
 void Session::write() {
-  boost::asio::async_write(socket_, boost::asio::buffer(output_.front()),
+  boost::asio::async_write(socket_, boost::asio::buffer(output_.front().line),
                            [self = shared_from_this()](error_code error, std::size_t size) {
                              if (error) return self->drop();
-                             self->output_bytes_ -= size;
+                             if (self->output_.front().counted) self->output_bytes_ -= size;
                              self->output_.pop_front();
                              if (!self->output_.empty()) return self->write();
                              if (self->closing_) self->drop();

@@ -45,12 +45,21 @@ class Session : public std::enable_shared_from_this<Session> {
   void resume();
   /// Reads nothing more; the last answer that is under way closes the connection.
   void finish() { end_reading(); }
-  /// Queues a line for writing, newline added. A client that lets too much pile up is dropped.
+  /// Queues a line for writing, newline added. A client that lets too much pile up is dropped; one
+  /// long line has room.
   void send(std::string line);
+  /// The same for a line that its sender counts himself: `ticket` goes when it is written.
+  void send_uncounted(std::string line, std::shared_ptr<void> ticket);
   /// Reads nothing more, and closes when what is queued has been written.
   void close();
 
  private:
+  struct Output {
+    std::string line;
+    std::shared_ptr<void> ticket;
+    bool counted = true;
+  };
+
   void read();
   void read_on();
   void take_lines(std::size_t searched);
@@ -58,6 +67,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void take_end();
   void watch_unfinished_line();
   void end_reading();
+  void queue(Output output);
   void write();
   void drop();
 
@@ -71,8 +81,8 @@ class Session : public std::enable_shared_from_this<Session> {
   std::string input_;       // the line that is not finished yet; paused: before it those that wait
   std::size_t looked_ = 0;  // paused: bytes of the input that hold no e-stop
   boost::asio::steady_timer line_timer_;
-  std::deque<std::string> output_;
-  std::size_t output_bytes_ = 0;
+  std::deque<Output> output_;
+  std::size_t output_bytes_ = 0;  // of the counted lines
   bool reading_ = true;
   bool paused_ = false;
   bool under_way_ = false;  // a read

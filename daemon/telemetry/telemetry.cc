@@ -59,7 +59,7 @@ struct Telemetry::Impl {
         slots(tick_ring.capacity()),
         event_slots(event_ring.capacity()),
         inputs(input_ring.capacity()),
-        newest(table.size()),
+        newest(table.size() + 1),
         log(table) {
     for (std::size_t i = 0; i < table.size(); ++i) {
       if (table[i].name.starts_with("tick/")) recent.emplace_back(i);
@@ -103,7 +103,7 @@ struct Telemetry::Impl {
     RecentMaximum maximum;  // control thread
     std::atomic<double> value{std::numeric_limits<double>::quiet_NaN()};
   };
-  LatestValues newest;
+  LatestValues newest;  // in table order, then the number of the tick
   std::deque<Recent> recent;
   std::atomic<std::int64_t> newest_tick{-1};
   TickSlot unlogged;  // where a tick goes that finds the ring full
@@ -187,6 +187,9 @@ void Telemetry::Impl::drain_events() {
                      .truncated = false});
   }
   if (batch.empty()) return;
+  if (options.on_event) {
+    for (const Event& event : batch) options.on_event(event);
+  }
   on_disk([&] {
     for (const Event& event : batch) log.writer().write_event(event);
   });
@@ -233,7 +236,7 @@ TickSlot* Telemetry::begin_tick() noexcept {
   Impl& impl = *impl_;
   impl.slot = impl.tick_ring.free() > 0 ? &impl.slots[impl.tick_ring.write_slot()] : nullptr;
   if (impl.slot != nullptr) return impl.slot;
-  impl.unlogged.values = impl.newest.next();
+  impl.unlogged.values = impl.newest.next().first(impl.table.size());
   impl.unlogged.sensors = &impl.unlogged_sensors;
   return &impl.unlogged;
 }
@@ -247,6 +250,7 @@ bool Telemetry::commit() noexcept {
     one.value.store(one.maximum.value(), std::memory_order_relaxed);
   }
   if (logged) std::copy(slot.values.begin(), slot.values.end(), impl.newest.next().begin());
+  impl.newest.next().back() = static_cast<double>(slot.tick);
   impl.newest.publish();
   impl.newest_tick.store(slot.tick, std::memory_order_release);
   if (logged) {
@@ -314,7 +318,12 @@ void Telemetry::record_event(EventKind kind, std::int64_t tick, double time, std
       {.tick = tick, .time = time, .kind = event_kind_name(kind), .text = std::move(text)});
 }
 
-bool Telemetry::latest(std::vector<double>& values) const { return impl_->newest.copy(values); }
+bool Telemetry::latest(std::vector<double>& values, std::int64_t* tick) const {
+  if (!impl_->newest.copy(values)) return false;
+  if (tick != nullptr) *tick = static_cast<std::int64_t>(values.back());
+  values.pop_back();
+  return true;
+}
 
 std::int64_t Telemetry::newest_tick() const noexcept {
   return impl_->newest_tick.load(std::memory_order_acquire);

@@ -35,6 +35,9 @@ struct TelemetryOptions {
   double poll_period = 0.002;  // s, sleep of the telemetry thread when there is nothing to do
   // The text of an input; called on the telemetry thread. Without one inputs are not recorded.
   std::function<std::string(const Input&)> input_text;
+  // Gets every event on its way to the log, in the order in which the log has them; called on the
+  // telemetry thread, so late while the disk stands still.
+  std::function<void(const Event&)> on_event;
 };
 
 inline constexpr std::size_t kMaxEventText = 480;  // bytes, of an event from the control thread
@@ -82,8 +85,8 @@ class Telemetry {
   static constexpr std::size_t kMaxPending = 4096;
   void record_event(EventKind kind, std::int64_t tick, double time, std::string text);
 
-  // [any thread but rt] The newest tick. False before the first one.
-  bool latest(std::vector<double>& values) const;
+  // [any thread but rt] The newest tick, and its number. False before the first one.
+  bool latest(std::vector<double>& values, std::int64_t* tick = nullptr) const;
 
   // [any thread but rt] Number of the newest tick that latest() gives, or a later one; -1 before
   // the first. Ticks count on when a simulation is reset.

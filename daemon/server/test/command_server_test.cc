@@ -7,6 +7,7 @@
 #include <chrono>
 #include <thread>
 
+#include "daemon/server/stream.h"
 #include "daemon/server/test/raw_client.h"
 
 namespace gaitd::daemon {
@@ -47,6 +48,10 @@ class Server : public ::testing::Test {
       return "done";
     });
     methods.add("large", [](const json&) -> RpcResult { return std::string(100000, 'x'); });
+    methods.add_async("stream", [this](const json&, const Caller& caller, const Respond& respond) {
+      stream_ = caller.stream;
+      respond("here it comes");
+    });
     add_command_methods(&methods, bridge_.get(),
                         [](const std::string&, const json&) -> std::variant<Command, RpcError> {
                           return Command{};
@@ -68,6 +73,7 @@ class Server : public ::testing::Test {
   SocketDirectory directory_;
   ServerOptions options_;
   EstopFlag estop_;
+  std::shared_ptr<Stream> stream_;
   std::atomic<bool> hanging_{false};
   std::atomic<bool> begun_{false};
   std::unique_ptr<CommandBridge> bridge_;
@@ -85,6 +91,33 @@ TEST_F(Server, AnswersQueriesAndCommands) {
   EXPECT_EQ(client.ask(kStatus)["result"]["state"], "standing");
   EXPECT_EQ(client.ask(kArm)["result"],
             (json{{"accepted", true}, {"tick", 42}, {"note", nullptr}}));
+}
+
+TEST_F(Server, AStreamIsCountedAndGoesWithItsClient) {
+  start();
+  {
+    RawClient client(directory_.file());
+    EXPECT_EQ(client.ask(R"({"jsonrpc":"2.0","id":1,"method":"stream"})")["result"],
+              "here it comes");
+    ASSERT_TRUE(stream_);
+    EXPECT_TRUE(stream_->open());
+    // More than a client may leave unread of its answers: it is the sender who stops here.
+    const int lines = 40;
+    for (int i = 0; i < lines; ++i) stream_->send(std::string(100'000, 'x'));
+    EXPECT_GT(stream_->unread(), 1'000'000u);
+    EXPECT_EQ(client.line()->size(), 100'000u);
+    for (int i = 1; i < lines; ++i) ASSERT_TRUE(client.line());
+    EXPECT_EQ(client.ask(kStatus)["result"]["state"], "standing");
+    EXPECT_EQ(stream_->unread(), 0u);
+  }
+  for (int i = 0; i < 5000 && stream_->open(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_FALSE(stream_->open());
+  stream_->send("to nobody");
+  expect_alive();
+  EXPECT_EQ(stream_->unread(), 0u);
+  stream_.reset();
 }
 
 TEST_F(Server, ServesSeveralClientsEachItsOwnAnswers) {

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/view/recorder.h"
+
+#include <boost/asio/post.hpp>
+#include <ctime>
+#include <filesystem>
+#include <utility>
+
+#include "cli/report/report_data.h"
+#include "daemon/log/log_reader.h"
+
+namespace gaitd::cli {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr std::size_t kReports = 8;  // that are kept; each has some megabytes
+
+daemon::LogMetadata metadata_of(const json& robot) {
+  daemon::LogMetadata metadata;
+  for (const auto& [key, value] : robot.value("log", json::object()).items()) {
+    if (value.is_string()) metadata[key] = value.get<std::string>();
+  }
+  metadata["robot"] = robot.value("name", "");
+  metadata["backend"] = robot.value("backend", "");
+  metadata["robot_yaml"] = robot.value("robot", json::object()).dump();  // YAML holds JSON
+  metadata["robot_urdf"] = robot.value("urdf", "");
+  if (const json world = robot.value("world", json()); !world.is_null()) {
+    metadata["world"] = world.dump();
+  }
+  return metadata;
+}
+
+std::string new_file(const std::string& folder) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char name[64];
+  std::strftime(name, sizeof(name), "gaitd-view-%Y%m%d-%H%M%S", &local);
+  fs::path file = fs::path(folder) / (std::string(name) + ".mcap");
+  for (int i = 2; fs::exists(file); ++i) {
+    file = fs::path(folder) / (std::string(name) + "-" + std::to_string(i) + ".mcap");
+  }
+  return file.string();
+}
+
+}  // namespace
+
+std::string Recorder::begin(const json& robot, const daemon::SignalTable& signals) {
+  file_ = new_file(folder_);
+  width_ = signals.size();
+  tick_ = -1;
+  auto writer = std::make_unique<daemon::LogWriter>(signals);
+  std::string error;
+  if (!writer->open(file_, metadata_of(robot), {}, &error)) return error;
+  writer_ = std::move(writer);
+  return "";
+}
+
+void Recorder::add(const LiveFrame& frame) {
+  if (!writer_ || frame.values.size() != width_ || frame.tick <= tick_) return;
+  tick_ = frame.tick;
+  writer_->write_tick(frame.tick, frame.time, frame.values, nullptr);
+}
+
+void Recorder::add(const daemon::Event& event) {
+  if (writer_) writer_->write_event(event);
+}
+
+void Recorder::end(std::function<void(const End&)> done) {
+  if (!writer_) return done({.log = "", .report = {}, .error = "nothing is being recorded"});
+  boost::asio::post(threads_, [this, file = file_,
+                               writer = std::shared_ptr(std::exchange(writer_, nullptr)),
+                               done = std::move(done)]() mutable {
+    End end{.log = file, .report = {}, .error = ""};
+    Message page;
+    if (!writer->close()) {
+      end.error = writer->error();
+    } else {
+      std::vector<std::unique_ptr<daemon::LogReader>> logs;
+      logs.push_back(daemon::LogReader::open(file, &end.error));
+      if (logs.back() && logs.back()->tick_count() == 0) end.error = file + ": holds no tick";
+      if (end.error.empty()) {
+        page = std::make_shared<const std::string>(report_page(report_data(logs), &end.error));
+      }
+    }
+    boost::asio::post(*io_, [this, page, end = std::move(end), done = std::move(done)]() mutable {
+      if (end.error.empty()) {
+        end.report = next_report_++;
+        reports_[*end.report] = page;
+        if (reports_.size() > kReports) reports_.erase(reports_.begin());
+      }
+      done(end);
+    });
+  });
+}
+
+Message Recorder::report(int number) const {
+  const auto found = reports_.find(number);
+  return found == reports_.end() ? nullptr : found->second;
+}
+
+}  // namespace gaitd::cli
