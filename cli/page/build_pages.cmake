@@ -1,5 +1,6 @@
-# Builds the report page: cmake -DNPM= -DSOURCE= -DWORK= -DPAGE= -P build_page.cmake
-# Without the registry everything but `gaitctl report` works: that is a warning, not an error.
+# Builds the pages: cmake -DNPM= -DSOURCE= -DWORK= -DFOLDER= "-DPAGES=a;b" -P build_pages.cmake
+# Without the registry everything but the commands with a page works: that is a warning, not an error.
+file(REMOVE_RECURSE ${WORK}/src)  # of files that were removed or have moved
 file(MAKE_DIRECTORY ${WORK})
 file(COPY ${SOURCE}/ DESTINATION ${WORK})
 
@@ -7,8 +8,8 @@ function(run what)
   execute_process(COMMAND ${CMAKE_COMMAND} -E env CI=true ${NPM} --prefix ${WORK} ${ARGN}
                   RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
   if(NOT result EQUAL 0)
-    message(WARNING "the report page was not built, gaitctl report will not work: ${what} failed. "
-                    "Build again when the npm registry can be reached.\n${text}")
+    message(WARNING "the pages of gaitctl were not built, gaitctl report and gaitctl view will not work: "
+                    "${what} failed. Build again when the npm registry can be reached.\n${text}")
     set(failed TRUE PARENT_SCOPE)
   endif()
 endfunction()
@@ -27,7 +28,9 @@ if(NOT installed STREQUAL wanted)
   endif()
   file(WRITE ${WORK}/installed ${wanted})
 endif()
-run("vite build" run --silent build -- --logLevel warn)
-if(NOT failed)
-  file(COPY_FILE ${WORK}/dist/index.html ${PAGE})
-endif()
+foreach(page IN LISTS PAGES)
+  run("vite build of ${page}" run --silent build -- --mode ${page} --logLevel warn)
+  if(NOT failed)
+    file(COPY_FILE ${WORK}/dist/${page}.html ${FOLDER}/${page}.html)
+  endif()
+endforeach()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import './style.css';
+import '../shared/style.css';
 import {Log} from './log.js';
 import {addPictures} from './pictures.js';
 import {play} from './player.js';

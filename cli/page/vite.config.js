@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 import {defineConfig} from 'vite';
 
-// Everything into the one HTML file: it is opened from a disk, without any network.
+// Everything into the one HTML file: it is opened from a disk, without any network, or comes from a
+// server that has nothing else.
 function inline() {
   return {
     name: 'inline',
     enforce: 'post',
     generateBundle(_, bundle) {
-      const page = bundle['index.html'];
+      const page = Object.values(bundle).find(({fileName}) => fileName.endsWith('.html'));
       for (const [name, part] of Object.entries(bundle)) {
         if (part === page) continue;
         const isScript = part.type === 'chunk';
@@ -26,8 +27,11 @@ function inline() {
   };
 }
 
-export default defineConfig({
+// One page for each build: `--mode report` or `--mode view` is the name of its HTML file. Together they
+// would share chunks, and none could be one file.
+export default defineConfig(({mode}) => ({
   base: './',
-  build: {assetsInlineLimit: 1e8, cssCodeSplit: false, modulePreload: false, outDir: 'dist'},
+  build: {assetsInlineLimit: 1e8, cssCodeSplit: false, modulePreload: false, outDir: 'dist', emptyOutDir: false,
+          rollupOptions: {input: `${mode}.html`}},
   plugins: [inline()],
-});
+}));

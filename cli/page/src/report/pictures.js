@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plots and the robot as pictures: the page is then nothing but <img id="NAME" src="data:...">,
 // which gaitctl takes out of it.
-import {listPlots} from './plots.js';
-import {Scene} from './scene.js';
+import {listPlots} from '../shared/plots.js';
+import {Scene} from '../shared/scene.js';
 
 const kWidth = 1100, kHeight = 540;  // px, of a plot without its title
 const kTitle = 34, kLegend = 30;

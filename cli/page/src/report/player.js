@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import {listenToKeys} from './keys.js';
-import {addPlots} from './plots.js';
-import {kMarkers, Scene} from './scene.js';
-import {kPushColor} from './theme.js';
+import {addPlots} from '../shared/plots.js';
+import {kMarkers, Scene} from '../shared/scene.js';
+import {kPushColor} from '../shared/theme.js';
 
 const kControlsPeriod = 100;  // ms between updates of slider and clock while it plays
 
