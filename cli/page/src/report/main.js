@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import '../shared/style.css';
+import '../shared/base.css';
+import './report.css';
 import {Log} from './log.js';
 import {addPictures} from './pictures.js';
 import {play} from './player.js';

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import {listenToKeys} from './keys.js';
+import {addLegend} from '../shared/legend.js';
 import {addPlots} from '../shared/plots.js';
-import {kMarkers, Scene} from '../shared/scene.js';
-import {kPushColor} from '../shared/theme.js';
+import {Scene} from '../shared/scene.js';
 
 const kControlsPeriod = 100;  // ms between updates of slider and clock while it plays
 
@@ -55,15 +55,7 @@ function fillTexts(log) {
   fillWhenOpened('events', (one) => one.events.map(
       ({time, kind, text}) => [`${time.toFixed(3)} s`, kind, JSON.stringify(text)]));
   fillWhenOpened('configuration', (one) => Object.entries(one.metadata));
-  const pushed = log.all.some((one) => one.pushes.length);
-  const marks = [...kMarkers, ...(pushed ? [{name: 'push', color: kPushColor}] : [])];
-  for (const {name, color} of marks) {
-    const mark = document.createElement('i');
-    mark.style.background = color;
-    const entry = document.createElement('span');
-    entry.append(mark, name);
-    $('legend').append(entry);
-  }
+  addLegend($('legend'), log.all.some((one) => one.pushes.length));
   if (several) $('legend').append(`ghost: ${log.all.slice(1).map(({name}) => name).join(', ')}`);
 }
 

@@ -6,16 +6,14 @@ import {kPushColor, lineColor, theme} from './theme.js';
 const kHeight = 190;
 
 // What is plotted over time: a title, a unit, and signals with their labels.
-function panels(log) {
-  const legs = JSON.parse(log.metadata.legs ?? '{}');
-  const limits = Object.fromEntries(
-      JSON.parse(log.metadata.joints ?? '[]').map((joint) => [joint.name, joint.effort_limit]));
+export function panels(log) {
+  const {legs, efforts} = log;
   const sides = ['left', 'right'];
   const knees = sides.map((side) => [side, legs[side]?.knee]).filter(([, knee]) => knee);
   const lines = (...list) => list.filter(([name]) => log.has(name))
       .map(([name, label, scale = 1]) => ({name, label, scale}));
   const torques = sides.flatMap((side) => (legs[side]?.joints ?? [])
-      .map((joint) => [`joint/${joint}/torque_desired`, joint, 1 / (limits[joint] || NaN)]));
+      .map((joint) => [`joint/${joint}/torque_desired`, joint, 1 / (efforts[joint] || NaN)]));
   return [
     {id: 'icp-x', title: 'Capture point, x', unit: 'm', lines: lines(
         ['icp/x', 'measured'], ['icp/desired/x', 'planned'], ['cop/x', 'CoP'], ['cmp/desired/x', 'CMP'])},
@@ -38,9 +36,19 @@ function panels(log) {
   ].filter((panel) => panel.lines.length);
 }
 
+// What `make` gives of a log, made again only if that has grown.
+function upToDate(log, make) {
+  let made, version;
+  return () => {
+    if (made === undefined || version !== log.version) [made, version] = [make(), log.version];
+    return made;
+  };
+}
+
 // Transfer phases shaded, toe-off marked above.
 function shades(log) {
-  const transfers = log.spans('gait/phase', 'transfer'), toeOffs = log.spans('toe_off/active');
+  const transfers = upToDate(log, () => log.spans('gait/phase', 'transfer'));
+  const toeOffs = upToDate(log, () => log.spans('toe_off/active'));
   return {hooks: {drawClear: [(plot) => {
     const {ctx, bbox} = plot;
     ctx.save();
@@ -52,22 +60,21 @@ function shades(log) {
         if (right > left) ctx.fillRect(left, bbox.top + top, right - left, height);
       }
     };
-    fill(transfers, theme.phase, 0, bbox.height);
-    fill(toeOffs, '#ff7f0e', 0, 4 * devicePixelRatio);
+    fill(transfers(), theme.phase, 0, bbox.height);
+    fill(toeOffs(), '#ff7f0e', 0, 4 * devicePixelRatio);
     ctx.restore();
   }]}};
 }
 
 // A band for the time of each push, its force above.
 function pushMarks(log) {
-  const pushes = log.all.flatMap((one) => one.pushes);
   return {hooks: {draw: [(plot) => {
     const {ctx, bbox} = plot;
     ctx.save();
     ctx.font = `${10 * devicePixelRatio}px sans-serif`;
     ctx.textAlign = 'left';
     ctx.textBaseline = 'top';
-    for (const {time, duration, force} of pushes) {
+    for (const {time, duration, force} of log.all.flatMap((one) => one.pushes)) {
       const left = plot.valToPos(time, 'x', true), right = plot.valToPos(time + duration, 'x', true);
       if (right < bbox.left || left > bbox.left + bbox.width) continue;
       ctx.fillStyle = `${kPushColor}40`;
@@ -83,10 +90,11 @@ function pushMarks(log) {
 // where there is room.
 function stateBands(log) {
   const kBand = 11, kWordColor = '#ffffff';
-  const bands = ['left', 'right'].map((side) => log.words(`leg/${side}/state`).flatMap((word, i) =>
-      log.spans(`leg/${side}/state`, word).map(([from, to]) => ({word, color: lineColor(i), from, to}))));
+  const bandsOf = upToDate(log, () => ['left', 'right'].map((side) => log.words(`leg/${side}/state`)
+      .flatMap((word, i) => log.spans(`leg/${side}/state`, word)
+          .map(([from, to]) => ({word, color: lineColor(i), from, to})))));
   return {hooks: {draw: [(plot) => {
-    const {ctx, bbox} = plot, height = kBand * devicePixelRatio;
+    const {ctx, bbox} = plot, height = kBand * devicePixelRatio, bands = bandsOf();
     ctx.save();
     ctx.font = `${9 * devicePixelRatio}px sans-serif`;
     ctx.textAlign = 'left';
@@ -140,29 +148,35 @@ const axis = (label, size) => ({label, ...size, stroke: theme.ink, grid: {stroke
 // Of several logs each line says whose it is.
 const named = (log, one, label) => log.all.length > 1 ? `${label}, ${one.name}` : label;
 
-function timePlot(log, panel, player, element, width, height) {
+// `options`: of uPlot, in place of those here. `refresh` of what it gives draws what has come to the log.
+export function timePlot(log, panel, player, element, width, height, options = {}) {
   // Over the times of the longest.
-  const {time} = log.all.reduce((longest, one) => one.end > longest.end ? one : longest);
+  const longest = () => log.all.reduce((longest, one) => one.end > longest.end ? one : longest);
   // Without values of its own: the words under the mouse, on a scale that is not the one of the lines.
   const states = panel.states ? {label: 'states', scale: 'states', points: {show: false},
       value: (_, __, ___, row) => row === null ? '' : ['left', 'right'].map(
-          (side) => log.word(`leg/${side}/state`, log.row(time[row]))).join(', ')} : undefined;
+          (side) => log.word(`leg/${side}/state`, log.row(longest().time[row]))).join(', ')} : undefined;
   const lines = log.all.flatMap((one, k) => panel.lines.map((line, i) => ({...line, one, k, i}))
       .filter(({name}) => one.has(name)));
-  const data = [time, ...lines.map(({one, name, scale}) => {
-    const column = one.columnAt(name, time);
-    return scale === 1 ? column : column.map((value) => value * scale);
-  })];
-  if (states) data.push(new Float32Array(time.length).fill(NaN));
-  return new uPlot({
-    width, height, cursor: {sync: {key: 'time'}},
-    scales: {x: {time: false}, states: {range: [0, 1]}},
+  const data = () => {
+    const {time} = longest();
+    const columns = lines.map(({one, name, scale}) => {
+      const column = one.columnAt(name, time);
+      return scale === 1 ? column : column.map((value) => value * scale);
+    });
+    return [time, ...columns, ...(states ? [new Float32Array(time.length).fill(NaN)] : [])];
+  };
+  const plot = new uPlot({
+    width, height, cursor: {sync: {key: 'time'}, ...options.cursor},
+    scales: {x: {time: false, ...options.x}, states: {range: [0, 1]}},
     axes: [axis('s', {labelSize: 16, size: 32}), axis(panel.unit, {size: 56})],
     series: [{label: 't'}, ...lines.map(({label, one, k, i}) => ({
         label: named(log, one, label), stroke: lineColor(i, k), width: 1, dash: k ? [6, 4] : undefined})),
              ...(states ? [states] : [])],
     plugins: [shades(log), cursor(player), ...(states ? [stateBands(log)] : []), pushMarks(log)],
-  }, data, element);
+  }, data(), element);
+  plot.refresh = () => plot.setData(data());
+  return plot;
 }
 
 const kPaths = {icp: 'capture point', 'icp/desired': 'planned', com: 'centre of mass'};
@@ -228,7 +242,7 @@ export function addPlots(log, player, element) {
   for (const {id, title, make} of listPlots(log)) {
     const box = document.createElement('div');
     box.id = `plot-${id}`;
-    box.innerHTML = `<h2>${title}</h2>`;
+    box.append(Object.assign(document.createElement('h2'), {textContent: title}));
     element.append(box);
     box.style.minHeight = `${kHeight}px`;
     watcher.observe(box);

@@ -29,7 +29,10 @@ export class PushArrow {
   show(now) {
     const push = this.robot.log.pushes.find((one) => isShown(one, now));
     this.group.visible = push !== undefined;
-    if (!push) return;
+    if (push) this.place(push);
+  }
+
+  place(push) {
     const force = new THREE.Vector3(...push.force), size = force.length();
     const length = kLength + (kLongest - kLength) * Math.min(1, size / kStrong);
     this.group.position.copy(this.robot.place(push.push, push.point));

@@ -33,15 +33,16 @@ export class Robot {
     this.pelvis.add(robot);
     this.links = robot.links;
     this.joints = Object.values(robot.joints)
-        .map((joint) => ({joint, column: log.column(`joint/${joint.urdfName}/position`)}))
-        .filter(({column}) => column !== undefined);
+        .map((joint) => ({joint, signal: `joint/${joint.urdfName}/position`,
+                          get column() { return log.column(this.signal); }}))
+        .filter(({signal}) => log.has(signal));
   }
 
   show(row) {
     const {log, pelvis} = this;
     pelvis.position.set(...log.point('pelvis', row));
     pelvis.rotation.set(...['roll', 'pitch', 'yaw'].map((a) => log.value(`pelvis/${a}`, row)), 'ZYX');
-    for (const {joint, column} of this.joints) joint.setJointValue(column[row]);
+    for (const {joint, signal} of this.joints) joint.setJointValue(log.value(signal, row));
   }
 
   // A point of a link in the world; of the pelvis if there is no such link.

@@ -93,8 +93,17 @@ export class Scene {
     this.scene.add(this.terrain);
     this.addRobots();
     this.addMarkers();
-    new ResizeObserver(() => this.resize()).observe(element);
+    this.watcher = new ResizeObserver(() => this.resize());
+    this.watcher.observe(element);
     this.resize();
+  }
+
+  // For another scene in its place.
+  remove() {
+    this.watcher.disconnect();
+    this.controls.dispose();
+    this.renderer.dispose?.();
+    this.renderer.domElement.remove();
   }
 
   // Those of the other logs are ghosts.
@@ -129,9 +138,9 @@ export class Scene {
     this.scene.add(this.support);
   }
 
-  // The row of each log at that time: what the scene shows.
+  // The time of the row of each log at that time: what the scene shows.
   rowsAt(time) {
-    return this.log.all.map((one) => one.row(time)).join();
+    return this.log.all.map((one) => one.time[one.row(time)]).join();
   }
 
   // Only what has changed is drawn again.
@@ -153,6 +162,7 @@ export class Scene {
 
   draw() {
     this.stale = false;
+    this.beforeDraw?.();
     this.renderer.render(this.scene, this.camera);
   }
 
@@ -208,6 +218,7 @@ export class Scene {
   // The camera keeps its place beside the robot.
   follow() {
     const target = this.pelvis.position.clone();
+    if (!Number.isFinite(target.lengthSq())) return;  // not known yet
     target.z -= 0.15;
     const {grid} = this.terrain;
     if (grid) {
