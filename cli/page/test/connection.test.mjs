@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import {Connection} from '../src/view/connection.js';
 import {EStop} from '../src/view/estop.js';
+import {fakeClock} from './fake_clock.mjs';
 
 const settle = () => new Promise((resolve) => setImmediate(resolve));
 
@@ -18,13 +19,13 @@ class FakeSocket {
 }
 
 function connected(t, options = {}) {
-  t.mock.timers.enable({apis: ['setInterval', 'setTimeout', 'Date']});
+  const clock = fakeClock(t);
   FakeSocket.all = [];
   const connection = new Connection('ws://here/live', 'abc', {Socket: FakeSocket, ...options});
   connection.open();
   const [socket] = FakeSocket.all;
   socket.onopen();
-  return {connection, socket};
+  return {connection, socket, clock};
 }
 
 test('it offers the protocol and the token', (t) => {
@@ -47,44 +48,44 @@ test('answers find their requests, in any order', async (t) => {
 });
 
 test('a request without an answer ends', async (t) => {
-  const {connection, socket} = connected(t);
+  const {connection, socket, clock} = connected(t);
   const call = connection.call('walk', {}, 2);
-  t.mock.timers.tick(2000);
+  clock.tick(2000);
   await assert.rejects(call, /no answer for 2 s/);
   socket.says({jsonrpc: '2.0', id: 1, result: {}});  // too late, and no harm
   connection.drop();
 });
 
 test('a lost connection rejects what waits and is opened again, later each time', async (t) => {
-  const {connection, socket} = connected(t);
+  const {connection, socket, clock} = connected(t);
   const call = connection.call('walk');
   socket.onclose();
   await assert.rejects(call, /ended before the answer/);
   assert.equal(connection.state.kind, 'lost');
   await assert.rejects(connection.call('walk'), /not sent/);
-  t.mock.timers.tick(250);
+  clock.tick(250);
   assert.equal(FakeSocket.all.length, 2);
   FakeSocket.all[1].onclose();
-  t.mock.timers.tick(499);
+  clock.tick(499);
   assert.equal(FakeSocket.all.length, 2);
-  t.mock.timers.tick(1);
+  clock.tick(1);
   assert.equal(FakeSocket.all.length, 3);
   connection.drop();
   connection.open('');
 });
 
 test('a silent connection is given up', (t) => {
-  const {connection, socket} = connected(t);
-  t.mock.timers.tick(2900);
+  const {connection, socket, clock} = connected(t);
+  clock.tick(2900);
   assert.equal(connection.state.kind, 'open');
-  t.mock.timers.tick(600);
+  clock.tick(600);
   assert.equal(connection.state.kind, 'lost');
   assert.ok(socket.closed);
   connection.drop();
 });
 
 test('who is refused by a server that serves pages has the wrong token', async (t) => {
-  t.mock.timers.enable({apis: ['setInterval', 'setTimeout', 'Date']});
+  fakeClock(t);
   FakeSocket.all = [];
   const connection = new Connection('ws://here/live', 'old', {Socket: FakeSocket, answersAt: async () => true});
   connection.open();
@@ -115,23 +116,23 @@ test('messages are events of their type, and what is no message is no error', (t
 });
 
 test('an e-stop is asked for until it is taken', async (t) => {
-  t.mock.timers.enable({apis: ['setTimeout', 'Date']});
+  const clock = fakeClock(t);
   const told = [], answers = [];
   const estop = new EStop(() => new Promise((resolve, reject) => answers.push({resolve, reject})),
                           (text, bad) => told.push([text, bad]));
   estop.press();
-  t.mock.timers.tick(500);  // the first one hangs
+  clock.tick(500);  // the first one hangs
   assert.equal(answers.length, 2);
   answers[1].resolve({tick: 12});
   await settle();
-  t.mock.timers.tick(20000);
+  clock.tick(20000);
   assert.equal(answers.length, 2);
   assert.equal(told.length, 1);
   assert.match(told[0][0], /tick 12/);
 });
 
 test('an e-stop without a connection is sent with the next one, and said to have failed', async (t) => {
-  t.mock.timers.enable({apis: ['setTimeout', 'Date']});
+  fakeClock(t);
   const told = [];
   let online = false, calls = 0;
   const estop = new EStop(async () => { ++calls; if (!online) throw new Error('no connection'); return {tick: 1}; },
@@ -148,11 +149,11 @@ test('an e-stop without a connection is sent with the next one, and said to have
 });
 
 test('an e-stop that nobody takes is given up loudly', async (t) => {
-  t.mock.timers.enable({apis: ['setTimeout', 'Date']});
+  const clock = fakeClock(t);
   const told = [];
   const estop = new EStop(() => new Promise(() => {}), (text, bad) => told.push([text, bad]));
   estop.press();
-  for (let i = 0; i < 25; ++i) t.mock.timers.tick(500);
+  for (let i = 0; i < 25; ++i) clock.tick(500);
   assert.match(told.at(-1)[0], /NOT TAKEN/);
   assert.equal(estop.pending, false);
 });

@@ -5,6 +5,7 @@ import {Drive} from '../src/view/drive.js';
 import {DriveKeys} from '../src/view/drive_keys.js';
 import {wantedOf} from '../src/view/gamepad.js';
 import {reachOf, velocityOf} from '../src/view/reach.js';
+import {fakeClock} from './fake_clock.mjs';
 
 const kAhead = {forward: 1, lateral: 0, turn: 0}, kNothing = {forward: 0, lateral: 0, turn: 0};
 const settle = () => new Promise((resolve) => setImmediate(resolve));
@@ -18,24 +19,24 @@ function driven({mode = 'walk-bent', answer = async () => ({note: null}), conges
 }
 
 test('the first call begins, later ones renew, letting go sends zero once', async (t) => {
-  t.mock.timers.enable({apis: ['setInterval']});
+  const clock = fakeClock(t);
   const {drive, calls} = driven();
   drive.want('stick', kAhead);
   await settle();
-  t.mock.timers.tick(100);
+  clock.tick(100);
   await settle();
-  t.mock.timers.tick(100);
+  clock.tick(100);
   await settle();
   drive.want('stick', kNothing);
   await settle();
-  t.mock.timers.tick(1000);
+  clock.tick(1000);
   assert.deepEqual(calls.map(({forward, renew}) => [forward, renew]),
                    [[1, false], [1, true], [1, true], [0, true]]);
   assert.ok(calls.every(({method, session}) => method === 'drive' && session === 7));
 });
 
 test('in the mode stand it walks first', async (t) => {
-  t.mock.timers.enable({apis: ['setInterval']});
+  fakeClock(t);
   const {drive, calls} = driven({mode: 'stand'});
   drive.want('stick', kAhead);
   await settle();
@@ -45,21 +46,21 @@ test('in the mode stand it walks first', async (t) => {
 });
 
 test('who lets go while the mode is set does not drive', async (t) => {
-  t.mock.timers.enable({apis: ['setInterval']});
+  const clock = fakeClock(t);
   const {drive, calls} = driven({mode: 'stand'});
   drive.want('stick', kAhead);
   drive.want('stick', kNothing);
   await settle();
-  t.mock.timers.tick(1000);
+  clock.tick(1000);
   assert.deepEqual(calls.map(({method}) => method), ['mode']);
 });
 
 test('a refusal is told once, and nothing is sent until all let go', async (t) => {
-  t.mock.timers.enable({apis: ['setInterval']});
+  const clock = fakeClock(t);
   const {drive, calls, told} = driven({answer: async () => { throw new Error('somebody else drives'); }});
   drive.want('stick', kAhead);
   await settle();
-  t.mock.timers.tick(1000);
+  clock.tick(1000);
   drive.want('stick', {...kAhead, forward: 0.5});
   await settle();
   assert.equal(calls.length, 1);
@@ -72,7 +73,7 @@ test('a refusal is told once, and nothing is sent until all let go', async (t) =
 });
 
 test('a refusal that comes after letting go is told too', async (t) => {
-  t.mock.timers.enable({apis: ['setInterval']});
+  fakeClock(t);
   const {drive, told} = driven({answer: async () => { throw new Error('disarmed'); }});
   drive.want('stick', kAhead);
   drive.want('stick', kNothing);
@@ -81,17 +82,17 @@ test('a refusal that comes after letting go is told too', async (t) => {
 });
 
 test('a gaitd that does not answer is not flooded', async (t) => {
-  t.mock.timers.enable({apis: ['setInterval']});
+  const clock = fakeClock(t);
   const {drive, calls} = driven({answer: () => new Promise(() => {})});
   drive.want('stick', kAhead);
   await settle();
-  t.mock.timers.tick(5000);
+  clock.tick(5000);
   assert.equal(calls.length, 3);
   drive.release();
 });
 
 test('stick, keys and gamepad add up to no more than all', async (t) => {
-  t.mock.timers.enable({apis: ['setInterval']});
+  fakeClock(t);
   const {drive} = driven();
   drive.want('stick', kAhead);
   drive.want('keys', {forward: 1, lateral: 0, turn: 0.5});

@@ -17,9 +17,11 @@ export function subject({kind, text}) {
   return kind !== 'fault' && what ? `${kind} ${what} ${text.accepted ?? ''}` : undefined;
 }
 
+const shorter = (_, value) => typeof value === 'number' ? Number(value.toPrecision(5)) : value;
+
 // In a line.
 export function sentence({text}) {
   if (typeof text === 'string') return text;
   return Object.entries(text ?? {}).map(([key, value]) =>
-      `${key} ${typeof value === 'string' ? value : JSON.stringify(value)}`).join(', ');
+      `${key} ${typeof value === 'string' ? value : JSON.stringify(value, shorter)}`).join(', ');
 }

@@ -30,6 +30,7 @@ export class Layers {
       return;
     }
     say($('layers-note'), '');
+    plugins = plugins.filter(({layer}) => layer !== 'backend');  // which is chosen when gaitd starts
     for (const layer of new Set(plugins.map((one) => one.layer))) {
       this.fill(this.row(layer), plugins.filter((one) => one.layer === layer));
     }

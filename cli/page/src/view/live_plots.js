@@ -21,9 +21,9 @@ export class LivePlots {
     for (const panel of panels(live)) {
       const box = make('div', {id: `plot-${panel.id}`},
                        make('h2', {}, panel.title, make('small', {textContent: ` ${panel.unit}`})));
-      box.style.minHeight = `${kHeight + 50}px`;
+      box.style.minHeight = `${kHeight + 20}px`;  // until it is made
       element.append(box);
-      this.boxes.push({panel: {...panel, unit: ''}, box, drawn: 0});
+      this.boxes.push({panel: {...panel, unit: undefined}, box, drawn: 0});
       this.watcher.observe(box);
     }
   }
@@ -47,12 +47,14 @@ export class LivePlots {
     due.drawn = now;
     if (due.plot) due.plot.refresh();
     else due.plot = this.makePlot(due);
+    // In the legend the newest values, unless the mouse asks for others.
+    if (due.plot.cursor.left < 0) due.plot.setLegend({idx: this.live.rows - 1}, false);
   }
 
   makePlot({panel, box}) {
     const range = () => [this.live.end - this.seconds(), this.live.end];
     return timePlot(this.live, panel, undefined, box, this.width, kHeight, {
-      x: {range}, cursor: {drag: {x: false, y: false}},
+      x: {range}, cursor: {drag: {x: false, y: false}}, axis: {label: undefined, size: 26},
     });
   }
 

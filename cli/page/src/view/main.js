@@ -4,7 +4,7 @@ import './view.css';
 import {addLegend} from '../shared/legend.js';
 import {addCommands} from './commands.js';
 import {Connection} from './connection.js';
-import {$, enable, say} from './dom.js';
+import {$, say} from './dom.js';
 import {Drive} from './drive.js';
 import {DriveKeys} from './drive_keys.js';
 import {EStop} from './estop.js';
@@ -38,12 +38,13 @@ const congested = () => connection.congested;
 let stage, frames = 0;
 
 // E-stop.
-const estop = new EStop(call, (text, bad) => {
-  tell(text, bad);
-  say($('estop-note'), text);
-});
-$('estop').addEventListener('pointerdown', () => estop.press());  // not when it is let go
-$('estop').addEventListener('click', (event) => event.detail === 0 && estop.press());  // by a key
+const estop = new EStop(call, tell);
+function stopAtOnce() {
+  estop.press();
+  letGo();
+}
+$('estop').addEventListener('pointerdown', stopAtOnce);  // not when it is let go
+$('estop').addEventListener('click', (event) => event.detail === 0 && stopAtOnce());  // by a key
 connection.addEventListener('state', ({detail}) => detail.kind === 'open' && estop.online());
 
 const commands = addCommands(state, call);
@@ -60,14 +61,18 @@ const height = () => {
   const {live} = stage ?? {};
   return live ? live.newest('com/z') - Math.min(live.newest('foot/left/z'), live.newest('foot/right/z')) : NaN;
 };
+let reach;  // the same as long as one drives: the robot bobs
 const drive = new Drive({
   call: (method, params) => call(method, params, kDriveAnswer),
-  scale: (shares) => velocityOf(shares, reachOf(parameters.list, height()), Number($('speed').value) / 100),
+  scale: (shares) => {
+    reach ??= reachOf(parameters.list, height());
+    return velocityOf(shares, reach, Number($('speed').value) / 100);
+  },
   mode: () => state.status?.mode, congested, tell,
 });
 const releaseStick = addStick($('stick'), $('strip'), drive);
 const keys = new DriveKeys(drive);
-const gamepads = readGamepads(drive, {stop: commands.stop, estop: () => estop.press()});
+const gamepads = readGamepads(drive, {stop: commands.stop, estop: stopAtOnce});
 
 function showDrive() {
   const obstacle = state.obstacle('drive');
@@ -75,19 +80,22 @@ function showDrive() {
     $(id).classList.toggle('off', Boolean(obstacle));
     $(id).title = obstacle;
   }
-  const {forward, lateral, turn} = drive.velocity;
-  const text = drive.driving ? `${forward.toFixed(2)} m/s, ${lateral.toFixed(2)} to the left, ` +
-      `${turn.toFixed(2)} rad/s` : obstacle;
-  say($('drive-velocity'), text);
   say($('drive-note'), drive.driving ? drive.notes : '');
+  if (!drive.driving) {
+    reach = undefined;
+    say($('drive-velocity'), obstacle);
+    return;
+  }
+  const {forward, lateral, turn} = drive.velocity;
+  const sideways = lateral ? `, ${Math.abs(lateral).toFixed(2)} to the ${lateral > 0 ? 'left' : 'right'}` : '';
+  say($('drive-velocity'), `${forward.toFixed(2)} m/s${sideways}, ${turn.toFixed(2)} rad/s`);
 }
 drive.addEventListener('change', showDrive);
 state.addEventListener('change', showDrive);
 showDrive();
 
 listenToKeys({
-  estop: () => estop.press(),
-  stop: commands.stop,
+  estop: stopAtOnce, stop: commands.stop,
   isDriving: (code) => keys.held.has(code),
   driveDown: (code) => {
     const obstacle = keys.knows(code) && state.obstacle('drive');

@@ -81,7 +81,7 @@ export class Parameters {
     box.append(head, controls,
                make('p', {className: 'small', textContent: description}),
                make('p', {className: 'small faint', textContent:
-                   `${range}default ${shown(parameter.default)}; holds ${effect}`}), row.obstacle);
+                   `${range}default ${shown(parameter.default)}; effect: ${effect}`}), row.obstacle);
     this.rows.set(name, row);
     this.showValue(row);
     return box;

@@ -14,6 +14,7 @@ const kLines = [
   ['tick', (s) => `${number(s.tick_us, 0)} µs, longest ${number(s.tick_longest_us, 0)} µs`],
   ['overruns', (s) => `${s.overruns ?? '–'}${s.late ? `, last: ${s.late.what}, ${number(s.late.time_us, 0)} µs` : ''}`],
   ['clock', (s) => `${s.clock ?? '–'}, ${number(s.time, 1)} s`],
+  ['real time', (s) => s.realtime?.degraded?.join('; ') || 'as it should be'],
   ['log', (s) => !s.log ? '–' : s.log.open ?
       `${s.log.file.split('/').at(-1)}, ${number(s.log.bytes / kMega, 1)} MB` : 'not open'],
   ['health', (s) => s.health ? (s.health.healthy ? 'good' : s.health.text) : 'simulation'],
@@ -36,7 +37,6 @@ function alerts(state, connection, view) {
     if (status.joints_dropped) found.push([`${status.joints_dropped} joints have failed and are damped`, 'bad']);
     if (status.log?.error) found.push([`Log: ${status.log.error}`, 'bad']);
     if (status.log?.dropouts) found.push([`The log lacks ${status.log.dropouts} ticks`, 'bad']);
-    for (const text of status.realtime?.degraded ?? []) found.push([text, 'note']);
   }
   if (state.role === 'observe') {
     found.push(['Watching only: this address may stop the robot, nothing else', 'note']);
