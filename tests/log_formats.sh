@@ -2,7 +2,7 @@
 # standard messages of Foxglove.
 source "$(dirname "$0")/common.sh"
 cd "$scratch"
-modules=$GAITD_BUILD/cli/report/page/node_modules
+modules=$GAITD_BUILD/cli/page/npm/node_modules
 for module in @mcap/core fzstd protobufjs; do
   if [[ ! -d $modules/$module ]]; then
     echo "skipped: $modules/$module is not there, because npm or its registry was not"

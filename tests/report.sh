@@ -6,7 +6,7 @@ if [[ ! -f $page ]]; then
   echo "skipped: $page was not built, because npm or its registry was not there"
   exit 77
 fi
-playwright=$GAITD_BUILD/cli/report/page/node_modules/playwright-core
+playwright=$GAITD_BUILD/cli/page/npm/node_modules/playwright-core
 
 # A minute of log opens in time, plays at the rate of the screen, and shows what was logged.
 expect 0 gaitctl run estimators --log walk.mcap >run.txt

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kBrowserTime(600);  // on a busy machine
 
-// As the page writes them: cli/report/page/src/pictures.js.
+// As the page writes them: cli/page/src/report/pictures.js.
 constexpr std::string_view kPicture = "<img id=\"";
 constexpr std::string_view kData = "\" src=\"data:image/png;base64,";
 

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+import * as THREE from 'three';
+import URDFLoader from 'urdf-loader';
+
+export function material(color, opacity = 1) {
+  return new THREE.MeshLambertMaterial({color, opacity, transparent: opacity < 1});
+}
+
+// Few faces and plain shading: software renderers draw the robot too.
+function simplify(robot, opacity) {
+  const ball = new THREE.SphereGeometry(1, 16, 10), tube = new THREE.CylinderGeometry(1, 1, 1, 16);
+  robot.traverse((mesh) => {
+    if (!mesh.isMesh) return;
+    if (mesh.geometry.type === 'SphereGeometry') mesh.geometry = ball;
+    if (mesh.geometry.type === 'CylinderGeometry') mesh.geometry = tube;
+    const {color, opacity: own} = mesh.material;
+    if (color) mesh.material = material(color, own * opacity);
+  });
+}
+
+// The robot of a log in its posture.
+export class Robot {
+  constructor(log, opacity = 1) {
+    this.log = log;
+    this.pelvis = new THREE.Group();
+    this.joints = [];
+    if (!log.urdf) return;
+    const loader = new URDFLoader();
+    // Whoever wrote the log chose the addresses of its meshes: nothing is fetched from anywhere.
+    loader.loadMeshCb = (path, manager, done) => done(new THREE.Group());
+    const robot = loader.parse(log.urdf);
+    simplify(robot, opacity);
+    this.pelvis.add(robot);
+    this.links = robot.links;
+    this.joints = Object.values(robot.joints)
+        .map((joint) => ({joint, signal: `joint/${joint.urdfName}/position`,
+                          get column() { return log.column(this.signal); }}))
+        .filter(({signal}) => log.has(signal));
+  }
+
+  show(row) {
+    const {log, pelvis} = this;
+    pelvis.position.set(...log.point('pelvis', row));
+    pelvis.rotation.set(...['roll', 'pitch', 'yaw'].map((a) => log.value(`pelvis/${a}`, row)), 'ZYX');
+    for (const {joint, signal} of this.joints) joint.setJointValue(log.value(signal, row));
+  }
+
+  // A point of a link in the world; of the pelvis if there is no such link.
+  place(link, point) {
+    this.pelvis.updateMatrixWorld(true);
+    return (this.links?.[link] ?? this.pelvis).localToWorld(new THREE.Vector3(...point));
+  }
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+import {$, make, say} from './dom.js';
+
+const number = (value, digits) => typeof value === 'number' ? value.toFixed(digits) : '–';
+const kMega = 1e6;
+
+// Label and text of each line; '' is left blank.
+const kLines = [
+  ['state', (s) => s.state],
+  ['mode', (s) => s.mode],
+  ['phase', (s) => `${s.phase ?? '–'}, ${s.support ?? '–'}`],
+  ['step', (s) => `${s.step_index ?? '–'}, ${s.footsteps_ahead ?? 0} ahead${s.paused ? ', PAUSED' : ''}`],
+  ['ICP error', (s) => typeof s.icp_error === 'number' ? `${number(1000 * s.icp_error, 1)} mm` : '–'],
+  ['tick', (s) => `${number(s.tick_us, 0)} µs, longest ${number(s.tick_longest_us, 0)} µs`],
+  ['overruns', (s) => `${s.overruns ?? '–'}${s.late ? `, last: ${s.late.what}, ${number(s.late.time_us, 0)} µs` : ''}`],
+  ['clock', (s) => `${s.clock ?? '–'}, ${number(s.time, 1)} s`],
+  ['real time', (s) => s.realtime?.degraded?.join('; ') || 'as it should be'],
+  ['log', (s) => !s.log ? '–' : s.log.open ?
+      `${s.log.file.split('/').at(-1)}, ${number(s.log.bytes / kMega, 1)} MB` : 'not open'],
+  ['health', (s) => s.health ? (s.health.healthy ? 'good' : s.health.text) : 'simulation'],
+  ['robot', (s) => `${s.robot ?? '–'}, ${s.backend ?? '–'}${s.scenario ? `, plays ${s.scenario}` : ''}`],
+];
+
+// What has to be seen at once: [text, kind] each.
+function alerts(state, connection, view) {
+  if (!state.online) return [[connection.text, 'bad']];
+  const found = [];
+  const {status} = state;
+  if (!state.connected) {
+    found.push([`gaitd is away${state.reason ? `: ${state.reason}` : ''}; trying again`, 'bad']);
+  } else if (status) {
+    if (status.faults?.length) found.push([`FAULT: ${status.faults.join(', ')} – reset, then arm`, 'bad']);
+    if (status.stale) {
+      found.push([`The control loop hangs: its last round was ${number(status.age, 1)} s ago`, 'bad']);
+    }
+    if (status.health && !status.health.healthy) found.push([`Not healthy: ${status.health.text}`, 'bad']);
+    if (status.joints_dropped) found.push([`${status.joints_dropped} joints have failed and are damped`, 'bad']);
+    if (status.log?.error) found.push([`Log: ${status.log.error}`, 'bad']);
+    if (status.log?.dropouts) found.push([`The log lacks ${status.log.dropouts} ticks`, 'bad']);
+  }
+  if (state.role === 'observe') {
+    found.push(['Watching only: this address may stop the robot, nothing else', 'note']);
+  }
+  if (view.lost) found.push([`This connection was too slow for ${view.lost} frames`, 'note']);
+  return found;
+}
+
+function fillAlerts(list) {
+  const element = $('alerts'), key = JSON.stringify(list);
+  if (element.dataset.key === key) return;
+  element.dataset.key = key;
+  element.replaceChildren(...list.map(([text, kind]) => make('div', {className: kind, textContent: text})));
+}
+
+export function addStatus(state, connection) {
+  const cells = kLines.map(([label]) => {
+    const cell = make('dd');
+    $('status').append(make('dt', {textContent: label}), cell);
+    return cell;
+  });
+  const view = {lost: 0};
+  let forget;
+  const change = () => {
+    fillAlerts(alerts(state, connection.state, view));
+    document.body.classList.toggle('away', !state.online || !state.connected);
+    const name = state.connected ? state.name : '';
+    say($('title'), name || 'gaitd');
+    document.title = name ? `${name} – gaitd` : 'gaitd';
+    say($('role'), !state.online ? 'offline' : state.role === 'observe' ? 'watching only' : state.role);
+    say($('viewers'), state.online && state.viewers > 1 ? `${state.viewers} watch` : '');
+    say($('state'), state.connected && state.status?.state ? state.status.state : '–');
+    $('state').className = state.connected ? `is-${state.status?.state}` : '';
+  };
+  state.addEventListener('change', change);
+  state.addEventListener('status', () => {
+    const status = state.status ?? {};
+    kLines.forEach(([, text], i) => say(cells[i], String(text(status) ?? '–')));
+    change();
+  });
+  connection.addEventListener('lost', ({detail}) => {
+    view.lost += detail.frames;
+    clearTimeout(forget);
+    forget = setTimeout(() => { view.lost = 0; }, 5000);
+  });
+  change();
+}
