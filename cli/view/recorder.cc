@@ -19,7 +19,8 @@ constexpr std::size_t kReports = 8;  // that are kept; each has some megabytes
 
 daemon::LogMetadata metadata_of(const json& robot) {
   daemon::LogMetadata metadata;
-  for (const auto& [key, value] : robot.value("log", json::object()).items()) {
+  const json log = robot.value("log", json::object());
+  for (const auto& [key, value] : log.items()) {
     if (value.is_string()) metadata[key] = value.get<std::string>();
   }
   metadata["robot"] = robot.value("name", "");
@@ -50,7 +51,8 @@ std::string new_file(const std::string& folder) {
 std::string Recorder::begin(const json& robot, const daemon::SignalTable& signals) {
   file_ = new_file(folder_);
   width_ = signals.size();
-  tick_ = -1;
+  tick_signal_ = find_signal(signals, "tick");
+  rows_ = 0;
   auto writer = std::make_unique<daemon::LogWriter>(signals);
   std::string error;
   if (!writer->open(file_, metadata_of(robot), {}, &error)) return error;
@@ -59,13 +61,18 @@ std::string Recorder::begin(const json& robot, const daemon::SignalTable& signal
 }
 
 void Recorder::add(const LiveFrame& frame) {
-  if (!writer_ || frame.values.size() != width_ || frame.tick <= tick_) return;
-  tick_ = frame.tick;
-  writer_->write_tick(frame.tick, frame.time, frame.values, nullptr);
+  if (!writer_ || frame.values.size() != width_) return;
+  std::vector<double> values = frame.values;
+  if (tick_signal_ >= 0)
+    values[static_cast<std::size_t>(tick_signal_)] = static_cast<double>(rows_);
+  writer_->write_tick(rows_++, frame.time, values, nullptr);
 }
 
 void Recorder::add(const daemon::Event& event) {
-  if (writer_) writer_->write_event(event);
+  if (!writer_) return;
+  daemon::Event numbered = event;
+  numbered.tick = rows_;
+  writer_->write_event(numbered);
 }
 
 void Recorder::end(std::function<void(const End&)> done) {

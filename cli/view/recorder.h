@@ -51,7 +51,9 @@ class Recorder {
   std::string file_;
   std::unique_ptr<daemon::LogWriter> writer_;
   std::size_t width_ = 0;  // signals of a frame
-  std::int64_t tick_ = -1;
+  // A log has no gaps between its ticks: those of a recording are numbered anew.
+  std::int64_t rows_ = 0;
+  int tick_signal_ = -1;
   std::map<int, Message> reports_;
   int next_report_ = 1;
   boost::asio::thread_pool threads_{1};

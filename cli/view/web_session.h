@@ -37,6 +37,7 @@ class WebSocketSession : public ViewerSocket,
       if (!protocol.empty()) response.set("Sec-WebSocket-Protocol", protocol);
     }));
     socket_.read_message_max(kLongestMessage);
+    socket_.auto_fragment(false);
     socket_.async_accept(request, [self = this->shared_from_this(), content, role,
                                    protocol](boost::system::error_code error) {
       if (error) return;
