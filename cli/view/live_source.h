@@ -12,13 +12,11 @@
 #include <vector>
 
 #include "cli/view/gaitd_link.h"
+#include "cli/view/message.h"
 #include "daemon/log/event.h"
 #include "daemon/log/signal.h"
 
 namespace gaitd::cli {
-
-/// A message to many viewers, made once.
-using Message = std::shared_ptr<const std::string>;
 
 /// A tick as gaitd sent it.
 struct LiveFrame {

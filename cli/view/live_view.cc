@@ -26,12 +26,6 @@ constexpr std::string_view kReports = "/report/";
 
 static_assert(std::endian::native == std::endian::little, "frames are little-endian");
 
-Message shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
-
-Message text_of(const json& message) {
-  return shared(message.dump(-1, ' ', false, json::error_handler_t::replace));
-}
-
 bool is_shown(const std::string& signal) {
   return std::ranges::any_of(LiveSource::shown_signals(),
                              [&](const auto& glob) { return daemon::glob_match(glob, signal); });
@@ -44,7 +38,7 @@ void append(std::string* bytes, auto value) {
 }
 
 WebAnswer not_found() {
-  return {.status = 404, .body = shared("there is no such page\n"), .policy = {}};
+  return {.status = 404, .body = message_of("there is no such page\n"), .policy = {}};
 }
 
 }  // namespace
@@ -69,7 +63,7 @@ class LiveView::Peer : public WebPeer {
 LiveView::LiveView(boost::asio::io_context* io, const std::string& socket, Access access,
                    std::string page, std::string log_folder)
     : access_(std::move(access)),
-      page_(shared(std::move(page))),
+      page_(message_of(std::move(page))),
       connector_(io, socket),
       source_(io, &connector_,
               {.on_robot = [this] { on_robot(); },
@@ -106,7 +100,7 @@ WebAnswer LiveView::get(std::string_view path, std::string_view token) {
   }
   if (!path.starts_with(kReports)) return not_found();
   if (!access_.role_of(token))
-    return {.status = 401, .body = shared("no valid token\n"), .policy = {}};
+    return {.status = 401, .body = message_of("no valid token\n"), .policy = {}};
   int number = 0;
   path.remove_prefix(kReports.size());
   const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), number);
@@ -125,9 +119,11 @@ std::string LiveView::choose_protocol(std::string_view path, std::string_view of
 
 std::shared_ptr<WebPeer> LiveView::open(daemon::Role role, const std::string&,
                                         std::shared_ptr<ViewerSocket> socket) {
-  const auto viewer = std::make_shared<Viewer>(role, this, &connector_, std::move(socket));
+  auto relay = std::make_shared<RpcRelay>(role, &connector_);
+  relay->connect();
+  const auto viewer = std::make_shared<Viewer>(std::move(relay), std::move(socket),
+                                               [this](bool on) { record(on); });
   viewers_.insert(viewer);
-  viewer->start();
   viewer->send_text(text_of({{"type", "hello"},
                              {"role", daemon::role_name(role)},
                              {"version", GAITD_VERSION},
@@ -186,7 +182,7 @@ void LiveView::on_frame(const LiveFrame& frame) {
   for (const std::size_t place : places_) {
     append(&bytes, static_cast<float>(frame.values[place]));
   }
-  const Message message = shared(std::move(bytes));
+  const Message message = message_of(std::move(bytes));
   for (const auto& viewer : viewers_) viewer->send_frame(message);
 }
 

@@ -12,6 +12,7 @@
 #include "cli/view/gaitd_link.h"
 #include "cli/view/live_source.h"
 #include "cli/view/recorder.h"
+#include "cli/view/rpc_relay.h"
 #include "cli/view/viewer.h"
 #include "cli/view/web_server.h"
 
@@ -19,7 +20,7 @@ namespace gaitd::cli {
 
 /// What `gaitctl view` serves: the page, the live stream for every viewer, the reports of
 /// recordings. All on the thread of its io_context.
-class LiveView : public WebContent, public ViewerHost {
+class LiveView : public WebContent {
  public:
   LiveView(boost::asio::io_context* io, const std::string& socket, Access access, std::string page,
            std::string log_folder);
@@ -33,11 +34,10 @@ class LiveView : public WebContent, public ViewerHost {
   std::string choose_protocol(std::string_view path, std::string_view offered) override;
   std::shared_ptr<WebPeer> open(daemon::Role role, const std::string& protocol,
                                 std::shared_ptr<ViewerSocket> socket) override;
-  // ViewerHost
-  void record(bool on) override;
 
  private:
   class Peer;
+  void record(bool on);
   void on_robot();
   void on_frame(const LiveFrame& frame);
   void send_all(const Message& message);

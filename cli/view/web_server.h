@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "cli/view/access.h"
-#include "cli/view/viewer.h"
+#include "cli/view/message.h"
 
 namespace gaitd::cli {
 
@@ -24,7 +24,18 @@ struct WebAnswer {
   std::string policy;  ///< Content-Security-Policy
 };
 
-/// A browser's WebSocket, once it is open.
+/// The WebSocket of a browser.
+class ViewerSocket {
+ public:
+  virtual ~ViewerSocket() = default;
+  virtual void send(Message message, bool binary) = 0;
+  /// Messages, and their bytes, that the browser has not taken yet.
+  virtual std::size_t waiting() const = 0;
+  virtual std::size_t waiting_bytes() const = 0;
+  virtual void close(const std::string& reason) = 0;
+};
+
+/// Who is at the other end of it, once it is open.
 struct WebPeer {
   virtual ~WebPeer() = default;
   virtual void on_message(std::string_view text, bool binary) = 0;

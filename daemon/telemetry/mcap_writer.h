@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/telemetry/message_sink.h"
 #include "daemon/telemetry/output_file.h"
 
 namespace gaitd::daemon {
@@ -27,25 +28,24 @@ struct McapOptions {
 // over everything (daemon/log/seal.h), and a summary at the end. Schemas, channels and metadata
 // stand outside the chunks, so that a file that was cut off still has them. After a failed write it
 // does nothing more; see error().
-class McapWriter {
+class McapWriter : public MessageSink {
  public:
   McapWriter();
-  ~McapWriter();
+  ~McapWriter() override;
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
   bool open(const std::string& path, const std::string& library, const McapOptions& options);
 
   std::uint16_t add_schema(const std::string& name, const std::string& encoding,
-                           const std::string& data);
+                           const std::string& data) override;
   std::uint16_t add_channel(std::uint16_t schema, const std::string& topic,
                             const std::string& message_encoding,
-                            const std::map<std::string, std::string>& metadata);
+                            const std::map<std::string, std::string>& metadata) override;
   void add_metadata(const std::string& name, const std::map<std::string, std::string>& metadata);
 
-  // Starts a message and returns the buffer to append its data to; end_message() completes it.
-  std::string& begin_message(std::uint16_t channel, std::uint64_t time_ns);
-  void end_message();
+  std::string& begin_message(std::uint16_t channel, std::uint64_t time_ns) override;
+  void end_message() override;
 
   void flush();
   bool check() { return file_.check(); }  // see OutputFile

@@ -53,13 +53,13 @@ struct SceneTopics::Impl {
 
   // False where the log lacks the pose of the pelvis or a joint.
   bool find_signals(const SignalTable& table);
-  void write_transforms(std::uint64_t time_ns, std::span<const double> values, McapWriter* file);
-  void write_joints(std::uint64_t time_ns, std::span<const double> values, McapWriter* file);
+  void write_transforms(std::uint64_t time_ns, std::span<const double> values, MessageSink* sink);
+  void write_joints(std::uint64_t time_ns, std::span<const double> values, MessageSink* sink);
   template <class Message>
   void write_message(std::uint16_t channel, std::uint64_t time_ns, const Message& message,
-                     McapWriter* file) {
-    message.AppendToString(&file->begin_message(channel, time_ns));
-    file->end_message();
+                     MessageSink* sink) {
+    message.AppendToString(&sink->begin_message(channel, time_ns));
+    sink->end_message();
   }
 
   GaitdModel model;
@@ -70,7 +70,7 @@ struct SceneTopics::Impl {
   std::array<int, 6> pelvis{};  // x y z roll pitch yaw
   std::vector<JointSignals> joints;
   std::uint16_t transforms_channel = 0, joints_channel = 0, scene_channel = 0, robot_channel = 0;
-  bool begun = false;  // in this file
+  bool begun = false;
   std::uint64_t next = 0;
 };
 
@@ -93,7 +93,7 @@ bool SceneTopics::Impl::find_signals(const SignalTable& table) {
 }
 
 void SceneTopics::Impl::write_transforms(std::uint64_t time_ns, std::span<const double> values,
-                                         McapWriter* file) {
+                                         MessageSink* sink) {
   for (int i = 0; i < model.joint_count; ++i) q[i] = values[joints[i].position];
   const Eigen::Quaterniond R_WP = Eigen::AngleAxisd(values[pelvis[5]], Eigen::Vector3d::UnitZ()) *
                                   Eigen::AngleAxisd(values[pelvis[4]], Eigen::Vector3d::UnitY()) *
@@ -118,11 +118,11 @@ void SceneTopics::Impl::write_transforms(std::uint64_t time_ns, std::span<const 
     transform->mutable_rotation()->set_z(R.z());
     transform->mutable_rotation()->set_w(R.w());
   }
-  write_message(transforms_channel, time_ns, message, file);
+  write_message(transforms_channel, time_ns, message, sink);
 }
 
 void SceneTopics::Impl::write_joints(std::uint64_t time_ns, std::span<const double> values,
-                                     McapWriter* file) {
+                                     MessageSink* sink) {
   foxglove::JointStates message;
   set_time(time_ns, message.mutable_timestamp());
   foxglove::JointState* state = message.add_joints();
@@ -133,7 +133,7 @@ void SceneTopics::Impl::write_joints(std::uint64_t time_ns, std::span<const doub
     state->add_velocity(values[joints[i].velocity]);
     state->add_effort(values[joints[i].torque]);
   }
-  write_message(joints_channel, time_ns, message, file);
+  write_message(joints_channel, time_ns, message, sink);
 }
 
 SceneTopics::SceneTopics() = default;
@@ -154,10 +154,10 @@ std::unique_ptr<SceneTopics> SceneTopics::create(const std::map<std::string, std
   return topics->impl_->find_signals(table) ? std::move(topics) : nullptr;
 }
 
-void SceneTopics::add_channels(McapWriter* file) {
+void SceneTopics::add_channels(MessageSink* sink) {
   const std::string text = schema_text();
   const auto add = [&](const char* topic, const char* name) {
-    return file->add_channel(file->add_schema(name, "protobuf", text), topic, "protobuf", {});
+    return sink->add_channel(sink->add_schema(name, "protobuf", text), topic, "protobuf", {});
   };
   impl_->transforms_channel = add(kTransformsTopic, "foxglove.FrameTransforms");
   impl_->joints_channel = add(kJointsTopic, "foxglove.JointStates");
@@ -166,7 +166,9 @@ void SceneTopics::add_channels(McapWriter* file) {
   impl_->begun = false;
 }
 
-void SceneTopics::write(std::uint64_t time_ns, std::span<const double> values, McapWriter* file) {
+void SceneTopics::begin_again() { impl_->begun = false; }
+
+void SceneTopics::write(std::uint64_t time_ns, std::span<const double> values, MessageSink* sink) {
   Impl& impl = *impl_;
   // A reset simulation begins again at zero.
   if (impl.begun && time_ns < impl.next && impl.next - time_ns <= kPeriod) return;
@@ -176,18 +178,18 @@ void SceneTopics::write(std::uint64_t time_ns, std::span<const double> values, M
     foxglove::RobotDescription description;
     description.set_data(impl.urdf);
     description.set_format("urdf");
-    impl.write_message(impl.robot_channel, time_ns, description, file);
+    impl.write_message(impl.robot_channel, time_ns, description, sink);
     impl.drawing.add_terrain(&scene);
     impl.begun = true;
   }
-  impl.write_transforms(time_ns, values, file);
-  impl.write_joints(time_ns, values, file);
+  impl.write_transforms(time_ns, values, sink);
+  impl.write_joints(time_ns, values, sink);
   impl.drawing.add_gait(values, &scene);
   for (foxglove::SceneEntity& entity : *scene.mutable_entities()) {
     set_time(time_ns, entity.mutable_timestamp());
     entity.set_frame_id(kWorldFrame);
   }
-  impl.write_message(impl.scene_channel, time_ns, scene, file);
+  impl.write_message(impl.scene_channel, time_ns, scene, sink);
 }
 
 }  // namespace gaitd::daemon

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "daemon/log/signal.h"
-#include "daemon/telemetry/mcap_writer.h"
+#include "daemon/telemetry/message_sink.h"
 
 namespace gaitd::daemon {
 
@@ -29,10 +29,13 @@ class SceneTopics {
   ~SceneTopics();
 
   // Schemas and channels, once per file, before any message.
-  void add_channels(McapWriter* file);
+  void add_channels(MessageSink* sink);
+
+  // The next tick is written whatever the time, with what is written once: robot and terrain.
+  void begin_again();
 
   // One tick, values in table order. Writes only if the last messages are long enough ago.
-  void write(std::uint64_t time_ns, std::span<const double> values, McapWriter* file);
+  void write(std::uint64_t time_ns, std::span<const double> values, MessageSink* sink);
 
  private:
   SceneTopics();

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/view/gaitd_link.h"
+#include "daemon/server/rights.h"
+
+namespace gaitd::cli {
+
+/// The requests of one browser, on a connection to gaitd of their own, so that everybody has a
+/// share and gaitd sees who is who. Opens the connection when there is something to ask, and again
+/// after gaitd was gone.
+class RpcRelay : public std::enable_shared_from_this<RpcRelay> {
+ public:
+  RpcRelay(daemon::Role role, GaitdConnector* connector) : role_(role), connector_(connector) {}
+
+  daemon::Role role() const { return role_; }
+  /// `done` gets an object with `result` or `error`, soon or late; it may be called at once. May be
+  /// null. What the role forbids, for it may be less than that of this user, does not reach gaitd.
+  using Done = std::function<void(nlohmann::json answer)>;
+  void call(const std::string& method, const nlohmann::json& params, Done done);
+  /// Connects ahead of the first request.
+  void connect();
+  /// Nothing is called any more.
+  void end();
+
+ private:
+  void on_link(std::shared_ptr<GaitdLink> link, const std::string& error);
+  void on_line(std::string_view line);
+  void fail_all(const std::string& reason);
+
+  daemon::Role role_;
+  GaitdConnector* connector_;
+  std::shared_ptr<GaitdLink> link_;
+  bool connecting_ = false;
+  bool ended_ = false;
+  std::deque<std::string> waiting_;  // lines, until there is a link
+  std::map<std::uint64_t, Done> asked_;
+  std::uint64_t next_ = 1;
+};
+
+}  // namespace gaitd::cli
