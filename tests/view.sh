@@ -29,7 +29,7 @@ os.kill(int(sys.argv[2]), signal.SIGKILL)
 gone = viewer.until(lambda m: m.get("type") == "robot" and not m["connected"], "gone")
 assert gone["reason"], gone
 answer = viewer.call("status")
-assert answer["error"]["code"] == -32003 and "no gaitd" in answer["error"]["message"], answer
+assert answer["error"]["code"] == -32003 and "gaitd" in answer["error"]["message"], answer
 viewer.messages.clear()
 again = subprocess.Popen(["gaitd", "--set", "clock=realtime", "--set", "log.enabled=false"],
                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

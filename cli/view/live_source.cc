@@ -174,6 +174,7 @@ void LiveSource::on_header(const json& header) {
     return lose("gaitd describes its signals wrongly: " + error);
   }
   connected_ = true;
+  has_all_ = header.value("rate", 0.0) == kRecordRate;
   reason_.clear();
   listener_.on_robot();
 }

@@ -49,6 +49,8 @@ class LiveSource {
   void want_all(bool all);
 
   bool connected() const { return connected_; }
+  /// Whether the frames that come hold all signals.
+  bool has_all() const { return connected_ && has_all_; }
   const std::string& reason() const { return reason_; }  ///< why it is not
   /// Answer of robot.describe, null before there is one.
   const nlohmann::json& robot() const { return robot_; }
@@ -77,7 +79,8 @@ class LiveSource {
   std::shared_ptr<GaitdLink> link_;
   bool stopped_ = false;
   bool connected_ = false;
-  bool all_ = false;
+  bool all_ = false;      // wanted
+  bool has_all_ = false;  // and there
   std::string reason_ = "not connected yet";
   nlohmann::json robot_;
   daemon::SignalTable signals_;

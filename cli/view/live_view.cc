@@ -60,6 +60,28 @@ class LiveView::Peer : public WebPeer {
   std::shared_ptr<Viewer> viewer_;
 };
 
+class LiveView::FoxglovePeer : public WebPeer {
+ public:
+  FoxglovePeer(LiveView* view, std::shared_ptr<FoxgloveClient> client)
+      : view_(view), client_(std::move(client)) {}
+  void on_message(std::string_view text, bool binary) override {
+    if (binary) {
+      client_->on_binary(text);
+    } else {
+      client_->on_text(text);
+    }
+  }
+  void on_end() override {
+    client_->end();
+    view_->foxgloves_.erase(client_);
+    view_->choose_signals();
+  }
+
+ private:
+  LiveView* view_;
+  std::shared_ptr<FoxgloveClient> client_;
+};
+
 LiveView::LiveView(boost::asio::io_context* io, const std::string& socket, Access access,
                    std::string page, std::string log_folder)
     : access_(std::move(access)),
@@ -73,18 +95,7 @@ LiveView::LiveView(boost::asio::io_context* io, const std::string& socket, Acces
                      if (silent > 0.0) message["silent"] = silent;
                      send_all(text_of(message));
                    },
-               .on_event =
-                   [this](const daemon::Event& event) {
-                     recorder_.add(event);
-                     json text = json::parse(event.text, nullptr, false);
-                     send_all(text_of(
-                         {{"type", "event"},
-                          {"event",
-                           {{"tick", event.tick},
-                            {"time", event.time},
-                            {"kind", event.kind},
-                            {"text", text.is_discarded() ? json(event.text) : std::move(text)}}}}));
-                   },
+               .on_event = [this](const daemon::Event& event) { on_event(event); },
                .on_frame = [this](const LiveFrame& frame) { on_frame(frame); }}),
       recorder_(io, std::move(log_folder)),
       robot_(text_of({{"type", "robot"}, {"connected", false}, {"reason", "not connected yet"}})) {}
@@ -92,6 +103,7 @@ LiveView::LiveView(boost::asio::io_context* io, const std::string& socket, Acces
 void LiveView::stop() {
   source_.stop();
   for (const auto& viewer : std::exchange(viewers_, {})) viewer->end();
+  for (const auto& client : std::exchange(foxgloves_, {})) client->end();
 }
 
 WebAnswer LiveView::get(std::string_view path, std::string_view token) {
@@ -114,13 +126,26 @@ WebAnswer LiveView::get(std::string_view path, std::string_view token) {
 }
 
 std::string LiveView::choose_protocol(std::string_view path, std::string_view offered) {
-  return path == "/live" && offered.find(kProtocol) != std::string_view::npos ? kProtocol : "";
+  if (path == "/live") return offered.find(kProtocol) != std::string_view::npos ? kProtocol : "";
+  return path == "/" ? FoxgloveClient::choose_protocol(offered) : "";
 }
 
-std::shared_ptr<WebPeer> LiveView::open(daemon::Role role, const std::string&,
+std::shared_ptr<WebPeer> LiveView::open(daemon::Role role, const std::string& protocol,
                                         std::shared_ptr<ViewerSocket> socket) {
   auto relay = std::make_shared<RpcRelay>(role, &connector_);
   relay->connect();
+  if (protocol != kProtocol) {
+    const auto client =
+        std::make_shared<FoxgloveClient>(std::move(relay), std::move(socket), [this] {
+          if (channels_) channels_->begin_again();
+        });
+    foxgloves_.insert(client);
+    client->start();
+    if (channels_) client->advertise(&channels_->list(), "");
+    if (!source_.connected()) client->advertise(nullptr, source_.reason());
+    choose_signals();
+    return std::make_shared<FoxglovePeer>(this, client);
+  }
   const auto viewer = std::make_shared<Viewer>(std::move(relay), std::move(socket),
                                                [this](bool on) { record(on); });
   viewers_.insert(viewer);
@@ -167,13 +192,18 @@ void LiveView::on_robot() {
     robot_ = std::move(text);
     send_all(robot_);
   }
+  show_channels();
   if (!source_.connected() && (recorder_.recording() || wants_recording_)) record(false);
-  if (source_.connected() && wants_recording_ && !recorder_.recording()) begin_recording();
+  if (source_.has_all() && wants_recording_ && !recorder_.recording()) begin_recording();
 }
 
 void LiveView::on_frame(const LiveFrame& frame) {
   newest_time_ = frame.time;
   recorder_.add(frame);
+  if (channels_ && !foxgloves_.empty()) {
+    for (const auto& client : foxgloves_) client->send_time(to_nanoseconds(frame.time));
+    channels_->add(frame);
+  }
   if (viewers_.empty()) return;
   std::string bytes;
   bytes.reserve(16 + 4 * places_.size());
@@ -186,11 +216,44 @@ void LiveView::on_frame(const LiveFrame& frame) {
   for (const auto& viewer : viewers_) viewer->send_frame(message);
 }
 
+void LiveView::on_event(const daemon::Event& event) {
+  recorder_.add(event);
+  if (channels_) channels_->add(event);
+  json text = json::parse(event.text, nullptr, false);
+  send_all(text_of({{"type", "event"},
+                    {"event",
+                     {{"tick", event.tick},
+                      {"time", event.time},
+                      {"kind", event.kind},
+                      {"text", text.is_discarded() ? json(event.text) : std::move(text)}}}}));
+}
+
+void LiveView::choose_signals() { source_.want_all(wants_recording_ || !foxgloves_.empty()); }
+
+// Foxglove's messages are made from all signals.
+void LiveView::show_channels() {
+  channels_.reset();
+  if (source_.has_all()) {
+    channels_ = std::make_unique<FoxgloveChannels>(
+        source_.robot(), source_.signals(),
+        [this](std::uint16_t channel, std::uint64_t time_ns, std::string_view data) {
+          for (const auto& client : foxgloves_) client->send_message(channel, time_ns, data);
+        });
+  }
+  for (const auto& client : foxgloves_) {
+    if (channels_ || !source_.connected()) {
+      client->advertise(channels_ ? &channels_->list() : nullptr, source_.reason());
+    }
+  }
+}
+
 void LiveView::record(bool on) {
   if (on == wants_recording_) return tell_recording(nullptr, "");
   if (on && !source_.connected()) return tell_recording(nullptr, source_.reason());
   wants_recording_ = on;
-  source_.want_all(on);  // recording begins with the first subscription to all
+  choose_signals();
+  // Recording begins with the first subscription to all, which may be there.
+  if (on && source_.has_all()) return begin_recording();
   if (on) return;
   if (!recorder_.recording()) return tell_recording(nullptr, "");
   recorder_.end([this](const Recorder::End& end) { tell_recording(&end, end.error); });
@@ -200,7 +263,7 @@ void LiveView::begin_recording() {
   const std::string error = recorder_.begin(source_.robot(), source_.signals());
   if (!error.empty()) {
     wants_recording_ = false;
-    source_.want_all(false);
+    choose_signals();
   }
   recording_since_ = newest_time_;
   tell_recording(nullptr, error);

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/view/foxglove_channels.h"
+#include "cli/view/foxglove_client.h"
 #include "cli/view/gaitd_link.h"
 #include "cli/view/live_source.h"
 #include "cli/view/recorder.h"
@@ -37,9 +39,14 @@ class LiveView : public WebContent {
 
  private:
   class Peer;
+  class FoxglovePeer;
   void record(bool on);
   void on_robot();
   void on_frame(const LiveFrame& frame);
+  void on_event(const daemon::Event& event);
+  void show_channels();
+  // All signals while somebody records or Foxglove is there.
+  void choose_signals();
   void send_all(const Message& message);
   void tell_recording(const Recorder::End* end, const std::string& error);
   void begin_recording();
@@ -50,6 +57,8 @@ class LiveView : public WebContent {
   LiveSource source_;
   Recorder recorder_;
   std::set<std::shared_ptr<Viewer>> viewers_;
+  std::set<std::shared_ptr<FoxgloveClient>> foxgloves_;
+  std::unique_ptr<FoxgloveChannels> channels_;
   Message robot_;                    // what a new viewer is told first
   std::vector<std::size_t> places_;  // of the signals of the page in a frame
   bool wants_recording_ = false;

@@ -17,7 +17,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kReports = 8;  // that are kept; each has some megabytes
 
-daemon::LogMetadata metadata_of(const json& robot) {
+}  // namespace
+
+daemon::LogMetadata log_metadata_of(const json& robot) {
   daemon::LogMetadata metadata;
   const json log = robot.value("log", json::object());
   for (const auto& [key, value] : log.items()) {
@@ -32,6 +34,8 @@ daemon::LogMetadata metadata_of(const json& robot) {
   }
   return metadata;
 }
+
+namespace {
 
 std::string new_file(const std::string& folder) {
   const std::time_t now = std::time(nullptr);
@@ -55,7 +59,7 @@ std::string Recorder::begin(const json& robot, const daemon::SignalTable& signal
   rows_ = 0;
   auto writer = std::make_unique<daemon::LogWriter>(signals);
   std::string error;
-  if (!writer->open(file_, metadata_of(robot), {}, &error)) return error;
+  if (!writer->open(file_, log_metadata_of(robot), {}, &error)) return error;
   writer_ = std::move(writer);
   return "";
 }

@@ -16,6 +16,9 @@
 
 namespace gaitd::cli {
 
+/// What a log says of the robot that robot.describe has described.
+daemon::LogMetadata log_metadata_of(const nlohmann::json& robot);
+
 /// Writes what a viewer wants to keep into a log of its own, beside gaitd's, and makes its report:
 /// it works over a network too, and costs gaitd nothing but the frames.
 class Recorder {

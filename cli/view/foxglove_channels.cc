@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/view/foxglove_channels.h"
+
+#include <boost/beast/core/detail/base64.hpp>
+#include <cmath>
+#include <utility>
+
+#include "cli/view/recorder.h"
+#include "daemon/log/log_format.h"
+#include "daemon/telemetry/signal_schema.h"
+
+namespace gaitd::cli {
+namespace {
+
+std::string base64(const std::string& bytes) {
+  namespace codec = boost::beast::detail::base64;
+  std::string text(codec::encoded_size(bytes.size()), '\0');
+  text.resize(codec::encode(text.data(), bytes.data(), bytes.size()));
+  return text;
+}
+
+}  // namespace
+
+std::uint64_t to_nanoseconds(double time) {
+  return time > 0.0 && time < 1e10 ? static_cast<std::uint64_t>(std::llround(time * 1e9)) : 0;
+}
+
+FoxgloveChannels::FoxgloveChannels(const nlohmann::json& robot, const daemon::SignalTable& table,
+                                   OnMessage on_message)
+    : on_message_(std::move(on_message)), codec_(table), width_(table.size()) {
+  signals_ =
+      add_channel(add_schema(daemon::kSignalsMessage, "protobuf", daemon::signal_schema(table)),
+                  daemon::kSignalsTopic, "protobuf", {});
+  events_ = add_channel(add_schema(daemon::kEventMessage, "protobuf", daemon::records_schema()),
+                        daemon::kEventsTopic, "protobuf", {});
+  scene_ = daemon::SceneTopics::create(log_metadata_of(robot), table);
+  if (scene_) scene_->add_channels(this);
+}
+
+FoxgloveChannels::~FoxgloveChannels() = default;
+
+void FoxgloveChannels::add(const LiveFrame& frame) {
+  if (frame.values.size() != width_) return;
+  const std::uint64_t time_ns = to_nanoseconds(frame.time);
+  codec_.append(frame.values, &begin_message(signals_, time_ns));
+  end_message();
+  if (scene_) scene_->write(time_ns, frame.values, this);
+}
+
+void FoxgloveChannels::add(const daemon::Event& event) {
+  records_.append_event(event, &begin_message(events_, to_nanoseconds(event.time)));
+  end_message();
+}
+
+void FoxgloveChannels::begin_again() {
+  if (scene_) scene_->begin_again();
+}
+
+std::uint16_t FoxgloveChannels::add_schema(const std::string& name, const std::string& encoding,
+                                           const std::string& data) {
+  schemas_.push_back({name, encoding, base64(data)});
+  return static_cast<std::uint16_t>(schemas_.size());
+}
+
+std::uint16_t FoxgloveChannels::add_channel(std::uint16_t schema, const std::string& topic,
+                                            const std::string& message_encoding,
+                                            const std::map<std::string, std::string>&) {
+  const auto id = static_cast<std::uint16_t>(list_.size() + 1);
+  const Schema& of = schemas_[schema - 1u];
+  list_.push_back({{"id", id},
+                   {"topic", topic},
+                   {"encoding", message_encoding},
+                   {"schemaName", of.name},
+                   {"schemaEncoding", of.encoding},
+                   {"schema", of.data}});
+  return id;
+}
+
+std::string& FoxgloveChannels::begin_message(std::uint16_t channel, std::uint64_t time_ns) {
+  channel_ = channel;
+  time_ns_ = time_ns;
+  message_.clear();
+  return message_;
+}
+
+void FoxgloveChannels::end_message() { on_message_(channel_, time_ns_, message_); }
+
+}  // namespace gaitd::cli
