@@ -56,4 +56,6 @@ test('events are read as they come', () => {
   assert.equal(sentence(parsed({kind: 'note', text: 'no {JSON'})), 'no {JSON');
   const push = parsed({kind: 'command', text: '{"push":"utorso","force":[1,2,3]}'});
   assert.equal(subject(push), subject(parsed({kind: 'command', text: '{"push":"utorso","force":[3,2,1]}'})));
+  assert.equal(sentence({text: {request: 7, force: [1.23456789], accepted: true, command: 'sim.push'}}),
+               'command sim.push, accepted true, force [1.2346]');
 });
