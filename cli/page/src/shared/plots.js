@@ -170,7 +170,7 @@ export function timePlot(log, panel, player, element, width, height, options = {
   };
   const plot = new uPlot({
     width, height, cursor: {sync: {key: 'time'}, ...options.cursor},
-    scales: {x: {time: false, ...options.x}, states: {range: [0, 1]}},
+    scales: {x: {time: false, ...options.x}, states: {range: [0, 1]}, ...(options.y && {y: options.y})},
     axes: [{...axis('s', {labelSize: 16, size: 32}), ...options.axis}, axis(panel.unit, {size: 56})],
     series: [{label: 't'}, ...lines.map(({label, one, k, i}) => ({
         label: named(log, one, label), stroke: lineColor(i, k), width: 1, dash: k ? [6, 4] : undefined})),
