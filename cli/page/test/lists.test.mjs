@@ -72,5 +72,6 @@ test('a plot shows all, little more, and not the noise of a robot that stands', 
 
 test('who refuses is named once', () => {
   assert.equal(refused('drive', {message: 'drive: no'}), 'drive: no');
+  assert.equal(refused('Arm', {message: 'arm: no'}), 'arm: no');
   assert.equal(refused('Walk', {message: 'footstep 1: no'}), 'Walk: footstep 1: no');
 });
