@@ -3,7 +3,9 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import {parsed, sentence, subject} from '../src/view/event_list.js';
 import {grouped, isChanged, shown, stepOf} from '../src/view/parameter_list.js';
+import {refused} from '../src/view/refused.js';
 import {obstacle} from '../src/view/rights.js';
+import {roundRange} from '../src/view/round_range.js';
 import {kMostForce, springForce} from '../src/view/spring.js';
 
 const kThere = {online: true, connected: true, role: 'administer', simulation: true, status: {state: 'standing'}};
@@ -56,4 +58,20 @@ test('events are read as they come', () => {
   assert.equal(sentence(parsed({kind: 'note', text: 'no {JSON'})), 'no {JSON');
   const push = parsed({kind: 'command', text: '{"push":"utorso","force":[1,2,3]}'});
   assert.equal(subject(push), subject(parsed({kind: 'command', text: '{"push":"utorso","force":[3,2,1]}'})));
+  assert.equal(sentence({text: {request: 7, force: [1.23456789], accepted: true, command: 'sim.push'}}),
+               'command sim.push, accepted true, force [1.2346]');
+});
+
+test('a plot shows all, little more, and not the noise of a robot that stands', () => {
+  for (const [low, high, least] of [[1.1768, 1.1769, 0.05], [-3, 5, 0.05], [0, 0, 100], [2, 2, 0], [-0.2, 0.15, 0.1]]) {
+    const [from, to] = roundRange(low, high, least), span = Math.max(high - low, least);
+    assert.ok(from < low && to > high && to - from >= least && to - from <= (span || 1) * 2.2, `${from} to ${to}`);
+  }
+  assert.deepEqual(roundRange(null, null, 0.1), [0, 0.1]);
+});
+
+test('who refuses is named once', () => {
+  assert.equal(refused('drive', {message: 'drive: no'}), 'drive: no');
+  assert.equal(refused('Arm', {message: 'arm: no'}), 'arm: no');
+  assert.equal(refused('Walk', {message: 'footstep 1: no'}), 'Walk: footstep 1: no');
 });

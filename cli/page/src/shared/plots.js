@@ -72,7 +72,6 @@ function pushMarks(log) {
     const {ctx, bbox} = plot;
     ctx.save();
     ctx.font = `${10 * devicePixelRatio}px sans-serif`;
-    ctx.textAlign = 'left';
     ctx.textBaseline = 'top';
     for (const {time, duration, force} of log.all.flatMap((one) => one.pushes)) {
       const left = plot.valToPos(time, 'x', true), right = plot.valToPos(time + duration, 'x', true);
@@ -80,7 +79,10 @@ function pushMarks(log) {
       ctx.fillStyle = `${kPushColor}40`;
       ctx.fillRect(left, bbox.top, Math.max(devicePixelRatio, right - left), bbox.height);
       ctx.fillStyle = kPushColor;
-      ctx.fillText(`push, ${Math.hypot(...force).toFixed(0)} N`, right + 3, bbox.top + 5 * devicePixelRatio);
+      const text = `push, ${Math.hypot(...force).toFixed(0)} N`, top = bbox.top + 5 * devicePixelRatio;
+      const fits = right + 3 + ctx.measureText(text).width < bbox.left + bbox.width;
+      ctx.textAlign = fits ? 'left' : 'right';
+      ctx.fillText(text, fits ? right + 3 : left - 3, top);
     }
     ctx.restore();
   }]}};
@@ -168,7 +170,7 @@ export function timePlot(log, panel, player, element, width, height, options = {
   };
   const plot = new uPlot({
     width, height, cursor: {sync: {key: 'time'}, ...options.cursor},
-    scales: {x: {time: false, ...options.x}, states: {range: [0, 1]}},
+    scales: {x: {time: false, ...options.x}, states: {range: [0, 1]}, ...(options.y && {y: options.y})},
     axes: [{...axis('s', {labelSize: 16, size: 32}), ...options.axis}, axis(panel.unit, {size: 56})],
     series: [{label: 't'}, ...lines.map(({label, one, k, i}) => ({
         label: named(log, one, label), stroke: lineColor(i, k), width: 1, dash: k ? [6, 4] : undefined})),

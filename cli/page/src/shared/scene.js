@@ -103,6 +103,7 @@ export class Scene {
     this.watcher.disconnect();
     this.controls.dispose();
     this.renderer.dispose?.();
+    this.renderer.forceContextLoss?.();  // a page may have few of them
     this.renderer.domElement.remove();
   }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import {refused} from './refused.js';
 
 const kPeriod = 100;   // ms between renewals
 const kUnanswered = 3; // requests after which nothing more is sent until gaitd answers
@@ -73,7 +74,7 @@ export class Drive extends EventTarget {
       if (run === this.driving) this.say(note ?? '');
     } catch (error) {
       if (run === this.driving) this.fail('drive', error);
-      else if (!last && !run.failed) this.tell(`drive: ${error.message}`, true);
+      else if (!last && !run.failed) this.tell(refused('drive', error), true);
       run.failed = true;
     } finally {
       --this.unanswered;
@@ -98,7 +99,7 @@ export class Drive extends EventTarget {
     this.driving = undefined;
     this.sent = false;
     this.blocked = true;
-    this.tell(`${what}: ${error.message}`, true);
+    this.tell(refused(what, error), true);
     this.say('');
     this.changed();
   }

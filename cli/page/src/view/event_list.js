@@ -11,17 +11,24 @@ export function parsed(event) {
   }
 }
 
+// Those that say once more what others say: gaitd plays them again in a replay.
+export const isTwin = ({kind}) => kind === 'input' || kind === 'reply';
+
 // What it is about: events of the same follow each other by the dozen while somebody drives or pushes.
 export function subject({kind, text}) {
-  const what = text?.command ?? text?.push;
+  const what = text?.push ?? text?.command;
   return kind !== 'fault' && what ? `${kind} ${what} ${text.accepted ?? ''}` : undefined;
 }
+
+const kFirst = ['command', 'push', 'accepted'], kLeftOut = ['request', 'body'];
 
 const shorter = (_, value) => typeof value === 'number' ? Number(value.toPrecision(5)) : value;
 
 // In a line.
 export function sentence({text}) {
   if (typeof text === 'string') return text;
-  return Object.entries(text ?? {}).map(([key, value]) =>
+  const place = ([key]) => kFirst.includes(key) ? kFirst.indexOf(key) : kFirst.length;
+  return Object.entries(text ?? {}).filter(([key]) => !kLeftOut.includes(key))
+      .sort((a, b) => place(a) - place(b)).map(([key, value]) =>
       `${key} ${typeof value === 'string' ? value : JSON.stringify(value, shorter)}`).join(', ');
 }

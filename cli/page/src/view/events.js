@@ -1,27 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-import {$, make, say} from './dom.js';
-import {sentence, subject} from './event_list.js';
+import {$, say} from './dom.js';
+import {isTwin, sentence, subject} from './event_list.js';
 
 const kMost = 200;
+const kNear = 4;  // lines among which one of the same is looked for
 
-// The newest above; a run of the same is one line that counts.
+// The newest above; events of the same are one line that counts.
 export class Events {
+  constructor() {
+    this.newest = [];  // lines: {about, count, row}
+  }
+
   add(event) {
+    if (isTwin(event)) return;
     const about = subject(event);
-    if (about !== undefined && about === this.about) {
-      ++this.count;
-    } else {
-      this.about = about;
-      this.count = 1;
-      this.row = $('events').insertRow(0);
-      for (let i = 0; i < 3; ++i) this.row.insertCell();
-      this.row.className = event.kind === 'fault' ? 'fail' : '';
-      const rows = $('events').rows;
+    let line = about && this.newest.find((one) => one.about === about);
+    if (!line) {
+      line = {about, count: 0, row: $('events').insertRow(0)};
+      for (let i = 0; i < 3; ++i) line.row.insertCell();
+      line.row.className = event.kind === 'fault' ? 'fail' : '';
+      this.newest = [line, ...this.newest.slice(0, kNear - 1)];
+      const {rows} = $('events');
       if (rows.length > kMost) rows[rows.length - 1].remove();
     }
-    const [time, kind, text] = this.row.cells;
+    const [time, kind, text] = line.row.cells, times = ++line.count;
     say(time, `${event.time.toFixed(2)} s`);
     say(kind, event.kind);
-    say(text, sentence(event) + (this.count > 1 ? ` (${this.count} times)` : ''));
+    say(text, sentence(event) + (times > 1 ? ` (${times} times)` : ''));
   }
 }

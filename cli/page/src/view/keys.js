@@ -37,7 +37,7 @@ export function listenToKeys(actions) {
     if (key === ' ') {
       // Also on a button that has the focus: who has just clicked Walk wants to stop, not to walk again.
       event.preventDefault();
-      if (!repeat) actions.stop();
+      if (!repeat) (target.id === 'estop' ? actions.estop : actions.stop)();
     } else if (key === '?') {
       toggleList();
     } else if (repeat ? actions.isDriving(code) : actions.driveDown(code)) {

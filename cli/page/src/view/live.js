@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Signals} from '../shared/signals.js';
 
-const kSeconds = 30, kRate = 60;  // that are kept
+const kSeconds = 30, kRate = 100;  // that are kept, frames/s at most
 const kOfOnePush = 0.25;  // s between parts of it: who drags a link sends many
 
 // What a running robot did in the last seconds. Every column is twice as long as what is kept, so that

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import {panels, timePlot} from '../shared/plots.js';
 import {make} from './dom.js';
+import {roundRange} from './round_range.js';
 
 const kHeight = 165;
 const kPeriod = 100;  // ms between drawings of a plot
+
+// Of a robot that stands still nobody wants to see the micrometres: the least that a plot shows.
+const kLeast = {m: 0.05, rad: 0.1, '1': 0.1, N: 100, 'm, s': 0.05, 'µs': 100};
 
 // Plots of the last seconds that scroll. `draw(now)` with each frame of the robot draws one of them at
 // most, of those in view, so that the robot does not wait for all.
@@ -20,10 +24,10 @@ export class LivePlots {
     this.sizes.observe(element);
     for (const panel of panels(live)) {
       const box = make('div', {id: `plot-${panel.id}`},
-                       make('h2', {}, panel.title, make('small', {textContent: ` ${panel.unit}`})));
+                       make('h2', {}, panel.title, make('small', {textContent: panel.unit === '1' ? '' : ` ${panel.unit}`})));
       box.style.minHeight = `${kHeight + 20}px`;  // until it is made
       element.append(box);
-      this.boxes.push({panel: {...panel, unit: undefined}, box, drawn: 0});
+      this.boxes.push({panel: {...panel, unit: undefined}, box, drawn: 0, least: kLeast[panel.unit] ?? 0});
       this.watcher.observe(box);
     }
   }
@@ -51,10 +55,10 @@ export class LivePlots {
     if (due.plot.cursor.left < 0) due.plot.setLegend({idx: this.live.rows - 1}, false);
   }
 
-  makePlot({panel, box}) {
+  makePlot({panel, box, least}) {
     const range = () => [this.live.end - this.seconds(), this.live.end];
     return timePlot(this.live, panel, undefined, box, this.width, kHeight, {
-      x: {range}, cursor: {drag: {x: false, y: false}}, axis: {label: undefined, size: 26},
+      x: {range}, y: {range: (_, low, high) => roundRange(low, high, least)}, cursor: {drag: {x: false, y: false}}, axis: {label: undefined, size: 26},
     });
   }
 

@@ -30,7 +30,7 @@ const kDriveAnswer = 2, kPushAnswer = 2;  // s
 
 const connection = new Connection(
     `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/live`, takeToken(),
-    {answersAt: async () => (await fetch('/', {cache: 'no-store'})).ok});
+    {answersAt: async () => Boolean(await fetch('/', {method: 'HEAD', cache: 'no-store'}))});
 const state = new State(connection);
 const call = (...request) => connection.call(...request);
 const congested = () => connection.congested;
@@ -113,6 +113,7 @@ function letGo() {
   stage?.push.release();
 }
 addEventListener('blur', letGo);
+addEventListener('pagehide', letGo);
 const tellRate = () => connection.send({type: 'rate', hz: document.hidden ? kHiddenRate : kShownRate});
 document.addEventListener('visibilitychange', () => {
   if (document.hidden) letGo();

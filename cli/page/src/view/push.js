@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import {PushArrow} from '../shared/push_arrow.js';
 import {say} from './dom.js';
+import {refused} from './refused.js';
 import {springForce} from './spring.js';
 
 const kPeriod = 50;      // ms between the parts of a push
@@ -124,7 +125,7 @@ export class Push {
       await this.call('sim.push', {link: this.grabbed.link.urdfName, force, duration: kDuration,
                                    point: this.grabbed.point.toArray()});
     } catch (error) {
-      if (!this.refused) this.tell(`push: ${error.message}`, true);
+      if (!this.refused) this.tell(refused('sim.push', error), true);
       this.refused = true;  // until it is grabbed again
     } finally {
       --this.unanswered;

@@ -14,6 +14,7 @@ export function addRecord(state, connection, newest) {
   };
   connection.addEventListener('record', ({detail}) => {
     now = detail;
+    if (detail.log && !detail.error) tell(`Recorded: ${detail.log}`);
     if (detail.error) tell(`Recording: ${detail.error}`, true);
     show();
   });

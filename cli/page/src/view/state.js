@@ -7,7 +7,7 @@ export class State extends EventTarget {
   constructor(connection) {
     super();
     Object.assign(this, {online: false, connected: false, role: 'observe', simulation: false,
-                         viewers: undefined, reason: '', status: undefined});
+                         viewers: undefined, reason: '', status: undefined, silent: 0});
     const on = (type, change) => connection.addEventListener(type, ({detail}) => {
       change(detail);
       this.dispatchEvent(new Event('change'));
@@ -20,9 +20,9 @@ export class State extends EventTarget {
     on('robot', ({connected, reason = '', simulation = false, name = this.name}) => {
       Object.assign(this, {connected, reason, simulation, name});
     });
-    connection.addEventListener('status', ({detail: {status}}) => {
+    connection.addEventListener('status', ({detail: {status, silent = 0}}) => {
       const changed = status?.state !== this.status?.state;
-      this.status = status;
+      Object.assign(this, {status, silent});  // s since gaitd answered: the status is how it was then
       if (changed) this.dispatchEvent(new Event('change'));
       this.dispatchEvent(new Event('status'));
     });

@@ -3,6 +3,7 @@ import {$, make, say} from './dom.js';
 
 const number = (value, digits) => typeof value === 'number' ? value.toFixed(digits) : '–';
 const kMega = 1e6;
+const kForget = 5000, kManyLost = 100;  // ms, frames in that time: a few are no reason for words
 
 // Label and text of each line; '' is left blank.
 const kLines = [
@@ -30,6 +31,9 @@ function alerts(state, connection, view) {
     found.push([`gaitd is away${state.reason ? `: ${state.reason}` : ''}; trying again`, 'bad']);
   } else if (status) {
     if (status.faults?.length) found.push([`FAULT: ${status.faults.join(', ')} – reset, then arm`, 'bad']);
+    if (state.silent > 1) {
+      found.push([`gaitd has not answered for ${number(state.silent, 0)} s: all that is shown may be old`, 'bad']);
+    }
     if (status.stale) {
       found.push([`The control loop hangs: its last round was ${number(status.age, 1)} s ago`, 'bad']);
     }
@@ -41,7 +45,7 @@ function alerts(state, connection, view) {
   if (state.role === 'observe') {
     found.push(['Watching only: this address may stop the robot, nothing else', 'note']);
   }
-  if (view.lost) found.push([`This connection was too slow for ${view.lost} frames`, 'note']);
+  if (view.lost > kManyLost) found.push([`This connection was too slow for ${view.lost} frames`, 'note']);
   return found;
 }
 
@@ -79,8 +83,10 @@ export function addStatus(state, connection) {
   });
   connection.addEventListener('lost', ({detail}) => {
     view.lost += detail.frames;
-    clearTimeout(forget);
-    forget = setTimeout(() => { view.lost = 0; }, 5000);
+    forget ??= setTimeout(() => {
+      view.lost = 0;
+      forget = undefined;
+    }, kForget);
   });
   change();
 }

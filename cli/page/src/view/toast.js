@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {$, make} from './dom.js';
+import {refused} from './refused.js';
 
 const kMost = 4, kGood = 4000, kBad = 12000;  // ms that they stay
 const shown = new Map();  // by their text
@@ -33,7 +34,7 @@ export async function told(what, answer) {
     if (result?.note) tell(`${what}: ${result.note}`);
     return result;
   } catch (error) {
-    tell(`${what}: ${error.message}`, true);
+    tell(refused(what, error), true);
     return undefined;
   }
 }
