@@ -40,6 +40,22 @@ cmp -s first.txt second.txt || fail "another fingerprint after a restart: $(cat 
 chmod 644 "$HOME/.config/gaitd/view.pem"
 expect 1 gaitctl view --listen 0.0.0.0:0 2>readable.txt
 grep -q 'chmod 600' readable.txt || fail "a key that others can read: $(cat readable.txt)"
+chmod 600 "$HOME/.config/gaitd/view.pem"
+
+# What docs/view.md tells people to type prints addresses; at a port that is free.
+mapfile -t commands < <(grep -E '^gaitctl (--json )?view' "$GAITD_SOURCE/docs/view.md" | grep -v -e --open)
+((${#commands[@]} >= 5)) || fail "docs/view.md has only ${#commands[@]} commands"
+for command in "${commands[@]}"; do
+  [[ $command == *--listen* ]] || command+=' --listen 127.0.0.1:0'
+  read -ra words <<<"${command/:8765/:0}"
+  printf '$ %s\n' "${words[*]}"
+  "${words[@]}" >shown.txt 2>view.txt &
+  view=$!
+  for _ in {1..100}; do grep -q '#token=' shown.txt && break || sleep 0.1; done
+  grep -qE 'https?://[^ ]+/#token=[0-9a-f]{32}' shown.txt || fail "no address: $(cat shown.txt view.txt)"
+  if [[ $command == *--watch-only* && $(grep -c '#token=' shown.txt) != 1 ]]; then fail "not only to watch: $(cat shown.txt)"; fi
+  end_view
+done
 
 start_view --listen 127.0.0.1:0
 expect 0 python3 "$GAITD_SOURCE/tests/view_server.py" pages.json
