@@ -215,6 +215,11 @@ const fault = async (who, press) => {
     await state(one, 'fault');
     await shows(one, '#alerts', /FAULT: estop/);
   }
+  // It falls, and lies where it is drawn, not below the ground.
+  await sleep(2000);
+  const {time, pelvis} = await page.evaluate(() => gaitd.drawn);
+  const lies = Math.hypot(...truth.of(time).pelvis.map((value, i) => value - pelvis[i]));
+  check(lies < kApart && truth.newest.pelvis[2] < 0.6, `it lies ${lies} m from where it is drawn`);
 };
 const recover = async () => {
   await page.locator('#reset').click();

@@ -60,6 +60,8 @@ test('events are read as they come', () => {
   assert.equal(subject(push), subject(parsed({kind: 'command', text: '{"push":"utorso","force":[3,2,1]}'})));
   assert.equal(sentence({text: {request: 7, force: [1.23456789], accepted: true, command: 'sim.push'}}),
                'command sim.push, accepted true, force [1.2346]');
+  assert.equal(sentence({text: {faults: ['estop', 'overrun'], state: 'fault'}}), 'faults estop overrun, state fault');
+  assert.equal(sentence({text: {faults: [], state: 'standing'}}), 'state standing');
 });
 
 test('a plot shows all, little more, and not the noise of a robot that stands', () => {

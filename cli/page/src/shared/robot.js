@@ -40,8 +40,9 @@ export class Robot {
 
   show(row) {
     const {log, pelvis} = this;
-    pelvis.position.set(...log.point('pelvis', row));
-    pelvis.rotation.set(...['roll', 'pitch', 'yaw'].map((a) => log.value(`pelvis/${a}`, row)), 'ZYX');
+    const from = log.drawnBy ?? 'pelvis';
+    pelvis.position.set(...log.point(from, row));
+    pelvis.rotation.set(...['roll', 'pitch', 'yaw'].map((a) => log.value(`${from}/${a}`, row)), 'ZYX');
     for (const {joint, signal} of this.joints) joint.setJointValue(log.value(signal, row));
   }
 

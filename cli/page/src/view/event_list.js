@@ -28,7 +28,10 @@ const shorter = (_, value) => typeof value === 'number' ? Number(value.toPrecisi
 export function sentence({text}) {
   if (typeof text === 'string') return text;
   const place = ([key]) => kFirst.includes(key) ? kFirst.indexOf(key) : kFirst.length;
-  return Object.entries(text ?? {}).filter(([key]) => !kLeftOut.includes(key))
+  const isNothing = (value) => Array.isArray(value) && !value.length;
+  const isWords = (value) => Array.isArray(value) && value.every((one) => typeof one === 'string');
+  return Object.entries(text ?? {}).filter(([key, value]) => !kLeftOut.includes(key) && !isNothing(value))
       .sort((a, b) => place(a) - place(b)).map(([key, value]) =>
-      `${key} ${typeof value === 'string' ? value : JSON.stringify(value, shorter)}`).join(', ');
+      `${key} ${typeof value === 'string' ? value : isWords(value) ? value.join(' ') : JSON.stringify(value, shorter)}`)
+      .join(', ');
 }

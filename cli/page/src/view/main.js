@@ -138,6 +138,9 @@ connection.addEventListener('robot', ({detail}) => {
   parameters.load();
   layers.load();
 });
+state.addEventListener('status', () => {
+  if (stage) stage.fallen = state.simulation && state.status?.state === 'fault';
+});
 connection.onframe = (buffer) => stage?.append(buffer);
 
 let settling, changed = new Set();

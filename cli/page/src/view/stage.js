@@ -26,6 +26,12 @@ export class Stage {
     if (this.live.append(buffer)) this.arrived = performance.now();
   }
 
+  // Whoever lies on the ground is nowhere by the estimate: that knows of no contacts but those of feet. Of
+  // a simulation that has fallen, the truth is drawn.
+  set fallen(fallen) {
+    this.live.drawnBy = fallen && this.live.index.has('truth/pelvis/x') ? 'truth/pelvis' : 'pelvis';
+  }
+
   // The newest, once per frame of the screen.
   draw(now, passed) {
     const {live, scene} = this;
