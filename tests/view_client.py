@@ -42,6 +42,9 @@ def get(port, path, headers=(), host=None):
 
 
 class Viewer:
+    def fileno(self):
+        return self.connection.fileno()
+
     def __init__(self, port, token, origin=None, host=None, path="/live"):
         self.port = port
         lines = [f"GET {path} HTTP/1.1", f"Host: {host or f'127.0.0.1:{port}'}", "Upgrade: websocket",
