@@ -124,6 +124,25 @@ for what, message in [("pings", ping), ("requests", request)]:
     still_there(f"a flood of {what}, {sent / 1e6:.1f} MB")
     for flooder in flooders:
         flooder.close()
+
+# Who goes on asking and reads nothing is dropped, without being asked to take a goodbye.
+def descriptors():
+    return len(os.listdir(f"/proc/{process}/fd"))
+
+
+time.sleep(1)
+open_before = descriptors()
+deaf = Viewer(port, token["command"])
+deaf.connection.setblocking(False)
+end = time.monotonic() + 60
+while descriptors() > open_before:
+    check(time.monotonic() < end, "who reads nothing stays")
+    try:
+        deaf.connection.send(request * 50)
+    except (BlockingIOError, ConnectionError):
+        pass
+    time.sleep(0.02)
+still_there("who reads nothing")
 check(memory() < before + 150, f"memory went from {before:.0f} to {memory():.0f} MB")
 
 # Handshakes that do not go on, and requests of all kinds.
