@@ -40,7 +40,7 @@ fs::path find_browser() {
   std::string rest = path == nullptr ? "" : path;
   while (!rest.empty()) {
     const std::size_t colon = rest.find(':');
-    const fs::path file = fs::path(rest.substr(0, colon)) / "chromium";
+    fs::path file = fs::path(rest.substr(0, colon)) / "chromium";
     std::error_code ignored;
     if (fs::exists(file, ignored)) return file;
     rest = colon == std::string::npos ? "" : rest.substr(colon + 1);
