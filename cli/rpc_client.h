@@ -28,13 +28,21 @@ struct Destination {
   static Destination of(const std::string& socket, daemon::Role role);
 };
 
+/// A descriptor connected to the first place where a daemon listens, by a socket whose role is
+/// enough if this user may use one, and the path of that in `reached`. It looks no further where
+/// somebody listens whom this user may not speak to, or who is not to be believed, or who takes
+/// nobody in. -1 if there is none: `error` names the places, why each failed, and how to start a
+/// daemon.
+int connect_to_gaitd(const Destination& destination, std::string* reached, std::string* error);
+
+/// Whether a line from gaitd is an answer at all; what it says.
+bool is_answer(const nlohmann::json& line);
+daemon::RpcResult result_of(const nlohmann::json& answer);
+
 /// A blocking connection to gaitd, one request at a time.
 class RpcClient {
  public:
-  /// Connects to the first place where a daemon listens, by a socket whose role is enough if this
-  /// user may use one. It looks no further where somebody listens whom this user may not speak to,
-  /// or who is not to be believed, or who takes nobody in. Null if there is none: `error` names the
-  /// places, why each failed, and how to start a daemon.
+  /// By connect_to_gaitd. Null with `error` if there is nobody.
   static std::unique_ptr<RpcClient> connect(const Destination& destination, std::string* error);
   ~RpcClient();
   RpcClient(const RpcClient&) = delete;
