@@ -6,7 +6,7 @@ prefix=$scratch/prefix
   fail "cmake --install failed: $(tail -n 3 "$scratch/install.txt")"
 for file in bin/gaitd bin/gaitctl etc/gaitd/gaitd.yaml share/gaitd/robots/atlas/robot.yaml \
   share/gaitd/robots/atlas/atlas.urdf share/gaitd/scenarios/flat-0.35.yaml \
-  share/gaitd/campaigns/model-errors.yaml \
+  share/gaitd/campaigns/model-errors.yaml share/gaitd/foxglove-layout.json \
   lib/gaitd/plugins/backend/simbody.so include/gaitd/abi/plugin.h \
   lib/cmake/gaitd/gaitd-config.cmake lib/libgaitd_walking.a include/gaitd/walking/icp_reference.h \
   share/man/man1/gaitctl.1 share/man/man8/gaitd.8 share/zsh/site-functions/_gaitctl \

@@ -10,10 +10,56 @@ expect 3 gaitctl view 2>none.txt
 grep -q 'no gaitd can be reached' none.txt || fail "without a gaitd: $(cat none.txt)"
 start_daemon --set clock=realtime --set log.enabled=false
 expect 2 gaitctl view --listen nowhere 2>/dev/null
-gaitctl --json view --listen 127.0.0.1:0 >pages.json 2>view.txt &
-view=$!
-for _ in {1..100}; do grep -q '}' pages.json && break || sleep 0.1; done
+
+view=
+trap '[[ -z $view ]] || kill "$view" 2>/dev/null; clean_up' EXIT
+# start_view ARGUMENTS...: in the background; pages.json has its addresses.
+start_view() {
+  gaitctl --json view "$@" >pages.json 2>view.txt &
+  view=$!
+  for _ in {1..100}; do grep -q '}' pages.json && return || sleep 0.1; done
+  fail "view prints no address: $(cat view.txt)"
+}
+
+# end_view: on SIGTERM.
+end_view() {
+  local code=0
+  kill -TERM "$view"
+  wait "$view" || code=$?
+  view=
+  ((code == 0)) || fail "view ended with $code on SIGTERM: $(cat view.txt)"
+}
+
+# To other machines: only by TLS, whose certificate stays, and only while nobody else knows its key.
+for start in first second; do
+  start_view --listen '[::]:0'
+  expect 0 python3 "$GAITD_SOURCE/tests/view_tls.py" pages.json | tee "$start.txt"
+  end_view
+done
+cmp -s first.txt second.txt || fail "another fingerprint after a restart: $(cat first.txt second.txt)"
+chmod 644 "$HOME/.config/gaitd/view.pem"
+expect 1 gaitctl view --listen 0.0.0.0:0 2>readable.txt
+grep -q 'chmod 600' readable.txt || fail "a key that others can read: $(cat readable.txt)"
+chmod 600 "$HOME/.config/gaitd/view.pem"
+
+# What docs/view.md tells people to type prints addresses; at a port that is free.
+mapfile -t commands < <(grep -E '^gaitctl (--json )?view' "$GAITD_SOURCE/docs/view.md" | grep -v -e --open)
+((${#commands[@]} >= 5)) || fail "docs/view.md has only ${#commands[@]} commands"
+for command in "${commands[@]}"; do
+  [[ $command == *--listen* ]] || command+=' --listen 127.0.0.1:0'
+  read -ra words <<<"${command/:8765/:0}"
+  printf '$ %s\n' "${words[*]}"
+  "${words[@]}" >shown.txt 2>view.txt &
+  view=$!
+  for _ in {1..100}; do grep -q '#token=' shown.txt && break || sleep 0.1; done
+  grep -qE 'https?://[^ ]+/#token=[0-9a-f]{32}' shown.txt || fail "no address: $(cat shown.txt view.txt)"
+  if [[ $command == *--watch-only* && $(grep -c '#token=' shown.txt) != 1 ]]; then fail "not only to watch: $(cat shown.txt)"; fi
+  end_view
+done
+
+start_view --listen 127.0.0.1:0
 expect 0 python3 "$GAITD_SOURCE/tests/view_server.py" pages.json
+expect 0 python3 "$GAITD_SOURCE/tests/view_hostile.py" pages.json "$view"
 expect 0 gaitctl log info gaitd-view-*.mcap >info.txt
 grep -q 'atlas' info.txt || fail "the recording does not know its robot: $(cat info.txt)"
 
@@ -42,7 +88,4 @@ again.terminate()
 assert again.wait(30) == 0
 PYTHON
 daemon=
-kill -TERM "$view"
-code=0
-wait "$view" || code=$?
-((code == 0)) || fail "view ended with $code on SIGTERM: $(cat view.txt)"
+end_view

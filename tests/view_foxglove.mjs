@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // `gaitctl view` as Foxglove sees it, by Foxglove's own library of the protocol.
-// view_foxglove.mjs NODE_MODULES ws://HOST/?token=… role
+// view_foxglove.mjs NODE_MODULES ws://HOST/?token=… role LAYOUT
+import {readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 
-const [, , modules, address, role] = process.argv;
+const [, , modules, address, role, layout] = process.argv;
 const require = createRequire(modules + '/');
 const {FoxgloveClient} = require('@foxglove/ws-protocol');
 const {WebSocket} = require('ws');
@@ -37,11 +38,36 @@ const topics = new Map(channels.map((channel) => [channel.topic, channel]));
 for (const topic of ['/gaitd/signals', '/gaitd/events', '/tf', '/joint_states', '/scene', '/robot_description']) {
   check(topics.has(topic), `no channel ${topic}: ${[...topics.keys()]}`);
 }
+const set = (channel) => descriptor.FileDescriptorSet.decode(Buffer.from(channel.schema, 'base64'));
+const typeOf = (channel) => protobuf.Root.fromDescriptor(set(channel)).lookupType(channel.schemaName);
 function decoder(channel) {
-  const set = descriptor.FileDescriptorSet.decode(Buffer.from(channel.schema, 'base64'));
-  const type = protobuf.Root.fromDescriptor(set).lookupType(channel.schemaName);
+  const type = typeOf(channel);
   return (data) => type.decode(new Uint8Array(data.buffer, data.byteOffset, data.byteLength));
 }
+
+// What the layout shows is there.
+const panels = JSON.parse(readFileSync(layout, 'utf8'));
+const shownPaths = [];
+for (const {topics: of = {}, layers = {}, paths = [], topicPath} of Object.values(panels.configById)) {
+  shownPaths.push(...Object.keys(of), ...paths.map(({value}) => value), ...(topicPath ? [topicPath] : []),
+                  ...Object.values(layers).map(({topic}) => topic).filter(Boolean));
+}
+check(shownPaths.length > 20, `the layout shows ${shownPaths}`);
+for (const path of shownPaths) {
+  const [topic, ...fields] = path.split('.');
+  check(topics.has(topic), `the layout shows ${path}: no such channel`);
+  let type = typeOf(topics.get(topic));
+  for (const field of fields) {
+    const found = type?.fields?.[field] ?? type?.fields?.[protobuf.util.camelCase(field)];
+    check(found, `the layout shows ${path}: no ${field}`);
+    type = found.resolve().resolvedType;
+  }
+  check(!fields.length || !(type instanceof protobuf.Type), `the layout shows ${path}, which is no value`);
+}
+const placed = (node) => typeof node === 'string' ? [node] : [...placed(node.first), ...placed(node.second)];
+check(placed(panels.layout).sort().join() === Object.keys(panels.configById).sort().join(),
+      `the layout places ${placed(panels.layout)}`);
+
 const newest = new Map();
 const decode = new Map();
 client.on('message', ({subscriptionId, timestamp, data}) => {

@@ -8,6 +8,7 @@
 #include <openssl/rand.h>
 #include <openssl/x509.h>
 #include <openssl/x509v3.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -91,6 +92,12 @@ std::string write_private(const std::string& file, const std::string& text) {
   return done ? "" : file + ": cannot write: " + std::strerror(error);
 }
 
+// Whoever else can read the key can be this server.
+bool is_private(const std::string& file) {
+  struct stat status {};
+  return ::stat(file.c_str(), &status) == 0 && (status.st_mode & 077) == 0;
+}
+
 std::string fingerprint_of(const std::string& file) {
   const Bio in(BIO_new_file(file.c_str(), "r"));
   const Cert certificate(in ? PEM_read_bio_X509(in.get(), nullptr, nullptr, nullptr) : nullptr);
@@ -123,6 +130,11 @@ Certificate own_certificate(const std::string& file, std::string* error) {
     *error =
         pem.empty() ? "cannot make a certificate: " + openssl_error() : write_private(file, pem);
     if (!error->empty()) return {};
+  }
+  if (!is_private(file)) {
+    *error =
+        file + ": others can read the key in it; chmod 600, or remove it, and a new one is made";
+    return {};
   }
   Certificate result;
   auto context = std::make_shared<ssl::context>(ssl::context::tls_server);

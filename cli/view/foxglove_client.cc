@@ -92,10 +92,12 @@ std::string FoxgloveClient::choose_protocol(std::string_view offered) {
   return "";
 }
 
-void FoxgloveClient::send(const json& message) {
+void FoxgloveClient::send(const json& message) { send(text_of(message), false); }
+
+void FoxgloveClient::send(const Message& message, bool binary) {
   if (ended_) return;
   if (socket_->waiting_bytes() > kBytesWaiting) return socket_->close("too slow");
-  socket_->send(text_of(message), false);
+  socket_->send(message, binary);
 }
 
 void FoxgloveClient::tell(int level, const std::string& text) {
@@ -152,7 +154,7 @@ void FoxgloveClient::send_time(std::uint64_t time_ns) {
 }
 
 void FoxgloveClient::on_text(std::string_view text) {
-  const json message = json::parse(text, nullptr, false);
+  const json message = parse_message(text);
   const json op = message.is_object() ? message.value("op", json()) : json();
   if (op == "subscribe") {
     subscribe(message.value("subscriptions", json::array()));
@@ -253,7 +255,7 @@ void FoxgloveClient::call(std::uint32_t service, std::uint32_t call, std::string
                 {"message", message}});
   };
   if (service < 1 || service > std::size(kServices)) return fail("no such service");
-  json params = request.empty() ? json() : json::parse(request, nullptr, false);
+  json params = request.empty() ? json() : parse_message(request);
   const std::string method = kServices[service - 1].method;
   if (params.is_discarded() && method != "estop") return fail("expected JSON");
   if (params.is_discarded() || params.empty()) params = nullptr;
@@ -269,7 +271,7 @@ void FoxgloveClient::call(std::uint32_t service, std::uint32_t call, std::string
     append(&bytes, static_cast<std::uint32_t>(kEncoding.size()));
     bytes += kEncoding;
     bytes += answer["result"].dump();
-    self->socket_->send(message_of(std::move(bytes)), true);
+    self->send(message_of(std::move(bytes)), true);
   });
 }
 

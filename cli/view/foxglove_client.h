@@ -42,6 +42,8 @@ class FoxgloveClient : public std::enable_shared_from_this<FoxgloveClient> {
 
  private:
   void send(const nlohmann::json& message);
+  // A client that does not read is dropped.
+  void send(const Message& message, bool binary);
   void tell(int level, const std::string& text);
   void subscribe(const nlohmann::json& subscriptions);
   void get_parameters(const nlohmann::json& message);

@@ -133,7 +133,7 @@ std::string LiveView::choose_protocol(std::string_view path, std::string_view of
 std::shared_ptr<WebPeer> LiveView::open(daemon::Role role, const std::string& protocol,
                                         std::shared_ptr<ViewerSocket> socket) {
   auto relay = std::make_shared<RpcRelay>(role, &connector_);
-  relay->connect();
+  relay->connect_ahead();
   if (protocol != kProtocol) {
     const auto client =
         std::make_shared<FoxgloveClient>(std::move(relay), std::move(socket), [this] {

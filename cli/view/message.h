@@ -4,7 +4,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
+
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::cli {
 
@@ -16,6 +19,28 @@ inline Message message_of(std::string text) {
 }
 inline Message text_of(const nlohmann::json& message) {
   return message_of(message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+/// What came from a browser; discarded if it is no JSON, or nested so deeply that to copy it could
+/// take all of the stack. gaitd takes nothing that deep either.
+inline nlohmann::json parse_message(std::string_view text) {
+  constexpr int kDeepest = bounds::kRequestDepth;
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      in_string = c != '"';
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > kDeepest) return nlohmann::json::value_t::discarded;
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return nlohmann::json::parse(text, nullptr, false);
 }
 
 }  // namespace gaitd::cli

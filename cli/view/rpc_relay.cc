@@ -57,6 +57,10 @@ void RpcRelay::call(const std::string& method, const json& params, Done done) {
   connect();
 }
 
+void RpcRelay::connect_ahead() {
+  if (role_ > Role::kObserve) connect();
+}
+
 void RpcRelay::connect() {
   if (connecting_ || ended_ || link_) return;
   connecting_ = true;
@@ -102,6 +106,7 @@ void RpcRelay::on_line(std::string_view line) {
   answer.erase("id");
   answer.erase("jsonrpc");
   done(std::move(answer));
+  if (role_ == Role::kObserve && asked_.empty() && link_) std::exchange(link_, nullptr)->close();
 }
 
 void RpcRelay::fail_all(const std::string& reason) {

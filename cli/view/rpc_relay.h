@@ -16,7 +16,8 @@ namespace gaitd::cli {
 
 /// The requests of one browser, on a connection to gaitd of their own, so that everybody has a
 /// share and gaitd sees who is who. Opens the connection when there is something to ask, and again
-/// after gaitd was gone.
+/// after gaitd was gone. Who only watches asks seldom, and there may be more of them than gaitd
+/// has connections: theirs end with the answer.
 class RpcRelay : public std::enable_shared_from_this<RpcRelay> {
  public:
   RpcRelay(daemon::Role role, GaitdConnector* connector) : role_(role), connector_(connector) {}
@@ -26,12 +27,13 @@ class RpcRelay : public std::enable_shared_from_this<RpcRelay> {
   /// null. What the role forbids, for it may be less than that of this user, does not reach gaitd.
   using Done = std::function<void(nlohmann::json answer)>;
   void call(const std::string& method, const nlohmann::json& params, Done done);
-  /// Connects ahead of the first request.
-  void connect();
+  /// Connects ahead of the first request, if it is one that acts.
+  void connect_ahead();
   /// Nothing is called any more.
   void end();
 
  private:
+  void connect();
   void on_link(std::shared_ptr<GaitdLink> link, const std::string& error);
   void on_line(std::string_view line);
   void fail_all(const std::string& reason);

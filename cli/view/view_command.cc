@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/view/view_command.h"
 
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 #include <CLI/CLI.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
 #include <iostream>
@@ -49,9 +56,29 @@ std::optional<Role> role_at_gaitd(const Context& context, std::string* error) {
   return Role::kObserve;
 }
 
+// An address of this machine by which others reach it; empty: it has none.
+std::string reachable_address() {
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) return "";
+  std::string found;
+  for (const ifaddrs* one = list; one != nullptr && found.empty(); one = one->ifa_next) {
+    constexpr unsigned kUp = IFF_UP | IFF_RUNNING;
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    if ((one->ifa_flags & kUp) != kUp || (one->ifa_flags & IFF_LOOPBACK) != 0) continue;
+    char text[INET_ADDRSTRLEN];
+    const auto* address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr);
+    if (inet_ntop(AF_INET, &address->sin_addr, text, sizeof(text)) != nullptr) found = text;
+  }
+  freeifaddrs(list);
+  return found;
+}
+
+// What a browser has to be given: of 0.0.0.0, which means all, one of them.
 std::string host_of(const ListenAddress& address) {
-  return address.address.find(':') == std::string::npos ? address.address
-                                                        : "[" + address.address + "]";
+  const bool any = boost::asio::ip::make_address(address.address).is_unspecified();
+  std::string host = any ? reachable_address() : address.address;
+  if (host.empty()) host = "localhost";
+  return host.find(':') == std::string::npos ? host : "[" + host + "]";
 }
 
 void print_addresses(const Context& context, const std::string& base, const Access& access,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/view/viewer.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "daemon/server/rpc.h"
@@ -10,7 +9,6 @@ namespace gaitd::cli {
 namespace {
 
 using nlohmann::json;
-using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kFramesWaiting = 2;        // of a browser that is behind
 constexpr std::size_t kBytesWaiting = 8u << 20;  // then it is dropped
@@ -28,14 +26,15 @@ void Viewer::answer(const json& id, json answer) {
 }
 
 void Viewer::on_message(std::string_view text) {
-  const json message = json::parse(text, nullptr, false);
+  const json message = parse_message(text);
   if (!message.is_object()) {
     return answer(nullptr, error(daemon::rpc_code::kParseError, "expected a JSON object"));
   }
   if (message.contains("method")) return on_request(message);
   const json type = message.value("type", json());
   if (type == "rate") {
-    set_rate(message.value("hz", json()));
+    const json hz = message.value("hz", json());
+    pace_ = hz.is_number() ? Pace(hz.get<double>()) : Pace();
   } else if (type == "record") {
     if (relay_->role() >= daemon::Role::kCommand)
       return record_(message.value("on", json()) == true);
@@ -46,14 +45,6 @@ void Viewer::on_message(std::string_view text) {
     answer(nullptr, error(daemon::rpc_code::kInvalidRequest,
                           "expected a request with a method, or a message of type rate or record"));
   }
-}
-
-void Viewer::set_rate(const json& rate) {
-  constexpr double kHighest = 60.0;  // Hz, at which frames come
-  const double hz = rate.is_number() ? std::clamp(rate.get<double>(), 1.0, kHighest) : kHighest;
-  // A little less than a period: a frame comes at its time, not in between.
-  const double period = hz >= kHighest ? 0.0 : 1.0 / hz - 0.5 / kHighest;
-  period_ = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period));
 }
 
 void Viewer::on_request(const json& request) {
@@ -83,14 +74,12 @@ void Viewer::send_text(const Message& message) {
 }
 
 void Viewer::send_frame(const Message& message) {
-  const auto now = Clock::now();
-  if (ended_ || now < next_frame_) return;
+  if (ended_ || !pace_.due(Pace::Clock::now())) return;
   if (socket_->waiting() >= kFramesWaiting) {
     ++lost_;
     return;
   }
   if (lost_ > 0) send_text(text_of({{"type", "lost"}, {"frames", std::exchange(lost_, 0)}}));
-  next_frame_ = now + period_;
   socket_->send(message, true);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -9,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "cli/view/live_source.h"
+#include "cli/view/pace.h"
 #include "cli/view/rpc_relay.h"
 #include "cli/view/web_server.h"
 
@@ -28,20 +27,18 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
 
   /// Messages in the order in which they were given. A viewer that does not read is dropped.
   void send_text(const Message& message);
-  /// Left out while the browser is behind, and counted.
+  /// Left out if the viewer has asked for fewer, and, counted, while the browser is behind.
   void send_frame(const Message& message);
 
  private:
   void on_request(const nlohmann::json& request);
-  void set_rate(const nlohmann::json& rate);
   void answer(const nlohmann::json& id, nlohmann::json answer);
 
   std::shared_ptr<RpcRelay> relay_;
   std::shared_ptr<ViewerSocket> socket_;
   std::function<void(bool)> record_;
   bool ended_ = false;
-  std::chrono::steady_clock::duration period_ = std::chrono::milliseconds(0);
-  std::chrono::steady_clock::time_point next_frame_{};
+  Pace pace_;
   std::uint64_t lost_ = 0;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <boost/asio/ssl/stream.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/ssl.hpp>
@@ -25,7 +26,7 @@ class WebSocketSession : public ViewerSocket,
                          public std::enable_shared_from_this<WebSocketSession<Stream>> {
  public:
   WebSocketSession(Stream stream, std::shared_ptr<void> place)
-      : socket_(std::move(stream)), place_(std::move(place)) {}
+      : socket_(std::move(stream)), place_(std::move(place)), patience_(socket_.get_executor()) {}
 
   /// `protocol`: agreed subprotocol; empty: none was asked for.
   void start(const HttpRequest& request, WebContent* content, daemon::Role role,
@@ -57,11 +58,23 @@ class WebSocketSession : public ViewerSocket,
   void close(const std::string& reason) override {
     if (std::exchange(closing_, true)) return;
     reason_ = reason.substr(0, 100);
-    if (output_.empty()) say_goodbye();
+    if (output_.empty()) {
+      say_goodbye();
+    } else {
+      output_.erase(output_.begin() + 1, output_.end());  // the first is being written
+      waiting_bytes_ = output_.front().first->size();
+    }
+    // Who takes nothing takes no goodbye either.
+    patience_.expires_after(kGoodbye);
+    patience_.async_wait([weak = this->weak_from_this()](boost::system::error_code error) {
+      const auto self = weak.lock();
+      if (self && !error) boost::beast::get_lowest_layer(self->socket_).close();
+    });
   }
 
  private:
   static constexpr std::size_t kLongestMessage = 64u << 10;  // bytes, from a browser
+  static constexpr auto kGoodbye = std::chrono::seconds(3);
 
   void read() {
     socket_.async_read(buffer_, [self = this->shared_from_this()](boost::system::error_code error,
@@ -92,6 +105,7 @@ class WebSocketSession : public ViewerSocket,
                         [self = this->shared_from_this()](boost::system::error_code) {});
   }
   void end() {
+    patience_.cancel();
     if (const auto peer = std::exchange(peer_, nullptr)) peer->on_end();
   }
 
@@ -102,6 +116,7 @@ class WebSocketSession : public ViewerSocket,
   std::size_t waiting_bytes_ = 0;
   bool closing_ = false;
   std::string reason_;
+  boost::asio::steady_timer patience_;  // with whoever is told to go
   std::shared_ptr<WebPeer> peer_;
 };
 
