@@ -16,6 +16,7 @@
 #include "cli/report/report_command.h"
 #include "cli/run_command.h"
 #include "cli/view/view_command.h"
+#include "cli/teleop/teleop_command.h"
 #include "cli/watch_command.h"
 
 namespace gaitd::cli {
@@ -23,6 +24,7 @@ namespace gaitd::cli {
 void add_commands(CLI::App* app, Context* context) {
   add_daemon_commands(app, context);
   add_drive_command(app, context);
+  add_teleop_command(app, context);
   add_plugin_commands(app, context);
   add_joint_commands(app, context);
   add_calibrate_command(app, context);

@@ -114,7 +114,7 @@ Destination Destination::of(const std::string& socket, daemon::Role role) {
           role};
 }
 
-std::unique_ptr<RpcClient> RpcClient::connect(const Destination& destination, std::string* error) {
+int connect_to_gaitd(const Destination& destination, std::string* reached, std::string* error) {
   std::string reasons;
   bool further = true;
   for (const std::string& place : destination.paths) {
@@ -128,7 +128,10 @@ std::unique_ptr<RpcClient> RpcClient::connect(const Destination& destination, st
         continue;
       }
       const std::string stranger = destination.given ? "" : why_not_believed(fd, path);
-      if (stranger.empty()) return std::unique_ptr<RpcClient>(new RpcClient(fd, path));
+      if (stranger.empty()) {
+        *reached = path;
+        return fd;
+      }
       close(fd);
       reasons += stranger;
       further = false;
@@ -144,12 +147,31 @@ std::unique_ptr<RpcClient> RpcClient::connect(const Destination& destination, st
       "no gaitd can be reached:" + reasons +
       "\nStart one with `gaitd --backend simbody`, or `systemctl start gaitd` on a robot; give "
       "its socket with --socket PATH. `gaitctl run` needs none.";
-  return nullptr;
+  return -1;
 }
 
-RpcClient::~RpcClient() {
-  if (fd_ >= 0) close(fd_);
+bool is_answer(const json& line) {
+  return line.is_object() && (line.contains("result") || line.contains("error"));
 }
+
+daemon::RpcResult result_of(const json& answer) {
+  if (!answer.contains("error")) return answer["result"];
+  const json& error = answer["error"];
+  if (!error.is_object()) return broken("gaitd answered with an error that is no object");
+  const json code = error.value("code", json());
+  const json message = error.value("message", json());
+  return daemon::RpcError{
+      code.is_number_integer() ? code.get<int>() : daemon::rpc_code::kInternalError,
+      message.is_string() ? message.get<std::string>() : error.dump(), error.value("data", json())};
+}
+
+std::unique_ptr<RpcClient> RpcClient::connect(const Destination& destination, std::string* error) {
+  std::string path;
+  const int fd = connect_to_gaitd(destination, &path, error);
+  return fd < 0 ? nullptr : std::unique_ptr<RpcClient>(new RpcClient(fd, path));
+}
+
+RpcClient::~RpcClient() { close(fd_); }
 
 daemon::RpcResult RpcClient::call(const std::string& method, const json& params,
                                   std::chrono::milliseconds timeout) {
@@ -170,22 +192,14 @@ daemon::RpcResult RpcClient::call(const std::string& method, const json& params,
     daemon::RpcError problem;
     const std::string line = read_line(deadline, &problem);
     if (!problem.message.empty()) return problem;
-    json answer = json::parse(line, nullptr, false);
+    const json answer = json::parse(line, nullptr, false);
     if (answer.is_object() && answer.contains("method")) continue;  // of a subscription
-    if (!answer.is_object() || (!answer.contains("result") && !answer.contains("error"))) {
+    if (!is_answer(answer)) {
       return broken("what listens on the socket does not speak the protocol of gaitd");
     }
     const json answered = answer.value("id", json());
     if (answered != id && !answered.is_null()) continue;  // to a request that we gave up
-    if (!answer.contains("error")) return answer["result"];
-    const json& error = answer["error"];
-    if (!error.is_object()) return broken("gaitd answered with an error that is no object");
-    const json code = error.value("code", json());
-    const json message = error.value("message", json());
-    return daemon::RpcError{
-        code.is_number_integer() ? code.get<int>() : daemon::rpc_code::kInternalError,
-        message.is_string() ? message.get<std::string>() : error.dump(),
-        error.value("data", json())};
+    return result_of(answer);
   }
 }
 

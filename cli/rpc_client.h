@@ -28,21 +28,27 @@ struct Destination {
   static Destination of(const std::string& socket, daemon::Role role);
 };
 
+/// A descriptor connected to the first place where a daemon listens, by a socket whose role is
+/// enough if this user may use one, and the path of that in `reached`. It looks no further where
+/// somebody listens whom this user may not speak to, or who is not to be believed, or who takes
+/// nobody in. -1 if there is none: `error` names the places, why each failed, and how to start a
+/// daemon.
+int connect_to_gaitd(const Destination& destination, std::string* reached, std::string* error);
+
+/// Whether a line from gaitd is an answer at all; what it says.
+bool is_answer(const nlohmann::json& line);
+daemon::RpcResult result_of(const nlohmann::json& answer);
+
 /// A blocking connection to gaitd, one request at a time.
 class RpcClient {
  public:
-  /// Connects to the first place where a daemon listens, by a socket whose role is enough if this
-  /// user may use one. It looks no further where somebody listens whom this user may not speak to,
-  /// or who is not to be believed, or who takes nobody in. Null if there is none: `error` names the
-  /// places, why each failed, and how to start a daemon.
+  /// By connect_to_gaitd. Null with `error` if there is nobody.
   static std::unique_ptr<RpcClient> connect(const Destination& destination, std::string* error);
   ~RpcClient();
   RpcClient(const RpcClient&) = delete;
   RpcClient& operator=(const RpcClient&) = delete;
 
   const std::string& path() const { return path_; }  ///< of the socket
-  /// Hands over the connected descriptor; nothing may be called any more.
-  int release() { return std::exchange(fd_, -1); }
 
   /// Sends one request and waits for its answer. Params may be null. A lost connection, silence
   /// beyond the time and bytes that are no answer come back as errors too.

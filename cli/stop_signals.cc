@@ -26,4 +26,10 @@ StopSignals::~StopSignals() {
 
 bool StopSignals::requested() { return stop_requested != 0; }
 
+bool StopSignals::take() {
+  const bool now = requested();
+  if (now) stop_requested = 0;
+  return now;
+}
+
 }  // namespace gaitd::cli

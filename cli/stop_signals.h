@@ -15,6 +15,8 @@ class StopSignals {
   StopSignals& operator=(const StopSignals&) = delete;
 
   static bool requested();
+  /// The same once for each request: the next one is asked for anew.
+  static bool take();
 
  private:
   struct sigaction before_[3];

@@ -54,6 +54,7 @@ offers --json gaitctl walk --
 offers left gaitctl walk --first ''
 offers left gaitctl walk --first = ''
 offers walk-bent gaitctl mode walk-
+offers --gamepad gaitctl teleop --
 offers flat-0.35 gaitctl run f
 offers never gaitctl plugin swap toe_off n
 complete_words gaitctl plugin swap toe_off '' >/dev/null || true

@@ -18,7 +18,7 @@ toe_off=plugins/toe_off/icp_criteria/icp_criteria.cc
 # FILE|EXPRESSION pairs may follow.
 damages=(
   "icp_gain_sign|scenario.push-bent-forward scenario.flat-0.35|$icp_feedback|s/\(1\.0 \+ p_\[Feedback::kGain(\w+)\] \/ omega\)/(1.0 - p_[Feedback::kGain\$1] \/ omega)/g"
-  "no_delay_prediction|nominal.flat-0.35 nominal.straight-0.35|$icp_feedback|s/for \(int ago = ticks; ago >= 1; --ago\)/for (int ago = 0; ago >= 1; --ago)/"
+  "no_delay_prediction|invariant_ekf.flat-0.35 nominal.straight-0.35|$icp_feedback|s/for \(int ago = ticks; ago >= 1; --ago\)/for (int ago = 0; ago >= 1; --ago)/"
   "height_commanded|scenario.straight-0.35 scenario.straight-0.50|$objectives|s/out\.momentum_mask =\n/out.momentum_mask = 0b100000u |\n/"
   "no_privileged_legs|scenario.straight-0.35|$objectives|s/out\.privileged_weight\[joint\] = r\.weight;/out.privileged_weight[joint] = 0.0;/"
   "toe_off_always|scenario.push-straight-rolling|$toe_off|s/state_\.time_satisfied > p_\[P::kHoldTime\] \? 1 : 0/1/"

@@ -1,7 +1,7 @@
 # Sourced after common.sh by the tests of pages. run_page FILE takes every ```sh block of a page in
 # order and runs its lines in a folder that looks like a fresh clone with a finished build, with these
 # differences:
-#   ./run-demo     as ./run-demo --no-build: the build is done
+#   ./run-demo     as ./run-demo --no-build --no-page: the build is done, and nobody looks
 #   ./run-tests    only looked for: it is what runs this test
 #   gaitd ...      in the background, until the end or the next one
 # `gaitctl report` is left out where its page could not be built for want of npm.
@@ -23,7 +23,7 @@ run_block() {
   local line=$1
   case "$line" in
     ./run-tests) [[ -x run-tests ]] || fail "run-tests cannot be executed" ;;
-    ./run-demo) expect 0 ./run-demo --no-build ;;
+    ./run-demo) expect 0 ./run-demo --no-build --no-page ;;
     'gaitd '*--check-config) eval "expect 0 $line" ;;
     gaitd*)
       read -ra words <<<"$line"

@@ -38,6 +38,12 @@ for name in replay icp-path icp-x icp-y com-height knees torques forces step-adj
 done
 (($(ls -A pictures | wc -l) == 10)) || fail "more than the pictures: $(ls -A pictures)"
 
+# The robot as it moves: so many frames, each with something on it.
+expect 4 gaitctl report cut.mcap -o cut.html --film film.png --film-span 0.2 1.1
+[[ $(grep -ao fcTL film.png | wc -l) == 10 ]] || fail "frames: $(grep -ao fcTL film.png | wc -l)"
+(($(stat -c %s film.png) > 50000)) || fail "nothing on the film: $(ls -l film.png)"
+expect 2 gaitctl report cut.mcap --film-span 0 1 2>/dev/null
+
 # Two logs over each other, the second robot pushed.
 cat >pushed.yaml <<SCENARIO
 schema: gaitd.scenario/1

@@ -49,6 +49,25 @@ Story long_steps(const Draws& draws) {
   return flat_walk(draws, 6, draws.between("length", 0.50, 0.70), 0.0, 0.0);
 }
 
+// A minute with a stick that is moved every few seconds.
+Story drive(const Draws& draws) {
+  constexpr int kMoves = 10;
+  Story story;
+  double at = 2.5;
+  for (int i = 0; i < kMoves; ++i) {
+    Drive move{.at = at};
+    move.forward = draws.between("forward", -0.3, 0.6, i);
+    if (draws.whole("sideways", 1, 3, i) == 1)
+      move.lateral = draws.between("lateral", -0.2, 0.2, i);
+    if (draws.coin("turns", i)) move.turn = draws.between("turn", -0.4, 0.4, i);
+    story.drives.push_back(move);
+    at += draws.between("time", 4.0, 8.0, i);
+  }
+  story.drives.push_back({.at = at});
+  story.steps = 20;
+  return story;
+}
+
 // Two pushes at the chest, steps apart, in any direction and at any time of their step.
 Story push_walking(const Draws& draws) {
   constexpr double kDuration = 0.1;  // s
@@ -103,6 +122,7 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
       {"slope-down", [](const Draws& draws) { return slope(draws, false); }},
       {"unknown-steps", unknown_steps},
       {"blocks", blocks},
+      {"drive", drive},
       {"push-walking", push_walking},
       {"push-standing", push_standing}};
   return kMakers;

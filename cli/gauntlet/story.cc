@@ -12,8 +12,9 @@
 namespace gaitd::cli {
 namespace {
 
-constexpr double kMassError = 0.05;  // of each link, either way
-constexpr double kComError = 0.01;   // m, of the trunk, each axis
+constexpr double kMassError = 0.05;   // of each link, either way
+constexpr double kComError = 0.01;    // m, of the trunk, each axis
+constexpr double kDriveError = 0.10;  // of the speed that the steps were to have
 constexpr double kFriction[] = {0.55, 1.0};
 
 // Everything that weighs something.
@@ -63,6 +64,14 @@ void add_model_error(const Draws& draws, std::string* text) {
 }
 
 void add_commands(const Story& story, std::string* text) {
+  if (!story.drives.empty()) {
+    add(text, "commands:\n");
+    for (const Drive& drive : story.drives) {
+      add(text, "  - {at: %.4f, velocity: {forward: %.4f, lateral: %.4f, turn: %.4f}}\n",
+          settled(drive.at), settled(drive.forward), settled(drive.lateral), settled(drive.turn));
+    }
+    return;
+  }
   if (story.footholds.empty()) {
     const Walk& walk = story.walk;
     add(text, "commands:\n  - at: %.4f\n    walk: {steps: %d, length: %.4f, lateral: %.4f, ",
@@ -100,8 +109,15 @@ void add_pushes(const Story& story, std::string* text) {
 }
 
 void add_expectations(const Story& story, std::string* text) {
-  add(text, "expect:\n  no_fall: true\n  final_pelvis: {x: %.4f, y: %.4f, tolerance: %.4f, ",
-      settled(story.goal_x), settled(story.goal_y), settled(story.tolerance));
+  add(text, "expect:\n  no_fall: true\n");
+  if (!story.drives.empty()) {
+    // Where it ends nobody says: whoever drives looks at the robot.
+    add(text, "  drive_speed_error_max: %.4f\n", kDriveError);
+    add(text, "  checks: [{signal: gait/step_index, stat: max, min: %d}]\n", story.steps);
+    return;
+  }
+  add(text, "  final_pelvis: {x: %.4f, y: %.4f, tolerance: %.4f, ", settled(story.goal_x),
+      settled(story.goal_y), settled(story.tolerance));
   add(text, "yaw: %.4f, yaw_tolerance: 0.25}\n", settled(story.goal_yaw));
   if (story.more_steps) {
     add(text, "  checks: [{signal: gait/step_index, stat: max, min: %d}]\n", story.steps);
@@ -137,8 +153,9 @@ std::string scenario_text(std::string_view kind, std::uint64_t seed, const Story
   add(&text, "schema: gaitd.scenario/1\nname: gauntlet-%s-%llu\nrobot: atlas\n", name.c_str(),
       static_cast<unsigned long long>(seed));
   // A pushed robot takes steps of its own before it goes on.
-  add(&text, "duration: %.0f\nseed: %llu\n",
-      std::ceil(settled(story.at + strides * (story.swing + story.transfer) + 8.0)),
+  const double walked = story.drives.empty() ? story.at + strides * (story.swing + story.transfer)
+                                             : story.drives.back().at;
+  add(&text, "duration: %.0f\nseed: %llu\n", std::ceil(settled(walked + 8.0)),
       static_cast<unsigned long long>(seed));
   add(&text, "start: {x: 0, y: 0, z: %.4f, yaw: 0}\nmode: walk-straight\n", settled(story.start_z));
   add(&text, "sensors: {noise: nominal}\nactuators: {model: nominal}\n");

@@ -48,6 +48,12 @@ struct Walk {
   bool left_first = false;
 };
 
+/// A velocity to walk at until the next one.
+struct Drive {
+  double at = 0.0;                                  ///< s
+  double forward = 0.0, lateral = 0.0, turn = 0.0;  ///< m/s, m/s, rad/s
+};
+
 struct Push {
   double force = 0.0, direction = 0.0;  ///< N; rad
   double duration = 0.0;                ///< s
@@ -64,6 +70,7 @@ struct Story {
   double at = 2.5;                      ///< s, when it goes off: straight legs are straight by then
   Walk walk;                            ///< either this
   std::vector<Foothold> footholds;      ///< or these
+  std::vector<Drive> drives;            ///< or these, to a stand at the end
   double swing = 0.7, transfer = 0.25;  ///< s
   std::vector<Push> pushes;
   double goal_x = 0.0, goal_y = 0.0, goal_yaw = 0.0;  ///< m, rad

@@ -14,8 +14,11 @@
 #include <string_view>
 #include <system_error>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "cli/child.h"
+#include "cli/report/animated_png.h"
 #include "daemon/config/names.h"
 
 namespace gaitd::cli {
@@ -24,6 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kBrowserTime(600);  // on a busy machine
+
+constexpr int kFilmRate = 10;  // frames per second; cli/page/src/report/film.js draws as many
 
 // As the page writes them: cli/page/src/report/pictures.js.
 constexpr std::string_view kPicture = "<img id=\"";
@@ -35,7 +40,7 @@ fs::path find_browser() {
   std::string rest = path == nullptr ? "" : path;
   while (!rest.empty()) {
     const std::size_t colon = rest.find(':');
-    const fs::path file = fs::path(rest.substr(0, colon)) / "chromium";
+    fs::path file = fs::path(rest.substr(0, colon)) / "chromium";
     std::error_code ignored;
     if (fs::exists(file, ignored)) return file;
     rest = colon == std::string::npos ? "" : rest.substr(colon + 1);
@@ -76,9 +81,14 @@ std::string from_base64(std::string_view text) {
   return bytes;
 }
 
-// All pictures in what the browser made of the page. Empty, or the reason why not.
-std::string write_pictures(std::string_view document, const fs::path& folder) {
-  int written = 0;
+struct Picture {
+  std::string name;
+  std::string png;
+};
+
+// Those in what the browser made of the page.
+std::vector<Picture> read_pictures(std::string_view document) {
+  std::vector<Picture> pictures;
   for (std::size_t at = 0; (at = document.find(kPicture, at)) != std::string_view::npos;) {
     at += kPicture.size();
     const std::size_t data = document.find(kData, at);
@@ -88,37 +98,74 @@ std::string write_pictures(std::string_view document, const fs::path& folder) {
     const std::size_t begin = data + kData.size();
     const std::size_t end = document.find('"', begin);
     if (end == std::string_view::npos) break;
-    const fs::path file = folder / (std::string(name) + ".png");
-    std::ofstream out(file, std::ios::binary | std::ios::trunc);
-    out << from_base64(document.substr(begin, end - begin)) << std::flush;
-    if (!out) return file.string() + ": cannot write: " + std::strerror(errno);
-    ++written;
+    pictures.push_back({std::string(name), from_base64(document.substr(begin, end - begin))});
     at = end;
   }
-  return written > 0 ? "" : "it drew nothing";
+  return pictures;
+}
+
+// What chromium draws of the page with this fragment; none, with the reason.
+std::vector<Picture> draw(const fs::path& page, const std::string& fragment, const fs::path& folder,
+                          std::string* problem) {
+  const fs::path browser = find_browser();
+  if (browser.empty()) {
+    *problem = "pictures need chromium; install it (apt-get install chromium)";
+    return {};
+  }
+  const fs::path document = folder / ".drawn.html";
+  const pid_t pid = start_child({browser.string(), "--headless", "--no-sandbox", "--disable-gpu",
+                                 "--virtual-time-budget=10000", "--dump-dom",
+                                 "file://" + fs::absolute(page).string() + fragment},
+                                document.string(), "/dev/null");
+  if (pid < 0) {
+    *problem = "cannot start " + browser.string() + ": " + std::strerror(errno);
+    return {};
+  }
+  const bool ended = wait_for_child(pid, kBrowserTime);
+  std::ifstream in(document, std::ios::binary);
+  const std::string drawn{std::istreambuf_iterator<char>(in), {}};
+  std::error_code ignored;
+  fs::remove(document, ignored);
+  std::vector<Picture> pictures;
+  if (ended) pictures = read_pictures(drawn);
+  if (pictures.empty()) {
+    *problem = browser.string() + (ended ? " drew nothing of " : " did not end while it drew ") +
+               page.string();
+  }
+  return pictures;
+}
+
+// Empty, or the reason why not.
+std::string write(const fs::path& file, const std::string& bytes) {
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << bytes << std::flush;
+  return out ? "" : file.string() + ": cannot write: " + std::strerror(errno);
 }
 
 }  // namespace
 
 std::string draw_pictures(const fs::path& page, const fs::path& folder) {
-  const fs::path browser = find_browser();
-  if (browser.empty()) return "--png needs chromium; install it (apt-get install chromium)";
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) return folder.string() + ": cannot make the folder: " + error.message();
-  const fs::path document = folder / ".drawn.html";
-  const pid_t pid = start_child({browser.string(), "--headless", "--no-sandbox", "--disable-gpu",
-                                 "--virtual-time-budget=10000", "--dump-dom",
-                                 "file://" + fs::absolute(page).string() + "#pictures"},
-                                document.string(), "/dev/null");
-  if (pid < 0) return "cannot start " + browser.string() + ": " + std::strerror(errno);
-  const bool ended = wait_for_child(pid, kBrowserTime);
-  std::ifstream in(document, std::ios::binary);
-  const std::string drawn{std::istreambuf_iterator<char>(in), {}};
-  fs::remove(document, error);
-  if (!ended) return browser.string() + " did not end while it drew " + page.string();
-  const std::string problem = write_pictures(drawn, folder);
-  return problem.empty() ? "" : browser.string() + ": " + page.string() + ": " + problem;
+  std::string problem;
+  for (const Picture& picture : draw(page, "#pictures", folder, &problem)) {
+    if (problem.empty()) problem = write(folder / (picture.name + ".png"), picture.png);
+  }
+  return problem;
+}
+
+std::string draw_film(const fs::path& page, const fs::path& file, double from, double to) {
+  std::string problem;
+  const fs::path folder = fs::absolute(file).parent_path();
+  std::vector<std::string> frames;
+  const std::string span = std::to_string(from) + "," + std::to_string(to);
+  for (Picture& picture : draw(page, "#film=" + span, folder, &problem)) {
+    frames.push_back(std::move(picture.png));
+  }
+  if (!problem.empty()) return problem;
+  const std::string film = animated_png(frames, kFilmRate);
+  return film.empty() ? "what the browser drew are no PNG pictures" : write(file, film);
 }
 
 }  // namespace gaitd::cli

@@ -26,6 +26,8 @@ struct Arguments {
   std::vector<std::string> logs;
   std::string output = "report.html";
   std::string png;
+  std::string film;
+  std::vector<double> span;  // s, of the film
 };
 
 int run(const Context& context, const Arguments& arguments) {
@@ -53,6 +55,13 @@ int run(const Context& context, const Arguments& arguments) {
     error = draw_pictures(arguments.output, arguments.png);
     if (!error.empty()) return fail(context, kFailed, "report", error);
   }
+  if (!arguments.film.empty()) {
+    const std::vector<double> time = logs.front()->column("time");
+    const bool whole = arguments.span.empty();
+    error = draw_film(arguments.output, arguments.film, whole ? time.front() : arguments.span[0],
+                      whole ? time.back() : arguments.span[1]);
+    if (!error.empty()) return fail(context, kFailed, "report", error);
+  }
   waiting.reset();
   if (context.json) {
     nlohmann::json result = {{"report", arguments.output}, {"ticks", ticks}};
@@ -66,6 +75,7 @@ int run(const Context& context, const Arguments& arguments) {
   } else {
     std::cout << "report: " << arguments.output << "\n";
     if (!arguments.png.empty()) std::cout << "pictures: " << arguments.png << "\n";
+    if (!arguments.film.empty()) std::cout << "film: " << arguments.film << "\n";
   }
   int code = kDone;
   for (const auto& log : logs) code = tell_damage("report", *log, code);
@@ -92,6 +102,13 @@ void add_report_command(CLI::App* app, Context* context) {
       ->add_option("--png", arguments->png,
                    "Folder for pictures of the robot and of each plot; needs chromium")
       ->type_name("FOLDER");
+  auto* film = command->add_option("--film", arguments->film,
+                                   "Animated PNG of the robot as it moves; needs chromium");
+  film->type_name("FILE");
+  command->add_option("--film-span", arguments->span, "Time of the log that the film shows, s")
+      ->type_name("FROM TO")
+      ->expected(2)
+      ->needs(film);
   command->callback([context, arguments] {
     context->action = [context, arguments] { return run(*context, *arguments); };
   });

@@ -74,9 +74,9 @@ void GaitdLink::close() {
 
 void GaitdConnector::connect(daemon::Role role, Done done) {
   boost::asio::post(threads_, [this, role, done = std::move(done)]() mutable {
+    std::string path;
     std::string error;
-    auto client = RpcClient::connect(Destination::of(socket_, role), &error);
-    const int fd = client ? client->release() : -1;
+    const int fd = connect_to_gaitd(Destination::of(socket_, role), &path, &error);
     boost::asio::post(*io_, [this, fd, error = std::move(error), done = std::move(done)] {
       done(fd < 0 ? nullptr : std::make_shared<GaitdLink>(io_, fd), error);
     });

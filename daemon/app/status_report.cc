@@ -63,6 +63,15 @@ json status_of(const Telemetry& telemetry) {
     for (const char* axis : {"x", "y", "z", "yaw"}) axes[axis] = get(frame + "/" + axis);
     return axes;
   };
+  const auto velocity = [&](const std::string& of) {
+    json axes;
+    for (const char* axis : {"forward", "lateral", "turn"}) axes[axis] = get(of + "/" + axis);
+    return axes;
+  };
+  const bool driven = get("drive/active") == true;
+  status["drive"] =
+      driven ? json{{"target", velocity("drive/target")}, {"step", velocity("drive/step")}}
+             : json();
   status["pelvis"] = pose("pelvis");
   status["feet"] = {{"left", pose("foot/left")}, {"right", pose("foot/right")}};
   status["faults"] = json::array();

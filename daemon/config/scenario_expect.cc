@@ -122,6 +122,7 @@ Expectations read_expectations(MapReader map) {
   expect.torque_chatter_max = map.number("torque_chatter_max", {0.0, 10.0, ""});
   expect.torque_step_max = map.number("torque_step_max", {0.0, 10.0, ""});
   expect.stance_knee_torque_max = map.number("stance_knee_torque_max", {0.0, 1e6, "N m"});
+  expect.drive_speed_error_max = map.number("drive_speed_error_max", {0.0, 10.0, ""});
   expect.contact_lost = map.boolean("contact_lost");
   expect.pelvis_drift_max = read_pelvis_drift(&map);
   expect.refused_commands =

@@ -201,6 +201,8 @@ bool Pipeline::control(double dt) {
   TickData& d = data_;
   gait_.update(dt, d.robot, d.plan, d.toe_off, d.adjustment);
   d.gait = gait_.state();
+  const walking::VelocityWalk& drive = gait_.velocity_walk();
+  d.drive = drive.active() ? Drive{true, drive.target(), drive.step().velocity} : Drive{};
   pose_.update(dt, d.gait);
   const bool planned = layers_.plan(d);
   pose_.shift_plan(d.gait, d.plan);

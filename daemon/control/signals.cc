@@ -156,6 +156,13 @@ void visit_foot(V& v, const TickData& d, int side) {
 }
 
 template <class V>
+void velocity(V& v, const walking::Velocity& of, const char* prefix) {
+  v.real(of.forward, "m/s", prefix, "forward");
+  v.real(of.lateral, "m/s", prefix, "lateral");
+  v.real(of.turn, "rad/s", prefix, "turn");
+}
+
+template <class V>
 void visit_layers(V& v, const TickData& d) {
   v.boolean(d.toe_off.active != 0, "toe_off/active");
   constexpr const char* kCriteria[] = {"icp", "icp_distance", "cop", "cmp", "ankle"};
@@ -165,6 +172,9 @@ void visit_layers(V& v, const TickData& d) {
   v.real(d.adjustment.shift[0], "m", "step_adjust/dx");
   v.real(d.adjustment.shift[1], "m", "step_adjust/dy");
   v.real(d.adjustment.time_shift, "s", "step_adjust/time_shift");
+  v.boolean(d.drive.active, "drive/active");
+  velocity(v, d.drive.target, "drive/target/");
+  velocity(v, d.drive.step, "drive/step/");
   const GaitdWbcInfo& wbc = d.wbc.info;
   v.word(wbc.status, {"solved", "max_iterations", "infeasible", "non_finite"}, "wbc/status");
   v.integer(wbc.iterations, "wbc/iterations");

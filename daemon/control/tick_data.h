@@ -6,6 +6,7 @@
 
 #include "daemon/control/balance_joints.h"
 #include "gaitd/abi/plugin.h"
+#include "gaitd/walking/commands.h"
 #include "gaitd/walking/leg_configuration.h"
 
 namespace gaitd::daemon {
@@ -50,6 +51,13 @@ struct TickTimes {
   double jitter_us = 0.0;
 };
 
+// A velocity that somebody walks the robot at; zero where nobody does.
+struct Drive {
+  bool active = false;
+  walking::Velocity target{};  // as asked for, within the bounds of the robot
+  walking::Velocity step{};    // of the step that was begun last
+};
+
 // Everything one tick reads and writes, stage by stage, in the order of the pipeline.
 struct TickData {
   GaitdLayerTime time{};
@@ -60,6 +68,7 @@ struct TickData {
   std::uint32_t health = 0;  // GAITD_HEALTH_* that the backend reports
   GaitdRobotState robot{};
   GaitdGaitState gait{};
+  Drive drive{};
   GaitdIcpPlan plan{};
   GaitdStepAdjustment adjustment{};
   GaitdToeOff toe_off{};

@@ -58,6 +58,7 @@ struct Expectations {
   std::optional<double> torque_chatter_max;     // RMS change of torque per tick / effort limit
   std::optional<double> torque_step_max;        // change per tick / effort limit, while walking
   std::optional<double> stance_knee_torque_max;  // N m, RMS over single support
+  std::optional<double> drive_speed_error_max;   // relative, of a robot that is driven
   std::optional<bool> contact_lost;              // false: no foot may lose contact while standing
   std::optional<PelvisDrift> pelvis_drift_max;
   int refused_commands = 0;  // exactly; always checked

@@ -13,10 +13,11 @@ namespace {
 using Json = nlohmann::json;
 
 // All signals that any figure looks at, besides those that the checks of a scenario name.
-constexpr std::array<const char*, 17> kSignals = {
+constexpr std::array<const char*, 18> kSignals = {
     "time",
     "safety/faults",
     "gait/*",
+    "drive/step/*",
     "icp/*",
     "pelvis/*",
     "foot/*/z",

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/verdict/drive_speed.h"
 #include "daemon/verdict/statistics.h"
 
 namespace gaitd::daemon {
@@ -168,6 +169,7 @@ RunFigures compute_run_figures(const RunData& run) {
   figures.torque_step = torque_change(run, Change::kLargestWalking);
   figures.saturation = saturation(run);
   figures.chatter = torque_change(run, Change::kRms);
+  figures.drive_speed_error = drive_speed_error(run);
   figures.contact_lost_ticks = contact_lost_ticks(run);
   figures.final_pelvis = {last_of(run, "x"), last_of(run, "y"), last_of(run, "yaw")};
   return figures;

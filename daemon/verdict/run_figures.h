@@ -36,6 +36,7 @@ struct RunFigures {
   double stance_knee_torque = kNotMeasured;  // N m, RMS over single support
   double cost_of_transport = kNotMeasured;   // sum of |power| of the joints / (weight * way)
   WorstJoint chatter;                        // RMS change of the torque per tick / effort limit
+  double drive_speed_error = kNotMeasured;   // relative; daemon/verdict/drive_speed.h
   double contact_lost_ticks = kNotMeasured;  // standing, since both feet first stood
   std::array<double, 3> final_pelvis = {kNotMeasured, kNotMeasured, kNotMeasured};  // x, y, yaw
 };

@@ -101,6 +101,10 @@ void Judge::judge_walk(const Expectations& expected) {
   if (expected.foot_slip_max) {
     at_most("foot_slip_max", figures_.foot_slip, *expected.foot_slip_max, "m");
   }
+  if (expected.drive_speed_error_max) {
+    at_most("drive_speed_error_max", figures_.drive_speed_error, *expected.drive_speed_error_max,
+            "");
+  }
   if (!expected.contact_lost.value_or(true)) {
     at_most("contact_lost", figures_.contact_lost_ticks, 0.0, "ticks");
   }

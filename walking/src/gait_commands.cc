@@ -38,6 +38,7 @@ void GaitMachine::complete(GaitdFootstep& step) {
 Refusal GaitMachine::check(const GaitdFootstep& step, const GaitdPose& stance,
                            const GaitdPose& from, int number) const {
   Refusal r = check_footstep(step, stance, from, number, parameters_);
+  if (!r.refused()) r = turn_reach_.check(step, stance, number);
   if (!r.refused()) r = check_contact_polygon(model_, step, number);
   if (r.refused()) return r;
   GaitdFootstep filled = step;

@@ -45,6 +45,9 @@ class SyntheticRun {
                              "joint/arm/torque_desired"}) {
       add(name, "N m");
     }
+    for (const char* name : {"drive/step/forward", "drive/step/lateral", "drive/step/turn"}) {
+      add(name, "m/s");
+    }
     for (const char* name : {"truth/foot/left/side_force", "truth/foot/right/side_force"}) {
       add(name, "N");
     }

@@ -369,5 +369,37 @@ TEST(VerdictWord, AFallNeverPasses) {
   EXPECT_EQ(verdict_word(stood, true, false).text, "FAILED");
 }
 
+// A circle of 1 m radius, driven at 0.5 m/s; the robot lags behind by `share` of it.
+SyntheticRun driven_in_a_circle(double share) {
+  SyntheticRun run(8);
+  run.disturb = [share](SyntheticRun& r, int tick) {
+    const double walked = std::max(0, tick - 500) * 0.001;
+    if (r.at("gait/phase") != 0.0) {
+      r.at("drive/step/forward") = 0.5;
+      r.at("drive/step/turn") = 0.5;
+    }
+    const double heading = 0.5 * (1.0 - share) * walked;
+    r.at("truth/pelvis/x") = std::sin(heading);
+    r.at("truth/pelvis/y") = 1.0 - std::cos(heading);
+    r.at("truth/pelvis/yaw") = std::remainder(heading, 2.0 * M_PI);
+  };
+  return run;
+}
+
+TEST(Verdict, ADrivenRobotIsJudgedByItsSpeed) {
+  Expectations expected;
+  expected.drive_speed_error_max = 0.1;
+  Verdict verdict = driven_in_a_circle(0.05).judge(expected);
+  EXPECT_NEAR(verdict.figure("drive_speed_error"), 0.05, 1e-3);
+  EXPECT_TRUE(verdict.pass);
+  verdict = driven_in_a_circle(0.2).judge(expected);
+  EXPECT_NEAR(verdict.figure("drive_speed_error"), 0.2, 1e-3);
+  EXPECT_FALSE(verdict.pass);
+  // Who stands still, or is not driven, has kept no speed.
+  verdict = SyntheticRun(8).judge(expected);
+  EXPECT_TRUE(std::isnan(verdict.figure("drive_speed_error")));
+  EXPECT_FALSE(verdict.pass);
+}
+
 }  // namespace
 }  // namespace gaitd::daemon

@@ -11,6 +11,7 @@
 #include "gaitd/walking/refusal.h"
 #include "gaitd/walking/step_timing.h"
 #include "gaitd/walking/swing_limits.h"
+#include "gaitd/walking/turn_reach.h"
 #include "gaitd/walking/velocity_walk.h"
 
 namespace gaitd::walking {
@@ -117,6 +118,7 @@ class GaitMachine {
   Eigen::Vector3d path_offset_ = Eigen::Vector3d::Zero();  // m, of the next foothold after it
   double time_shift_ = 0.0;                                // s, of the current phase
   StepTiming timing_;
+  TurnReach turn_reach_;
   SwingLimits swing_limits_;
   CaptureCheck capture_check_;
   VelocityWalk drive_;

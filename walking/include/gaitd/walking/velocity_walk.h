@@ -21,6 +21,8 @@ class VelocityWalk {
   bool take(const VelocityCommand& command);
   void end();
   bool active() const { return active_; }
+  // That it is to reach: as asked for, within the bounds of the robot.
+  const Velocity& target() const { return target_; }
   bool driven_by(std::int64_t session) const { return active_ && session == session_; }
   bool idle() const { return at_rest(target_); }  // to stand
   bool timed_out() const { return active_ && !holds_ && age_ > parameters_[Drive::kTimeout]; }

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/teleop/estop_line.h"
+
+#include <utility>
+
+namespace gaitd::cli::teleop {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kAnswer{300};     // until it is asked again
+constexpr milliseconds kReconnect{500};  // while nobody needs it
+constexpr milliseconds kKnock{20};       // while somebody does
+
+}  // namespace
+
+EstopLine::EstopLine(Destination destination) : link_(std::move(destination)) {}
+
+void EstopLine::pull(Time now) {
+  if (open_) return;
+  open_ = true;
+  trouble_.clear();
+  ask(now);
+}
+
+void EstopLine::ask(Time now) {
+  id_ = link_.send("estop", nullptr);
+  if (id_ == 0 && link_.open()) id_ = link_.send("estop", nullptr);
+  next_ = now + (id_ == 0 ? kKnock : kAnswer);
+}
+
+void EstopLine::tick(Time now) {
+  for (const Link::Answer& answer : link_.receive()) {
+    const auto* error = std::get_if<daemon::RpcError>(&answer.result);
+    if (!open_ || answer.id != id_) continue;
+    if (error == nullptr) {
+      open_ = false;
+    } else {
+      trouble_ = error->message;
+    }
+  }
+  if (now < next_) return;
+  if (open_) {
+    link_.close();  // whatever holds it up there
+    return ask(now);
+  }
+  if (!link_.up()) link_.open();
+  next_ = now + kReconnect;
+}
+
+std::string EstopLine::text() const {
+  if (!open_) return "";
+  const std::string why = trouble_.empty() ? link_.why_down() : trouble_;
+  const std::string first = why.substr(0, why.find('\n'));
+  return "E-STOP NOT CONFIRMED: use the e-stop of the robot" + (first.empty() ? "" : "; " + first);
+}
+
+}  // namespace gaitd::cli::teleop

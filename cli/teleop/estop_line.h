@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/teleop/key_decoder.h"
+#include "cli/teleop/link.h"
+
+namespace gaitd::cli::teleop {
+
+/// The e-stop, on a connection that carries nothing else. Pulled, it asks again on a new connection
+/// every 0.3 s until gaitd has answered.
+class EstopLine {
+ public:
+  explicit EstopLine(Destination destination);
+
+  void pull(Time now);
+  void tick(Time now);  ///< often: takes answers, asks again, connects again
+  int fd() const { return link_.fd(); }
+  /// Pulled and not confirmed: the robot may not know of it.
+  bool open() const { return open_; }
+  /// What the operator has to know, "" if nothing.
+  std::string text() const;
+
+ private:
+  void ask(Time now);
+
+  Link link_;
+  bool open_ = false;
+  int id_ = 0;
+  Time next_{};  // to ask, or to connect, again
+  std::string trouble_;
+};
+
+}  // namespace gaitd::cli::teleop
