@@ -146,6 +146,7 @@ TEST_F(Gaitctl, DriveRenewsItsVelocityAndEndsWithAStand) {
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_HAS(outcome.out, "slower than asked");
   EXPECT_EQ(outcome.out.find("slower"), outcome.out.rfind("slower")) << "told more than once";
+  const std::lock_guard lock(mutex_);
   ASSERT_GE(drives_.size(), 4u);
   EXPECT_FALSE(drives_[0].contains("renew"));
   for (std::size_t i = 1; i < drives_.size(); ++i) {

@@ -14,15 +14,15 @@ namespace {
 
 using sdk::Vector6d;
 
-constexpr double kFurthest = M_PI;    // rad, that is tried
-constexpr double kStep = 0.1;         // rad, from one posture to the next
-constexpr double kResolution = 1e-4;  // rad
-constexpr int kIterations = 30;       // from one posture to the next
-constexpr double kDamping = 1e-6;     // of the least squares
-constexpr double kReached = 1e-4;     // m and rad
+constexpr double kFurthestYaw = M_PI;     // rad, that is tried
+constexpr double kYawStep = 0.1;          // rad, from one posture to the next
+constexpr double kYawResolution = 1e-4;   // rad
+constexpr int kPostureIterations = 30;    // from one posture to the next
+constexpr double kPostureDamping = 1e-6;  // of the least squares
+constexpr double kPostureError = 1e-4;    // m and rad
 // rad, by which a foot may be turned less than it should be: of a sole of 0.26 m a corner is then
 // 0.03 m off, as a foothold may be anyway.
-constexpr double kShort = 0.2;
+constexpr double kShortOfYaw = 0.2;
 
 // A leg below a pelvis that stands still.
 class LegPosture {
@@ -43,13 +43,13 @@ class LegPosture {
   // Turns the sole from where it is to `yaw` (rad), in place; false if a joint is in the way.
   bool turn(double yaw) {
     const Eigen::Quaterniond goal = sdk::from_yaw(yaw) * orientation_;
-    for (int i = 0; i < kIterations; ++i) {
+    for (int i = 0; i < kPostureIterations; ++i) {
       update();
       Vector6d error;
       error.head<3>() = sdk::log_so3(goal * orientation().conjugate());
       error.tail<3>() =
           place_ - kinematics_.frame_position(foot_.body, sdk::view(foot_.sole.origin));
-      if (error.cwiseAbs().maxCoeff() < kReached) return true;
+      if (error.cwiseAbs().maxCoeff() < kPostureError) return true;
       approach(error);
     }
     return false;
@@ -85,7 +85,7 @@ class LegPosture {
     kinematics_.frame_jacobian(foot_.body, sdk::view(foot_.sole.origin), J_);
     Eigen::MatrixXd J(6, leg_.joint_count);
     for (int i = 0; i < leg_.joint_count; ++i) J.col(i) = J_.col(6 + leg_.joints[i]);
-    const Eigen::MatrixXd H = J * J.transpose() + kDamping * Eigen::MatrixXd::Identity(6, 6);
+    const Eigen::MatrixXd H = J * J.transpose() + kPostureDamping * Eigen::MatrixXd::Identity(6, 6);
     const Eigen::VectorXd change = J.transpose() * H.ldlt().solve(error);
     for (int i = 0; i < leg_.joint_count; ++i) {
       const GaitdJoint& joint = model_.joints[leg_.joints[i]];
@@ -105,11 +105,11 @@ class LegPosture {
 };
 
 // The furthest yaw to one side.
-TurnReach::End furthest(const GaitdModel& model, int side, double sign) {
+TurnReach::End furthest_yaw(const GaitdModel& model, int side, double sign) {
   LegPosture leg(model, side);
   double reached = 0.0;
   Eigen::VectorXd joints = leg.joints();
-  for (double step = kStep; step >= kResolution && reached < kFurthest;) {
+  for (double step = kYawStep; step >= kYawResolution && reached < kFurthestYaw;) {
     if (leg.turn(sign * (reached + step))) {
       reached += step;
       joints = leg.joints();
@@ -125,7 +125,7 @@ TurnReach::End furthest(const GaitdModel& model, int side, double sign) {
 
 TurnReach::TurnReach(const GaitdModel& model) {
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    legs_[side] = {furthest(model, side, -1.0), furthest(model, side, 1.0)};
+    legs_[side] = {furthest_yaw(model, side, -1.0), furthest_yaw(model, side, 1.0)};
   }
 }
 
@@ -137,14 +137,14 @@ Refusal TurnReach::check(const GaitdFootstep& step, const GaitdPose& stance, int
   const End& foot = turn > 0.0 ? left_end(step.side) : right_end(step.side);
   const End& other = turn > 0.0 ? right_end(stands) : left_end(stands);
   const double most = std::abs(foot.yaw - other.yaw);
-  if (std::abs(turn) <= most + kShort) return {};
+  if (std::abs(turn) <= most + kShortOfYaw) return {};
   const bool inwards = turn * side_sign(step.side) < 0.0;
   return refuse(
       "footstep %d (%s): turned by %.3f rad from the other foot, %s; the legs turn the feet so far "
       "by %.3f (%s and %s), at most %.3f expected; take more steps",
       number, step.side == GAITD_LEFT ? "left" : "right", turn,
       inwards ? "towards it" : "away from it", most, foot.joint.c_str(), other.joint.c_str(),
-      most + kShort);
+      most + kShortOfYaw);
 }
 
 }  // namespace gaitd::walking
