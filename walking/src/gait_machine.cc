@@ -168,6 +168,8 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   // The ground is where the foot met it: later footholds keep their heights relative to this one.
   const double height_error = robot.feet[side].position[2] - landed.pose.position[2];
   height_offset_ += height_error;
+  const Eigen::Vector3d missed =
+      sdk::view(robot.feet[side].position) - sdk::view(landed.pose.position);
   sdk::view(landed.pose.position) = sdk::view(robot.feet[side].position);
   state_.footholds[side] = foothold_of(model_, landed);
   state_.early_contact = early ? 1 : 0;
@@ -177,7 +179,7 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   if (recovering_) close_after_recovery();
   if (drive_.active() && !recovering_) {
     path_offset_.setZero();  // the way begins anew where the foot is
-    drive_on(0, side);
+    drive_on(0, side, missed);
   }
   time_shift_ = 0.0;
   apply_pending_mode();

@@ -90,7 +90,8 @@ class GaitMachine {
   int left_by_another() const { return drive_.active() ? begun() : queue_.size(); }
   // Makes the footsteps of a velocity behind the first `kept`. `landed`: where none is kept, the
   // foot that has just come down, GAITD_BOTH while standing.
-  void drive_on(int kept, int landed);
+  // `missed`: m, of the foot that has landed from where it was to land.
+  void drive_on(int kept, int landed, const Eigen::Vector3d& missed = Eigen::Vector3d::Zero());
   // Standing without footsteps: those of the velocity, or the end of a drive that nobody renews.
   void rest_or_drive_on();
   GaitdFootstep drive_step(const GaitdPose& middle, int side, const VelocityWalk::Step& step,
