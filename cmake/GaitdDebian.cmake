@@ -1,5 +1,6 @@
 # Debian packages by CPack: gaitd (programs, plugins, robots, service), gaitd-dev (headers and
-# libraries for plugins and whole-body controllers) and gaitd-mujoco (the backend mujoco).
+# libraries for plugins and whole-body controllers), gaitd-mujoco (the backend mujoco) and gaitd-ros2 (the
+# bridge to ROS 2).
 configure_file(cmake/package/gaitd.pc.in gaitd.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gaitd.pc DESTINATION lib/pkgconfig COMPONENT dev)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/examples/plugin
@@ -22,6 +23,14 @@ install(DIRECTORY ${gaitd_etc}/network DESTINATION /usr/share/doc/gaitd/examples
         EXCLUDE_FROM_ALL)
 gaitd_system_files(/usr/share/doc/gaitd ${PROJECT_SOURCE_DIR}/cmake/package/copyright)
 
+# ---- gaitd-ros2
+if(TARGET gaitd-ros2)
+  install(FILES ${gaitd_etc}/systemd/gaitd-ros2.service DESTINATION /lib/systemd/system
+          COMPONENT ros2_system EXCLUDE_FROM_ALL)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/copyright DESTINATION /usr/share/doc/gaitd-ros2
+          COMPONENT ros2_system EXCLUDE_FROM_ALL)
+endif()
+
 # cpack packs what is built, it does not build the tests first.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY TRUE)
 set(CPACK_GENERATOR DEB)
@@ -35,11 +44,16 @@ set(CPACK_COMPONENTS_ALL gaitd system dev)
 if(TARGET plugin_backend_mujoco)
   list(APPEND CPACK_COMPONENTS_ALL mujoco)
 endif()
+if(TARGET gaitd-ros2)
+  list(APPEND CPACK_COMPONENTS_ALL ros2 ros2_system)
+endif()
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_COMPONENT_GAITD_GROUP gaitd)
 set(CPACK_COMPONENT_SYSTEM_GROUP gaitd)
 set(CPACK_COMPONENT_DEV_GROUP gaitd-dev)
 set(CPACK_COMPONENT_MUJOCO_GROUP gaitd-mujoco)
+set(CPACK_COMPONENT_ROS2_GROUP gaitd-ros2)
+set(CPACK_COMPONENT_ROS2_SYSTEM_GROUP gaitd-ros2)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
@@ -61,4 +75,11 @@ set(CPACK_DEBIAN_GAITD-MUJOCO_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_GAITD-MUJOCO_DESCRIPTION "MuJoCo as a second physics engine of gaitd")
 set(CPACK_DEBIAN_GAITD-MUJOCO_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_GAITD-MUJOCO_PACKAGE_DEPENDS "gaitd (= ${PROJECT_VERSION}-1)")
+set(CPACK_DEBIAN_GAITD-ROS2_PACKAGE_NAME gaitd-ros2)
+set(CPACK_DEBIAN_GAITD-ROS2_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_GAITD-ROS2_DESCRIPTION "gaitd on the topics of ROS 2, over CycloneDDS")
+set(CPACK_DEBIAN_GAITD-ROS2_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_GAITD-ROS2_PACKAGE_DEPENDS "gaitd (= ${PROJECT_VERSION}-1)")
+set(CPACK_DEBIAN_GAITD-ROS2_PACKAGE_CONTROL_EXTRA
+    ${gaitd_scripts}/ros2/postinst ${gaitd_scripts}/ros2/prerm ${gaitd_scripts}/postrm)
 include(CPack)

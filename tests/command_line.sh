@@ -2,7 +2,9 @@
 source "$(dirname "$0")/common.sh"
 
 # Manual pages: no warnings of roff, and every command and option is in them.
-for page in gaitctl.1 gaitd.8; do
+pages=(gaitctl.1 gaitd.8)
+[[ ! -x $GAITD_BUILD/bin/gaitd-ros2 ]] || pages+=(gaitd-ros2.8)
+for page in "${pages[@]}"; do
   file=$GAITD_BUILD/share/man/man${page##*.}/$page
   [[ -s $file ]] || fail "the build made no $file"
   warnings=$(LC_ALL=C.UTF-8 groff -man -Tutf8 -ww -z "$file" 2>&1)
@@ -33,6 +35,10 @@ walk_commands
 ((count >= 20)) || fail "only $count commands found in gaitctl --help"
 while read -r option; do in_page gaitd.8 "$option"; done \
   < <(gaitd --help | grep -oE -- '--[a-z][a-z-]+' | sort -u)
+if [[ -x $GAITD_BUILD/bin/gaitd-ros2 ]]; then
+  while read -r option; do in_page gaitd-ros2.8 "$option"; done \
+    < <(gaitd-ros2 --help | grep -oE -- '--[a-z][a-z0-9-]+' | sort -u)
+fi
 
 # complete WORD...: what bash offers for the last word.
 complete_words() {

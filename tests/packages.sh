@@ -5,12 +5,13 @@ source "$(dirname "$0")/packages_common.sh"
 
 make_packages "$scratch"
 root=$scratch/root
-for name in gaitd gaitd-dev gaitd-mujoco; do dpkg-deb -x "$scratch/$name.deb" "$root"; done
+for name in gaitd gaitd-dev gaitd-mujoco gaitd-ros2; do dpkg-deb -x "$scratch/$name.deb" "$root"; done
 for file in etc/gaitd/gaitd.yaml usr/lib/sysusers.d/gaitd.conf usr/lib/tmpfiles.d/gaitd.conf \
   usr/lib/udev/rules.d/60-gaitd.rules \
   lib/systemd/system/gaitd.service usr/share/doc/gaitd/examples/network/80-can-fd.network \
   usr/bin/gaitd usr/bin/gaitctl usr/bin/gaitd-fake-robot \
   usr/lib/gaitd/plugins/backend/socketcan.so usr/lib/gaitd/plugins/backend/mujoco.so usr/share/gaitd/robots/atlas/can-fd.yaml \
+  usr/bin/gaitd-ros2 usr/share/man/man8/gaitd-ros2.8 lib/systemd/system/gaitd-ros2.service \
   usr/include/gaitd/abi/plugin.h usr/lib/cmake/gaitd/gaitd-config.cmake; do
   [[ -f $root/$file ]] || fail "not in the packages: $file"
 done
@@ -21,6 +22,9 @@ fi
 [[ $(dpkg-deb -f "$scratch/gaitd.deb" Depends) != *mujoco* ]] || fail "gaitd depends on MuJoCo"
 [[ $(dpkg-deb -f "$scratch/gaitd-mujoco.deb" Depends) == *libmujoco* ]] ||
   fail "gaitd-mujoco does not depend on MuJoCo"
+[[ $(dpkg-deb -f "$scratch/gaitd.deb" Depends) != *ddsc* ]] || fail "gaitd depends on DDS"
+[[ $(dpkg-deb -f "$scratch/gaitd-ros2.deb" Depends) == *libddsc* ]] || fail "gaitd-ros2 does not depend on DDS"
+[[ -z $(dpkg-deb -c "$scratch/gaitd.deb" | grep ros2 || true) ]] || fail "files of gaitd-ros2 are in gaitd"
 python3 "$GAITD_SOURCE/tests/installed_headers.py" "$root/usr" ||
   fail "headers are installed that cannot be used"
 
@@ -40,11 +44,17 @@ export PKG_CONFIG_PATH=$root/usr/lib/pkgconfig
 c++ "$scratch/pc.cc" -o "$scratch/pc" $(pkg-config --cflags --libs gaitd) ||
   fail "pkg-config gaitd gives flags that do not work"
 
-score=$(systemd-analyze security --offline=yes "$GAITD_SOURCE/etc/systemd/gaitd.service" |
-  sed -n 's/.*exposure level for gaitd.service: \([0-9.]*\).*/\1/p')
-echo "exposure score $score"
-awk -v score="$score" 'BEGIN { exit !(score > 0 && score <= 2.0) }' ||
-  fail "the exposure score is '$score', expected at most 2.0"
-messages=$(systemd-analyze verify --man=no "$root/lib/systemd/system/gaitd.service" 2>&1 |
-  grep -v 'gaitd is not executable' || true)
-[[ -z $messages ]] || fail "systemd-analyze verify: $messages"
+# exposed UNIT SCORE: which of them may be at most, and what systemd says of the unit.
+exposed() {
+  local score messages
+  score=$(systemd-analyze security --offline=yes "$GAITD_SOURCE/etc/systemd/$1" |
+    sed -n "s/.*exposure level for $1: \([0-9.]*\).*/\1/p")
+  echo "exposure score of $1: $score"
+  awk -v score="$score" -v most="$2" 'BEGIN { exit !(score > 0 && score <= most) }' ||
+    fail "the exposure score of $1 is '$score', expected at most $2"
+  messages=$(systemd-analyze verify --man=no "$root/lib/systemd/system/$1" 2>&1 |
+    grep -v 'is not executable' || true)
+  [[ -z $messages ]] || fail "systemd-analyze verify: $messages"
+}
+exposed gaitd.service 2.0
+exposed gaitd-ros2.service 2.0

@@ -15,7 +15,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kStatusPeriod = milliseconds(200);
 constexpr auto kRetryPeriod = milliseconds(500);
-constexpr double kRate = 60.0;         // Hz
 constexpr double kRecordRate = 100.0;  // Hz
 constexpr double kSilent = 1.0;        // s without an answer, then the viewers are told
 
@@ -67,7 +66,7 @@ void LiveSource::want_all(bool all) {
 }
 
 void LiveSource::connect() {
-  connector_->connect(daemon::Role::kAdminister,
+  connector_->connect(wanted_.role,
                       [this](std::shared_ptr<GaitdLink> link, const std::string& error) {
                         if (stopped_) return;
                         if (!link) return lose(error);
@@ -103,8 +102,8 @@ void LiveSource::ask(Request id, const char* method, json params) {
 
 void LiveSource::subscribe() {
   ask(kSubscribe, "telemetry.subscribe",
-      {{"signals", all_ ? std::vector<std::string>{"*"} : shown_signals()},
-       {"rate", all_ ? kRecordRate : kRate},
+      {{"signals", all_ ? std::vector<std::string>{"*"} : wanted_.signals},
+       {"rate", all_ ? kRecordRate : wanted_.rate},
        {"events", true}});
 }
 
@@ -174,7 +173,7 @@ void LiveSource::on_header(const json& header) {
     return lose("gaitd describes its signals wrongly: " + error);
   }
   connected_ = true;
-  has_all_ = header.value("rate", 0.0) == kRecordRate;
+  has_all_ = all_ && header.value("rate", 0.0) == kRecordRate;
   reason_.clear();
   listener_.on_robot();
 }

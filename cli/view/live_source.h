@@ -40,12 +40,26 @@ class LiveSource {
     std::function<void(const LiveFrame&)> on_frame;
   };
 
+  /// What is asked of gaitd, and the least role to ask it with.
+  struct Wanted {
+    std::vector<std::string> signals = shown_signals();
+    double rate = 60.0;  // Hz
+    daemon::Role role = daemon::Role::kAdminister;
+  };
+
   LiveSource(boost::asio::io_context* io, GaitdConnector* connector, Listener listener)
-      : connector_(connector), listener_(std::move(listener)), timer_(*io), retry_(*io) {}
+      : LiveSource(io, connector, std::move(listener), Wanted()) {}
+  LiveSource(boost::asio::io_context* io, GaitdConnector* connector, Listener listener,
+             Wanted wanted)
+      : connector_(connector),
+        listener_(std::move(listener)),
+        wanted_(std::move(wanted)),
+        timer_(*io),
+        retry_(*io) {}
 
   void start() { connect(); }
   void stop();
-  /// All signals, for a recording, or those of the page.
+  /// All signals, for a recording, or those wanted.
   void want_all(bool all);
 
   bool connected() const { return connected_; }
@@ -74,6 +88,7 @@ class LiveSource {
 
   GaitdConnector* connector_;
   Listener listener_;
+  Wanted wanted_;
   boost::asio::steady_timer timer_;
   boost::asio::steady_timer retry_;
   std::shared_ptr<GaitdLink> link_;

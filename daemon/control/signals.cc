@@ -127,6 +127,11 @@ void visit_balance(V& v, const TickData& d) {
   v.real(d.adjustment.kappa, "", "cmp/kappa");
   axes(v, d.robot.cop, 2, "m", "cop/");
   pose(v, d.robot.pelvis_position, d.robot.pelvis_orientation, "pelvis/");
+  const Eigen::Quaterniond orientation = sdk::quaternion(d.robot.pelvis_orientation);
+  const Eigen::Vector3d velocity = orientation * sdk::view(d.robot.pelvis_twist).tail<3>();
+  const Eigen::Vector3d turn = orientation * sdk::view(d.robot.pelvis_twist).head<3>();
+  axes(v, velocity.data(), 3, "m/s", "pelvis/velocity/");
+  axes(v, turn.data(), 3, "rad/s", "pelvis/angular_velocity/");
 }
 
 template <class V>
@@ -139,7 +144,10 @@ void visit_foot(V& v, const TickData& d, int side) {
          name, "/contact");
   const Eigen::Vector3d force =
       sdk::quaternion(foot.orientation) * sdk::view(foot.wrench).tail<3>();
+  const Eigen::Vector3d moment =
+      sdk::quaternion(foot.orientation) * sdk::view(foot.wrench).head<3>();
   axes(v, force.data(), 3, "N", "foot/", name, "/force/");
+  axes(v, moment.data(), 3, "N m", "foot/", name, "/moment/");
   axes(v, d.wbc.info.foot_wrench[side] + 3, 3, "N", "foot/", name, "/force_desired/");
   v.word(static_cast<int>(d.legs[side].state),
          {"straighten", "straight", "collapsed", "bent", "extend"}, "leg/", name, "/state");

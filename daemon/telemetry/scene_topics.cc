@@ -4,15 +4,11 @@
 #include <google/protobuf/descriptor.pb.h>
 
 #include <Eigen/Geometry>
-#include <array>
-#include <cmath>
 #include <utility>
-#include <vector>
 
+#include "daemon/telemetry/robot_motion.h"
 #include "daemon/telemetry/scene_drawing.h"
 #include "foxglove.pb.h"
-#include "gaitd/dynamics/kinematics.h"
-#include "gaitd/dynamics/urdf.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -39,22 +35,11 @@ void set_time(std::uint64_t time_ns, google::protobuf::Timestamp* stamp) {
 }  // namespace
 
 struct SceneTopics::Impl {
-  Impl(GaitdModel robot, std::string urdf_text, SceneDrawing scene)
-      : model(std::move(robot)),
-        urdf(std::move(urdf_text)),
-        kinematics(model),
-        drawing(std::move(scene)),
-        q(Eigen::VectorXd::Zero(model.joint_count)),
-        qd(Eigen::VectorXd::Zero(model.joint_count)) {}
+  Impl(std::unique_ptr<RobotMotion> robot, SceneDrawing scene)
+      : motion(std::move(robot)), drawing(std::move(scene)) {}
 
-  struct JointSignals {
-    int position = -1, velocity = -1, torque = -1;
-  };
-
-  // False where the log lacks the pose of the pelvis or a joint.
-  bool find_signals(const SignalTable& table);
-  void write_transforms(std::uint64_t time_ns, std::span<const double> values, MessageSink* sink);
-  void write_joints(std::uint64_t time_ns, std::span<const double> values, MessageSink* sink);
+  void write_transforms(std::uint64_t time_ns, MessageSink* sink);
+  void write_joints(std::uint64_t time_ns, MessageSink* sink);
   template <class Message>
   void write_message(std::uint16_t channel, std::uint64_t time_ns, const Message& message,
                      MessageSink* sink) {
@@ -62,49 +47,19 @@ struct SceneTopics::Impl {
     sink->end_message();
   }
 
-  GaitdModel model;
-  std::string urdf;
-  dynamics::Kinematics kinematics;
+  std::unique_ptr<RobotMotion> motion;
   SceneDrawing drawing;
-  Eigen::VectorXd q, qd;
-  std::array<int, 6> pelvis{};  // x y z roll pitch yaw
-  std::vector<JointSignals> joints;
   std::uint16_t transforms_channel = 0, joints_channel = 0, scene_channel = 0, robot_channel = 0;
   bool begun = false;
   std::uint64_t next = 0;
 };
 
-bool SceneTopics::Impl::find_signals(const SignalTable& table) {
-  constexpr std::array kPose = {"x", "y", "z", "roll", "pitch", "yaw"};
-  for (std::size_t i = 0; i < kPose.size(); ++i) {
-    pelvis[i] = find_signal(table, std::string("pelvis/") + kPose[i]);
-    if (pelvis[i] < 0) return false;
-  }
-  for (int i = 0; i < model.joint_count; ++i) {
-    const std::string joint = "joint/" + std::string(model.joints[i].name);
-    joints.push_back({find_signal(table, joint + "/position"),
-                      find_signal(table, joint + "/velocity"),
-                      find_signal(table, joint + "/torque")});
-    if (joints.back().position < 0 || joints.back().velocity < 0 || joints.back().torque < 0) {
-      return false;
-    }
-  }
-  return true;
-}
-
-void SceneTopics::Impl::write_transforms(std::uint64_t time_ns, std::span<const double> values,
-                                         MessageSink* sink) {
-  for (int i = 0; i < model.joint_count; ++i) q[i] = values[joints[i].position];
-  const Eigen::Quaterniond R_WP = Eigen::AngleAxisd(values[pelvis[5]], Eigen::Vector3d::UnitZ()) *
-                                  Eigen::AngleAxisd(values[pelvis[4]], Eigen::Vector3d::UnitY()) *
-                                  Eigen::AngleAxisd(values[pelvis[3]], Eigen::Vector3d::UnitX());
-  kinematics.update({values[pelvis[0]], values[pelvis[1]], values[pelvis[2]]}, R_WP,
-                    dynamics::Vector6d::Zero(), q, qd);
+void SceneTopics::Impl::write_transforms(std::uint64_t time_ns, MessageSink* sink) {
+  const GaitdModel& model = motion->model();
   foxglove::FrameTransforms message;
   for (int body = 0; body < model.body_count; ++body) {
     const int parent = model.bodies[body].parent;
-    Eigen::Isometry3d X = kinematics.X_WB(body);
-    if (parent >= 0) X = kinematics.X_WB(parent).inverse() * X;
+    const Eigen::Isometry3d X = motion->X_parent(body);
     foxglove::FrameTransform* transform = message.add_transforms();
     set_time(time_ns, transform->mutable_timestamp());
     transform->set_parent_frame_id(parent < 0 ? kWorldFrame : model.bodies[parent].name);
@@ -121,17 +76,17 @@ void SceneTopics::Impl::write_transforms(std::uint64_t time_ns, std::span<const 
   write_message(transforms_channel, time_ns, message, sink);
 }
 
-void SceneTopics::Impl::write_joints(std::uint64_t time_ns, std::span<const double> values,
-                                     MessageSink* sink) {
+void SceneTopics::Impl::write_joints(std::uint64_t time_ns, MessageSink* sink) {
+  const GaitdModel& model = motion->model();
   foxglove::JointStates message;
   set_time(time_ns, message.mutable_timestamp());
   foxglove::JointState* state = message.add_joints();
   set_time(time_ns, state->mutable_timestamp());
   for (int i = 0; i < model.joint_count; ++i) {
     state->add_name(model.joints[i].name);
-    state->add_position(values[joints[i].position]);
-    state->add_velocity(values[joints[i].velocity]);
-    state->add_effort(values[joints[i].torque]);
+    state->add_position(motion->position()[i]);
+    state->add_velocity(motion->velocity()[i]);
+    state->add_effort(motion->torque()[i]);
   }
   write_message(joints_channel, time_ns, message, sink);
 }
@@ -141,17 +96,11 @@ SceneTopics::~SceneTopics() = default;
 
 std::unique_ptr<SceneTopics> SceneTopics::create(const std::map<std::string, std::string>& metadata,
                                                  const SignalTable& table) {
-  const auto urdf = metadata.find("robot_urdf");
-  if (urdf == metadata.end()) return nullptr;
-  dynamics::UrdfOptions options;
-  if (const auto pelvis = metadata.find("pelvis"); pelvis != metadata.end()) {
-    options.root_link = pelvis->second;
-  }
-  const dynamics::UrdfResult robot = dynamics::load_urdf_text(urdf->second, "the log", options);
-  if (!robot.ok()) return nullptr;
+  std::unique_ptr<RobotMotion> motion = RobotMotion::create(metadata, table);
+  if (!motion) return nullptr;
   std::unique_ptr<SceneTopics> topics(new SceneTopics);
-  topics->impl_ = std::make_unique<Impl>(robot.model, urdf->second, SceneDrawing(metadata, table));
-  return topics->impl_->find_signals(table) ? std::move(topics) : nullptr;
+  topics->impl_ = std::make_unique<Impl>(std::move(motion), SceneDrawing(metadata, table));
+  return topics;
 }
 
 void SceneTopics::add_channels(MessageSink* sink) {
@@ -176,14 +125,15 @@ void SceneTopics::write(std::uint64_t time_ns, std::span<const double> values, M
   foxglove::SceneUpdate scene;
   if (!impl.begun) {
     foxglove::RobotDescription description;
-    description.set_data(impl.urdf);
+    description.set_data(impl.motion->urdf());
     description.set_format("urdf");
     impl.write_message(impl.robot_channel, time_ns, description, sink);
     impl.drawing.add_terrain(&scene);
     impl.begun = true;
   }
-  impl.write_transforms(time_ns, values, sink);
-  impl.write_joints(time_ns, values, sink);
+  impl.motion->read(values);
+  impl.write_transforms(time_ns, sink);
+  impl.write_joints(time_ns, sink);
   impl.drawing.add_gait(values, &scene);
   for (foxglove::SceneEntity& entity : *scene.mutable_entities()) {
     set_time(time_ns, entity.mutable_timestamp());

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "daemon/log/signal.h"
+#include "gaitd/dynamics/kinematics.h"
+#include "gaitd/dynamics/urdf.h"
+
+namespace gaitd::daemon {
+
+// Where the bodies of the robot are by the signals of a tick, for those who show it.
+class RobotMotion {
+ public:
+  // `metadata` of a log, which holds the URDF. Null where there is no robot in it, or the table
+  // lacks the pose of the pelvis or a joint.
+  static std::unique_ptr<RobotMotion> create(const std::map<std::string, std::string>& metadata,
+                                             const SignalTable& table);
+
+  const GaitdModel& model() const { return model_; }
+  const std::string& urdf() const { return urdf_; }
+  // Links of the file and the bodies that carry them.
+  const std::vector<dynamics::UrdfLink>& links() const { return links_; }
+
+  // One tick, values in table order.
+  void read(std::span<const double> values);
+
+  // ---- Of the tick that was read last.
+  Eigen::Isometry3d X_WP() const { return kinematics_.X_WB(0); }
+  // Pose of a body in its parent, of the pelvis in the world.
+  Eigen::Isometry3d X_parent(int body) const;
+  const Eigen::VectorXd& position() const { return position_; }  // rad or m, by joint
+  const Eigen::VectorXd& velocity() const { return velocity_; }  // rad/s or m/s
+  const Eigen::VectorXd& torque() const { return torque_; }      // N m or N, measured
+
+ private:
+  RobotMotion(const dynamics::UrdfResult& robot, std::string urdf);
+  bool find_signals(const SignalTable& table);
+
+  struct JointSignals {
+    int position = -1, velocity = -1, torque = -1;
+  };
+  GaitdModel model_;
+  std::vector<dynamics::UrdfLink> links_;
+  std::string urdf_;
+  dynamics::Kinematics kinematics_;
+  Eigen::VectorXd position_, velocity_, torque_;
+  std::array<int, 6> pelvis_{};  // x y z roll pitch yaw
+  std::vector<JointSignals> joints_;
+};
+
+}  // namespace gaitd::daemon
