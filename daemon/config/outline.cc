@@ -17,8 +17,7 @@ void reduce_outline(std::size_t most, std::vector<double>* points) {
       const double* a = at(i + count - 1);
       const double* b = at(i);
       const double* c = at(i + 1);
-      const double area =
-          std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+      const double area = std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
       if (area >= least_area) continue;
       least = i;
       least_area = area;

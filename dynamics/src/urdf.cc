@@ -290,8 +290,9 @@ class TreeBuilder {
     Matrix3d m = merged.inertia;
     // A rod is possible as a part, but not as a body that moves by itself.
     if (!check_inertia(m, false).empty() && make_physical(&m)) {
-      xml_.add_warning(body_lines_[i], owner + ": an inertia of zero about one axis; it is taken "
-                                               "for a thin one");
+      xml_.add_warning(body_lines_[i], owner +
+                                           ": an inertia of zero about one axis; it is taken "
+                                           "for a thin one");
     }
     const double inertia[6] = {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)};
     std::copy_n(inertia, 6, body.inertia);
@@ -336,8 +337,7 @@ UrdfResult load_urdf_text(const std::string& text, const std::string& source,
   result.model.size = sizeof(GaitdModel);
   result.model.gravity = kStandardGravity;
   XmlReader xml(source, &result.errors, &result.warnings);
-  const UrdfElements elements =
-      read_urdf_elements(text, options.fixed, &xml, &result.unused_fixed);
+  const UrdfElements elements = read_urdf_elements(text, options.fixed, &xml, &result.unused_fixed);
   copy_name(elements.robot_name, result.model.name);
   if (!elements.links.empty()) TreeBuilder(elements, &xml, &result).build(options);
   if (result.ok()) {

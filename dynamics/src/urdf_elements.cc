@@ -129,7 +129,8 @@ class ElementReader {
     // A part on a fixed joint may be a point mass; the body it is merged into is checked again.
     const std::string reason = check_inertia(m, true);
     if (!reason.empty() && make_physical(&link->inertia)) {
-      xml_.add_warning(inertia.Row(), owner + ": " + reason + "; the nearest possible one is taken");
+      xml_.add_warning(inertia.Row(),
+                       owner + ": " + reason + "; the nearest possible one is taken");
     } else if (!reason.empty()) {
       xml_.add_error(inertia.Row(),
                      owner + ": " + reason + "; correct <inertia> (about the centre of mass)");
@@ -154,8 +155,9 @@ class ElementReader {
       if (moves) lock(element, to_vector(at.axis), type, &joint);
       if (moves && !locked) {
         xml_.add_warning(mimic->Row(),
-                         owner + ": <mimic>: a joint that follows another one is not modelled, it "
-                                 "is fixed; drop <mimic> if it has a drive of its own");
+                         owner +
+                             ": <mimic>: a joint that follows another one is not modelled, it "
+                             "is fixed; drop <mimic> if it has a drive of its own");
       }
       elements_.joints.push_back(joint);
       return;

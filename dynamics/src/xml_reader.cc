@@ -91,9 +91,7 @@ std::string XmlReader::at(int line, const std::string& what) const {
   return (line == 0 ? source_ : source_ + ":" + std::to_string(line)) + ": " + what;
 }
 
-void XmlReader::add_error(int line, const std::string& what) {
-  errors_->push_back(at(line, what));
-}
+void XmlReader::add_error(int line, const std::string& what) { errors_->push_back(at(line, what)); }
 
 void XmlReader::add_warning(int line, const std::string& what) {
   warnings_->push_back(at(line, what));

@@ -138,8 +138,12 @@ TEST(Urdf, FixesJointsByNameAndThoseThatMimic) {
   ASSERT_TRUE(result.ok()) << all(result.errors);
   EXPECT_EQ(result.model.joint_count, 1);
   EXPECT_EQ(result.find_link("tip")->body, 1);
-  EXPECT_NEAR(result.find_link("finger")->R_BL.angularDistance(Eigen::Quaterniond::Identity()), 0.5,
-              1e-12);
+  UrdfOptions other = options;
+  std::string at_zero = text;
+  at_zero.replace(at_zero.find("lower='0.5'"), 11, "lower='-1'");
+  const UrdfResult zero = load_urdf_text(at_zero, "t", other);
+  EXPECT_NEAR(result.find_link("finger")->R_BL.angularDistance(zero.find_link("finger")->R_BL), 0.5,
+              1e-7);
   EXPECT_EQ(result.unused_fixed, std::vector<std::string>{"no_*"});
   ASSERT_EQ(result.warnings.size(), 1u);
   EXPECT_NE(result.warnings[0].find("joint 'grip_2': <mimic>"), std::string::npos);
@@ -149,11 +153,10 @@ TEST(Urdf, TakesAPelvisThatLooksElsewhere) {
   UrdfOptions options;
   options.R_LB = Eigen::AngleAxisd(M_PI_2, Eigen::Vector3d::UnitZ());  // forward is its y axis
   const std::string text =
-      robot(link("pelvis") + link("leg") +
-            joint("hip", "revolute", "pelvis", "leg", "<origin xyz='0 0.3 0'/>" + std::string(kLimit)));
+      robot(link("pelvis") + link("leg") + joint("hip", "revolute", "pelvis", "leg", kLimit));
   const UrdfResult result = load_urdf_text(text, "t", options);
   ASSERT_TRUE(result.ok()) << all(result.errors);
-  EXPECT_NEAR(result.model.joints[0].origin[0], 0.3, 1e-12);
+  EXPECT_NEAR(result.model.joints[0].origin[0], 0.1, 1e-12);  // y of the link
   EXPECT_NEAR(result.model.joints[0].origin[1], 0.0, 1e-12);
 }
 

@@ -185,7 +185,7 @@ TEST(Robot, GivesTheFiguresOfAPostureThatDoesNotStand) {
   EXPECT_ERROR("l_leg_aky: -0.2760", "l_leg_aky: -0.1760",
                "posture: expected level soles that point forward (within 0.002 rad), got the left "
                "one tilted by 0.1000 rad");
-  
+
   EXPECT_ERROR("l_arm_elx: 0.5", "l_arm_elx: -0.5",
                "posture.l_arm_elx: expected a position in 0..2.35619 rad, got -0.5");
   std::string leaning = atlas_text();
@@ -228,7 +228,8 @@ TEST(Robot, TellsOneCauseOnce) {
 }
 
 TEST(Robot, FixesJointsAndTurnsThePelvis) {
-  std::string text = replaced(atlas_text(), "pelvis: pelvis", "pelvis: {link: pelvis, rpy: [0, 0, 0]}");
+  std::string text =
+      replaced(atlas_text(), "pelvis: pelvis", "pelvis: {link: pelvis, rpy: [0, 0, 0]}");
   text = replaced(text, "chest: utorso", "chest: utorso\nfixed: [\"?_arm_*w*\"]");
   for (const char* side : {"l", "r"}) {
     for (const char* joint : {"uwy", "mwx", "lwy"}) {
