@@ -14,6 +14,7 @@
 #include "cli/param_commands.h"
 #include "cli/plugin_commands.h"
 #include "cli/report/report_command.h"
+#include "cli/robot/robot_command.h"
 #include "cli/run_command.h"
 #include "cli/view/view_command.h"
 #include "cli/teleop/teleop_command.h"
@@ -37,6 +38,7 @@ void add_commands(CLI::App* app, Context* context) {
   add_log_commands(app, context);
   add_report_command(app, context);
   add_doctor_command(app, context);
+  add_robot_command(app, context);
   add_completion_command(app, context);
   add_help(app);
 }

@@ -30,7 +30,7 @@ const std::vector<Group>& groups() {
         "drive", "teleop", "pose", "pause", "resume", "stop", "abort"}},
       {"Play scenarios", {"run", "campaign", "compare", "sim"}},
       {"Read logs", {"report", "log", "doctor"}},
-      {"Set up", {"param", "plugin", "joint", "calibrate", "completion"}}};
+      {"Set up", {"robot", "param", "plugin", "joint", "calibrate", "completion"}}};
   return kGroups;
 }
 
@@ -76,6 +76,7 @@ const std::map<std::string, const char*>& examples() {
       {"joint list", "gaitctl joint list"},
       {"joint test", "gaitctl joint test l_leg_kny --amplitude 0.05"},
       {"calibrate", "gaitctl calibrate --simulate -o measured.yaml"},
+      {"robot init", "gaitctl robot init my-robot.urdf -o my-robot"},
       {"completion", "gaitctl completion bash"}};
   return kExamples;
 }

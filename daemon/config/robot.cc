@@ -17,6 +17,8 @@
 namespace gaitd::daemon {
 namespace {
 
+constexpr std::size_t kMostFixed = 256;
+
 void read_parameters(MapReader map, SettingSource source, Settings* settings, Issues* issues) {
   for (const Node::Entry& entry : map.entries()) {
     const std::string path = map.path_of(entry.key);
@@ -74,7 +76,8 @@ std::string format(const char* pattern, double a, double b, double c) {
   return buffer;
 }
 
-// Both soles level, at one height, beside each other, and the centre of mass above them.
+// Both soles level, at one height, beside each other, and the centre of mass above them. Of these
+// the first that is wrong: a tilted sole stands elsewhere too.
 void check_posture(const GaitdModel& model, const PostureFigures& figures, const Location& where,
                    Issues* issues) {
   constexpr double kAngle = 2e-3;     // rad
@@ -90,6 +93,7 @@ void check_posture(const GaitdModel& model, const PostureFigures& figures, const
                                     : "the right one tilted by %.4f rad, turned by %.4f rad",
                  figures.sole_tilt[side], figures.sole_yaw[side], 0.0),
           "correct the ankles: their pitch undoes hip and knee, their roll the hip roll");
+      return;
     }
   }
   if (std::abs(left[0] - right[0]) > kDistance || std::abs(left[2] - right[2]) > kDistance ||
@@ -98,6 +102,7 @@ void check_posture(const GaitdModel& model, const PostureFigures& figures, const
                 format("left - right = (%.4f, %.4f, %.4f) m", left[0] - right[0],
                        left[1] - right[1], left[2] - right[2]),
                 "give both legs the same angles, mirrored");
+    return;
   }
   double front = -1e9;
   double back = 1e9;
@@ -122,6 +127,7 @@ void finish_model(const Location& posture, GaitdModel* model, Issues* issues) {
     issues->add(posture, side == GAITD_LEFT ? "legs.left" : "legs.right", expected,
                 "joints that do not work as a leg",
                 "check hip_pitch, knee and ankle_pitch and the URDF");
+    return;
   }
   const PostureFigures figures = compute_posture_figures(*model);
   check_posture(*model, figures, posture, issues);
@@ -130,21 +136,61 @@ void finish_model(const Location& posture, GaitdModel* model, Issues* issues) {
   model->nominal_foot_separation = figures.foot_separation();
 }
 
+// The link, or a map of it and of the axes that x forward, y left and z up are in it.
+void read_pelvis(MapReader* root, dynamics::UrdfOptions* options) {
+  const NodePtr node = root->node("pelvis");
+  if (!node) return;
+  if (node->kind != NodeKind::kMap) {
+    options->root_link = root->text("pelvis").value_or("");
+    return;
+  }
+  MapReader map = root->map("pelvis");
+  map.require({"link"});
+  options->root_link = map.text("link").value_or("");
+  std::array<double, 3> rpy{};
+  map.numbers("rpy", rpy, kAngle);
+  options->R_LB = from_rpy(rpy);
+  map.finish();
+}
+
+std::vector<NodePtr> read_fixed(MapReader* root, dynamics::UrdfOptions* options) {
+  std::vector<NodePtr> nodes;
+  if (!root->has("fixed")) return nodes;
+  for (const NodePtr& node : root->list("fixed", 0, kMostFixed)) {
+    if (node->kind != NodeKind::kScalar || node->text.empty()) {
+      root->fail("fixed", "names or globs of joints", describe(*node), "write [\"*_finger_*\"]");
+      continue;
+    }
+    options->fixed.push_back(node->text);
+    nodes.push_back(node);
+  }
+  return nodes;
+}
+
 dynamics::UrdfResult load_urdf_of(MapReader* root, const std::string& file, const UrdfLoader& load,
                                   Robot* robot, Issues* issues) {
   const auto urdf = root->text("urdf");
-  const auto pelvis = root->text("pelvis");
+  dynamics::UrdfOptions options;
+  read_pelvis(root, &options);
+  const std::vector<NodePtr> fixed = read_fixed(root, &options);
   dynamics::UrdfResult result;
   if (!urdf) {
     result.errors.push_back("no file");  // the missing key is reported already
     return result;
   }
   robot->urdf = (std::filesystem::path(file).parent_path() / *urdf).lexically_normal().string();
-  dynamics::UrdfOptions options;
-  options.root_link = pelvis.value_or("");
   result = load(robot->urdf, options);
   for (const std::string& error : result.errors) {
     issues->add_text(root->where("urdf"), "urdf", error);
+  }
+  for (const std::string& warning : result.warnings) {
+    issues->warn(root->where("urdf"), "urdf", warning);
+  }
+  for (const NodePtr& node : fixed) {
+    const auto& unused = result.unused_fixed;
+    if (std::find(unused.begin(), unused.end(), node->text) == unused.end()) continue;
+    issues->add(node->where, "fixed", "a joint of the URDF or a glob (*_finger_*)", node->text,
+                "correct or remove it");
   }
   return result;
 }

@@ -8,20 +8,15 @@
 
 #include "daemon/config/joint_names.h"
 #include "daemon/config/names.h"
+#include "daemon/config/outline.h"
 
 namespace gaitd::daemon {
 namespace {
 
 constexpr Bounds kLength = {-10.0, 10.0, "m"};
-constexpr Bounds kAngle = {-2.0 * M_PI, 2.0 * M_PI, "rad"};
+constexpr std::size_t kMostOutlinePoints = 1000;
 constexpr int kMinLegJoints = 6;
 constexpr int kMaxLegJoints = 12;
-
-Eigen::Quaterniond from_rpy(const std::array<double, 3>& rpy) {
-  return Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) *
-         Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
-         Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX());
-}
 
 void copy_name(const std::string& name, char* out) {
   std::strncpy(out, name.c_str(), GAITD_NAME_SIZE - 1);
@@ -33,6 +28,12 @@ std::string limits_text(const GaitdJoint& joint) {
 }
 
 }  // namespace
+
+Eigen::Quaterniond from_rpy(const std::array<double, 3>& rpy) {
+  return Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX());
+}
 
 RobotGeometry::RobotGeometry(const dynamics::UrdfResult* urdf, GaitdModel* model, Issues* issues)
     : urdf_(urdf), model_(model), issues_(issues) {
@@ -94,7 +95,7 @@ void RobotGeometry::read_foot(MapReader map, int side) {
   const std::string name(kSideNames[side]);
   map.require({"link", "sole", "outline", "force_sensor"});
   const dynamics::UrdfLink* foot_link = link(&map, "link");
-  if (foot_link) foot->body = foot_link->body;
+  foot->body = foot_link ? foot_link->body : -1;
 
   MapReader sole = map.map("sole");
   read_frame(&sole, foot_link, name + "_sole", &foot->sole);
@@ -114,9 +115,20 @@ void RobotGeometry::read_foot(MapReader map, int side) {
 }
 
 void RobotGeometry::read_outline(MapReader* map, GaitdFoot* foot) {
-  const std::vector<NodePtr> nodes = map->list("outline", 3, GAITD_MAX_FOOT_POINTS);
-  const std::vector<double> points =
-      read_points(nodes, map->path_of("outline"), 2, kLength, issues_);
+  const std::vector<NodePtr> nodes = map->list("outline", 3, kMostOutlinePoints);
+  std::vector<double> points = read_points(nodes, map->path_of("outline"), 2, kLength, issues_);
+  std::string why;
+  if (!points.empty() && !is_convex_counter_clockwise(points, 2, &why)) {
+    map->fail("outline", "a convex outline, counter-clockwise from above", why, "");
+    return;
+  }
+  if (nodes.size() > GAITD_MAX_FOOT_POINTS) {
+    reduce_outline(GAITD_MAX_FOOT_POINTS, &points);
+    issues_->warn(map->where("outline"), map->path_of("outline"),
+                  std::to_string(nodes.size()) + " points; the " +
+                      std::to_string(GAITD_MAX_FOOT_POINTS) +
+                      " that keep most of the area are taken");
+  }
   double front = -kLength.maximum;
   for (std::size_t i = 0; i < points.size() / 2; ++i) {
     foot->points[i][0] = points[2 * i];
@@ -124,10 +136,6 @@ void RobotGeometry::read_outline(MapReader* map, GaitdFoot* foot) {
     front = std::max(front, points[2 * i]);
   }
   foot->point_count = static_cast<int>(points.size() / 2);
-  std::string why;
-  if (!points.empty() && !is_convex_counter_clockwise(points, 2, &why)) {
-    map->fail("outline", "a convex outline, counter-clockwise from above", why, "");
-  }
   // Middle of the front edge, unless given.
   constexpr double kSameEdge = 1e-3;  // m
   double right = kLength.maximum;
@@ -149,6 +157,7 @@ int RobotGeometry::joint(const Node& node, std::string_view path) {
   if (node.kind == NodeKind::kScalar && found != joint_names_.end()) {
     return static_cast<int>(found - joint_names_.begin());
   }
+  if (!reported_.insert(node.text).second) return -1;
   issues_->add(node.where, path, "a joint of the URDF that moves", describe(node),
                suggestion(node.text, joint_names_));
   return -1;
@@ -182,7 +191,8 @@ void RobotGeometry::read_leg(MapReader map, int side) {
     const int index = joint(*nodes[i], map.path_of("joints") + "[" + std::to_string(i) + "]");
     if (index >= 0) leg->joints[leg->joint_count++] = index;
   }
-  if (leg->joint_count > 0 && leg->joint_count == static_cast<int>(nodes.size())) {
+  const bool foot_known = model_->feet[side].body >= 0;
+  if (leg->joint_count > 0 && leg->joint_count == static_cast<int>(nodes.size()) && foot_known) {
     check_chain(map, *leg, model_->feet[side].body);
   }
   leg->hip_pitch = leg_joint(&map, "hip_pitch", *leg);

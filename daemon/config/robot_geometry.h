@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +13,11 @@
 #include "gaitd/dynamics/urdf.h"
 
 namespace gaitd::daemon {
+
+inline constexpr Bounds kAngle = {-2.0 * M_PI, 2.0 * M_PI, "rad"};
+
+// Fixed axes x, y, z in this order, as in a URDF.
+Eigen::Quaterniond from_rpy(const std::array<double, 3>& rpy);
 
 // Reads the parts of robot.yaml that refer to links and joints of the URDF into the model. When the
 // URDF could not be read, names are not checked, so that the rest of the file still is.
@@ -46,6 +54,7 @@ class RobotGeometry {
   Issues* issues_;
   std::vector<std::string> link_names_;
   std::vector<std::string> joint_names_;
+  std::set<std::string> reported_;  // joints that are not there; each is told once
 };
 
 }  // namespace gaitd::daemon

@@ -12,6 +12,8 @@ namespace {
 // Published inertias are rounded to a few digits, so the inequalities hold to about this fraction
 // of the largest moment.
 constexpr double kInertiaTolerance = 1e-6;
+// An inertia printed with two digits may be off by this fraction of its largest moment.
+constexpr double kRounding = 0.05;
 constexpr double kUnitTolerance = 1e-9;
 
 template <typename... Args>
@@ -152,6 +154,21 @@ std::string check_inertia(const Eigen::Matrix3d& inertia, bool allow_zero) {
         moments[0], moments[1], moments[2]);
   }
   return {};
+}
+
+bool make_physical(Eigen::Matrix3d* inertia) {
+  if (!inertia->allFinite()) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(*inertia);
+  // A body with moments a, b, c has the second moments of mass (b + c - a) / 2 and so on, none of
+  // which may be negative.
+  const Eigen::Vector3d moments = solver.eigenvalues();
+  if (!(moments[2] > 0)) return false;
+  const Eigen::Vector3d extents = Eigen::Vector3d::Constant(0.5 * moments.sum()) - moments;
+  if (extents.minCoeff() < -kRounding * moments[2]) return false;
+  const Eigen::Vector3d possible = extents.cwiseMax(1e-6 * moments[2]);
+  const Eigen::Vector3d nearest = Eigen::Vector3d::Constant(possible.sum()) - possible;
+  *inertia = solver.eigenvectors() * nearest.asDiagonal() * solver.eigenvectors().transpose();
+  return true;
 }
 
 std::vector<std::string> check_model(const GaitdModel& model) { return Checker(model).run(); }

@@ -50,14 +50,17 @@ class TreeBuilder {
   TreeBuilder(const UrdfElements& elements, XmlReader* xml, UrdfResult* result)
       : elements_(elements), xml_(*xml), result_(*result) {}
 
-  void build(const std::string& root_link) {
+  void build(const UrdfOptions& options) {
+    const std::string& root_link = options.root_link;
     index_links();
     index_joints();
-    const std::string root = find_root();
+    std::string root = find_root();
     if (root.empty()) return;
     report_loops(root);
+    root = without_world(root);
     Isometry3d X_BR = Isometry3d::Identity();
     if (!root_link.empty() && !place_root(root_link, root, &X_BR)) return;
+    X_BR = options.R_LB.normalized().inverse() * X_BR;
     walk(root, root_link.empty() ? root : root_link, X_BR);
     finish_bodies();
   }
@@ -139,6 +142,20 @@ class TreeBuilder {
                                "), expected one; connect them with joints or remove the rest");
     }
     return {};
+  }
+
+  // The robot below an empty root on which it floats; a floating joint elsewhere is an error.
+  std::string without_world(const std::string& root) {
+    const auto& joints = children_[root];
+    const bool world = joints.size() == 1 && joints[0]->kind == UrdfJointKind::kFloating &&
+                       links_[root]->mass == 0;
+    for (const UrdfJointElement& joint : elements_.joints) {
+      if (joint.kind != UrdfJointKind::kFloating || (world && &joint == joints[0])) continue;
+      xml_.add_error(joint.line, "joint " + in_quotes(joint.name) +
+                                     ": type is 'floating', expected revolute, continuous, "
+                                     "prismatic or fixed; the root of the tree floats by itself");
+    }
+    return world ? joints[0]->child : root;
   }
 
   // Each closed chain of parents once.
@@ -270,7 +287,13 @@ class TreeBuilder {
     const std::string owner = "link " + in_quotes(body_names_[i]);
     body.mass = merged.mass;
     Vector3d::Map(body.com) = merged.com;
-    const Matrix3d& m = merged.inertia;
+    Matrix3d m = merged.inertia;
+    // A rod is possible as a part, but not as a body that moves by itself.
+    if (!check_inertia(m, false).empty() && make_physical(&m)) {
+      xml_.add_warning(body_lines_[i], owner +
+                                           ": an inertia of zero about one axis; it is taken "
+                                           "for a thin one");
+    }
     const double inertia[6] = {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)};
     std::copy_n(inertia, 6, body.inertia);
     result_.model.total_mass += merged.mass;
@@ -313,10 +336,10 @@ UrdfResult load_urdf_text(const std::string& text, const std::string& source,
   UrdfResult result;
   result.model.size = sizeof(GaitdModel);
   result.model.gravity = kStandardGravity;
-  XmlReader xml(source, &result.errors);
-  const UrdfElements elements = read_urdf_elements(text, &xml);
+  XmlReader xml(source, &result.errors, &result.warnings);
+  const UrdfElements elements = read_urdf_elements(text, options.fixed, &xml, &result.unused_fixed);
   copy_name(elements.robot_name, result.model.name);
-  if (!elements.links.empty()) TreeBuilder(elements, &xml, &result).build(options.root_link);
+  if (!elements.links.empty()) TreeBuilder(elements, &xml, &result).build(options);
   if (result.ok()) {
     for (const std::string& error : check_model(result.model)) xml.add_error(0, error);
   }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "urdf_elements.h"
 
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "gaitd/abi/types.h"
@@ -21,7 +25,16 @@ Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
 
 class ElementReader {
  public:
-  explicit ElementReader(XmlReader* xml) : xml_(*xml) {}
+  ElementReader(const std::vector<std::string>& fixed, XmlReader* xml)
+      : fixed_(fixed), used_(fixed.size(), false), xml_(*xml) {}
+
+  std::vector<std::string> unused() const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < fixed_.size(); ++i) {
+      if (!used_[i]) names.push_back(fixed_[i]);
+    }
+    return names;
+  }
 
   UrdfElements read(const std::string& text) {
     if (const auto excess = find_excess(text)) {
@@ -101,21 +114,24 @@ class ElementReader {
     link->com = X_LC.translation();
     link->mass = from.mass;
     link->inertia = X_LC.linear() * m * X_LC.linear().transpose();
-    if (xml_.error_count() == errors) check_mass(*mass, *inertia, m, owner, link->mass);
+    if (xml_.error_count() == errors) check_mass(*mass, *inertia, m, owner, link);
     if (xml_.error_count() == errors) return;
     link->mass = 1;
     link->inertia.setIdentity();
   }
 
   void check_mass(const TiXmlElement& mass, const TiXmlElement& inertia, const Eigen::Matrix3d& m,
-                  const std::string& owner, double value) {
-    if (value < 0 || (value == 0 && !m.isZero(0))) {
-      xml_.add_error(mass.Row(), owner + ": mass is " + to_text(value) +
+                  const std::string& owner, UrdfLinkElement* link) {
+    if (link->mass < 0 || (link->mass == 0 && !m.isZero(0))) {
+      xml_.add_error(mass.Row(), owner + ": mass is " + to_text(link->mass) +
                                      " kg, expected above 0; give the mass of the link");
     }
     // A part on a fixed joint may be a point mass; the body it is merged into is checked again.
     const std::string reason = check_inertia(m, true);
-    if (!reason.empty()) {
+    if (!reason.empty() && make_physical(&link->inertia)) {
+      xml_.add_warning(inertia.Row(),
+                       owner + ": " + reason + "; the nearest possible one is taken");
+    } else if (!reason.empty()) {
       xml_.add_error(inertia.Row(),
                      owner + ": " + reason + "; correct <inertia> (about the centre of mass)");
     }
@@ -128,19 +144,64 @@ class ElementReader {
     const std::string owner = "joint " + in_quotes(joint.name);
     joint.parent = link_of(element, "parent", owner);
     joint.child = link_of(element, "child", owner);
-    const urdf::Joint from = parse_joint(element, owner, &xml_);
-    joint.X_PJ = to_isometry(from.parent_to_joint_origin_transform);
-
     const std::string type = xml_.text(element, "type", owner);
-    if (type == "revolute" || type == "continuous" || type == "prismatic") {
+    const bool locked = is_fixed(joint.name);
+    const TiXmlElement* mimic = element.FirstChildElement("mimic");
+    const bool moves = type == "revolute" || type == "continuous" || type == "prismatic";
+    if (type == "fixed" || type == "floating" || (moves && (locked || mimic != nullptr))) {
+      joint.kind = type == "floating" ? UrdfJointKind::kFloating : UrdfJointKind::kFixed;
+      const urdf::Joint at = parse_joint(element, {"origin", "axis"}, owner, &xml_);
+      joint.X_PJ = to_isometry(at.parent_to_joint_origin_transform);
+      if (moves) lock(element, to_vector(at.axis), type, &joint);
+      if (moves && !locked) {
+        xml_.add_warning(mimic->Row(),
+                         owner +
+                             ": <mimic>: a joint that follows another one is not modelled, it "
+                             "is fixed; drop <mimic> if it has a drive of its own");
+      }
+      elements_.joints.push_back(joint);
+      return;
+    }
+    const urdf::Joint from =
+        parse_joint(element, {"origin", "axis", "limit", "dynamics"}, owner, &xml_);
+    joint.X_PJ = to_isometry(from.parent_to_joint_origin_transform);
+    if (moves) {
       joint.kind = type == "prismatic" ? UrdfJointKind::kPrismatic : UrdfJointKind::kRevolute;
       read_motion(element, from, owner, type == "continuous", &joint);
-    } else if (type != "fixed" && !type.empty()) {
+    } else if (!type.empty()) {
       xml_.add_error(joint.line, owner + ": type is '" + type +
                                      "', expected revolute, continuous, prismatic or fixed; the "
                                      "root of the tree floats by itself");
     }
     elements_.joints.push_back(joint);
+  }
+
+  bool is_fixed(const std::string& name) {
+    bool found = false;
+    for (std::size_t i = 0; i < fixed_.size(); ++i) {
+      if (fnmatch(fixed_[i].c_str(), name.c_str(), 0) != 0) continue;
+      found = used_[i] = true;
+    }
+    return found;
+  }
+
+  // Puts a joint that does not move where its range is nearest to zero. What its limits lack or
+  // have too much does not matter then.
+  static void lock(const TiXmlElement& element, const Eigen::Vector3d& axis,
+                   const std::string& type, UrdfJointElement* joint) {
+    const TiXmlElement* limit = element.FirstChildElement("limit");
+    if (limit == nullptr || type == "continuous" || !(axis.norm() > 0)) return;
+    double lower = 0;
+    double upper = 0;
+    limit->QueryDoubleAttribute("lower", &lower);
+    limit->QueryDoubleAttribute("upper", &upper);
+    const double position = std::max(lower, std::min(upper, 0.0));
+    if (!(std::abs(position) < 10)) return;  // not even a number
+    if (type == "prismatic") {
+      joint->X_PJ.translate(position * axis.normalized());
+    } else {
+      joint->X_PJ.rotate(Eigen::AngleAxisd(position, axis.normalized()));
+    }
   }
 
   std::string link_of(const TiXmlElement& joint, const char* tag, const std::string& owner) {
@@ -163,11 +224,6 @@ class ElementReader {
     if (joint->damping < 0) {
       xml_.add_error(element.FirstChildElement("dynamics")->Row(),
                      owner + ": damping is " + to_text(joint->damping) + ", expected 0 or above");
-    }
-    if (const TiXmlElement* mimic = element.FirstChildElement("mimic")) {
-      xml_.add_error(mimic->Row(), owner +
-                                       ": <mimic> is not supported; make the joint fixed, or "
-                                       "drop <mimic> if it has a drive of its own");
     }
     const TiXmlElement* limit = element.FirstChildElement("limit");
     if (limit == nullptr) {
@@ -200,14 +256,20 @@ class ElementReader {
     return value;
   }
 
+  const std::vector<std::string>& fixed_;
+  std::vector<bool> used_;  // of fixed_
   XmlReader& xml_;
   UrdfElements elements_;
 };
 
 }  // namespace
 
-UrdfElements read_urdf_elements(const std::string& text, XmlReader* reader) {
-  return ElementReader(reader).read(text);
+UrdfElements read_urdf_elements(const std::string& text, const std::vector<std::string>& fixed,
+                                XmlReader* reader, std::vector<std::string>* unused) {
+  ElementReader elements(fixed, reader);
+  UrdfElements read = elements.read(text);
+  if (!read.links.empty()) *unused = elements.unused();
+  return read;
 }
 
 }  // namespace gaitd::dynamics

@@ -19,7 +19,7 @@ struct UrdfLinkElement {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  // about the centre of mass, link axes
 };
 
-enum class UrdfJointKind { kFixed, kRevolute, kPrismatic };
+enum class UrdfJointKind { kFixed, kRevolute, kPrismatic, kFloating };
 
 struct UrdfJointElement {
   int line = 0;
@@ -27,7 +27,7 @@ struct UrdfJointElement {
   std::string parent;
   std::string child;
   UrdfJointKind kind = UrdfJointKind::kFixed;
-  Eigen::Isometry3d X_PJ = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d X_PJ = Eigen::Isometry3d::Identity();  // of a locked one at its position
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
   double lower = 0;
   double upper = 0;
@@ -43,7 +43,10 @@ struct UrdfElements {
 };
 
 // Everything wrong with single elements goes to `reader`; what hangs together wrongly does not.
-UrdfElements read_urdf_elements(const std::string& text, XmlReader* reader);
+// Joints that match `fixed`, names or globs, and those with <mimic> come out as kFixed, whatever
+// their limits are. `unused` gets those of `fixed` that match none.
+UrdfElements read_urdf_elements(const std::string& text, const std::vector<std::string>& fixed,
+                                XmlReader* reader, std::vector<std::string>* unused);
 
 }  // namespace gaitd::dynamics
 

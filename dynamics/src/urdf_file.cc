@@ -6,15 +6,15 @@
 #include <fstream>
 
 #include "gaitd/dynamics/urdf.h"
+#include "gaitd/dynamics/urdf_outline.h"
 #include "gaitd/sdk/bounds.h"
 
 namespace gaitd::dynamics {
 
-UrdfResult load_urdf(const std::string& path, const UrdfOptions& options) {
-  UrdfResult result;
+bool read_urdf_text(const std::string& path, std::string* text, std::string* problem) {
   const auto refuse = [&](const std::string& why) {
-    result.errors.push_back(path + ": " + why + ", expected a URDF file; give its path");
-    return result;
+    *problem = path + ": " + why + ", expected a URDF file; give its path";
+    return false;
   };
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -28,11 +28,18 @@ UrdfResult load_urdf(const std::string& path, const UrdfOptions& options) {
   if (!error && size > bounds::kUrdfBytes) return refuse_size(std::to_string(size));
   std::ifstream file(path, std::ios::binary);
   if (!file) return refuse(std::string("cannot be read (") + std::strerror(errno) + ")");
-  std::string text(bounds::kUrdfBytes + 1, '\0');  // one more tells that there is more
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > bounds::kUrdfBytes) return refuse_size("more");
-  return load_urdf_text(text, path, options);
+  text->assign(bounds::kUrdfBytes + 1, '\0');  // one more tells that there is more
+  file.read(text->data(), static_cast<std::streamsize>(text->size()));
+  text->resize(static_cast<std::size_t>(file.gcount()));
+  return text->size() <= bounds::kUrdfBytes || refuse_size("more");
+}
+
+UrdfResult load_urdf(const std::string& path, const UrdfOptions& options) {
+  std::string text, error;
+  if (read_urdf_text(path, &text, &error)) return load_urdf_text(text, path, options);
+  UrdfResult result;
+  result.errors.push_back(error);
+  return result;
 }
 
 }  // namespace gaitd::dynamics

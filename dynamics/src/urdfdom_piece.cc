@@ -98,9 +98,10 @@ urdf::Inertial parse_inertial(const TiXmlElement& inertial, const std::string& o
   return *model->getRoot()->inertial;
 }
 
-urdf::Joint parse_joint(const TiXmlElement& joint, const std::string& owner, XmlReader* xml) {
+urdf::Joint parse_joint(const TiXmlElement& joint, std::initializer_list<const char*> children,
+                        const std::string& owner, XmlReader* xml) {
   const auto model =
-      parse_children(joint, {"origin", "axis", "limit", "dynamics"},
+      parse_children(joint, children,
                      "<robot name='piece'><link name='p'/><link name='c'/>"
                      "<joint name='this' type='continuous'><parent link='p'/><child link='c'/>",
                      "</joint></robot>", owner, xml);

@@ -7,6 +7,7 @@
 #include <urdf_model/joint.h>
 #include <urdf_model/link.h>
 
+#include <initializer_list>
 #include <string>
 
 #include "xml_reader.h"
@@ -18,8 +19,9 @@ namespace gaitd::dynamics {
 urdf::Inertial parse_inertial(const TiXmlElement& inertial, const std::string& owner,
                               XmlReader* xml);
 
-// The same for origin, axis, limits and dynamics of a <joint> of any type.
-urdf::Joint parse_joint(const TiXmlElement& joint, const std::string& owner, XmlReader* xml);
+// The same for children (origin, axis, limit, dynamics) of a <joint> of any type.
+urdf::Joint parse_joint(const TiXmlElement& joint, std::initializer_list<const char*> children,
+                        const std::string& owner, XmlReader* xml);
 
 }  // namespace gaitd::dynamics
 

@@ -87,9 +87,14 @@ std::optional<XmlExcess> find_excess(const std::string& text) {
   return std::nullopt;
 }
 
-void XmlReader::add_error(int line, const std::string& what) {
-  const std::string place = line == 0 ? source_ : source_ + ":" + std::to_string(line);
-  errors_->push_back(place + ": " + what);
+std::string XmlReader::at(int line, const std::string& what) const {
+  return (line == 0 ? source_ : source_ + ":" + std::to_string(line)) + ": " + what;
+}
+
+void XmlReader::add_error(int line, const std::string& what) { errors_->push_back(at(line, what)); }
+
+void XmlReader::add_warning(int line, const std::string& what) {
+  warnings_->push_back(at(line, what));
 }
 
 std::string XmlReader::text(const TiXmlElement& element, const char* attribute,

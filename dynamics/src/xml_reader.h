@@ -27,21 +27,26 @@ std::optional<XmlExcess> find_excess(const std::string& text);
 // Collects errors.
 class XmlReader {
  public:
-  XmlReader(std::string source, std::vector<std::string>* errors)
-      : source_(std::move(source)), errors_(errors) {}
+  XmlReader(std::string source, std::vector<std::string>* errors,
+            std::vector<std::string>* warnings)
+      : source_(std::move(source)), errors_(errors), warnings_(warnings) {}
 
   std::size_t error_count() const { return errors_->size(); }
 
   // "file:line: <what>"; without a line if it is 0.
   void add_error(int line, const std::string& what);
+  void add_warning(int line, const std::string& what);
 
   // Text of an attribute; reports a missing or empty one. `owner` names the element for people,
   // e.g. "joint 'l_knee'".
   std::string text(const TiXmlElement& element, const char* attribute, const std::string& owner);
 
  private:
+  std::string at(int line, const std::string& what) const;
+
   std::string source_;
   std::vector<std::string>* errors_;
+  std::vector<std::string>* warnings_;
 };
 
 }  // namespace gaitd::dynamics

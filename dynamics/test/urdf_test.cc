@@ -125,6 +125,64 @@ TEST(Urdf, FixedLinksAreMergedExactly) {
   }
 }
 
+// What is fixed needs no drive; it stays where its range is nearest to zero.
+TEST(Urdf, FixesJointsByNameAndThoseThatMimic) {
+  const std::string text = robot(
+      link("pelvis") + link("leg") + link("finger") + link("tip") +
+      joint("hip", "revolute", "pelvis", "leg", kLimit) +
+      joint("grip_1", "revolute", "leg", "finger", "<limit lower='0.5' upper='1' effort='0'/>") +
+      joint("grip_2", "revolute", "finger", "tip", "<mimic joint='hip'/>"));
+  UrdfOptions options;
+  options.fixed = {"grip_1", "no_*"};
+  const UrdfResult result = load_urdf_text(text, "t", options);
+  ASSERT_TRUE(result.ok()) << all(result.errors);
+  EXPECT_EQ(result.model.joint_count, 1);
+  EXPECT_EQ(result.find_link("tip")->body, 1);
+  UrdfOptions other = options;
+  std::string at_zero = text;
+  at_zero.replace(at_zero.find("lower='0.5'"), 11, "lower='-1'");
+  const UrdfResult zero = load_urdf_text(at_zero, "t", other);
+  EXPECT_NEAR(result.find_link("finger")->R_BL.angularDistance(zero.find_link("finger")->R_BL), 0.5,
+              1e-7);
+  EXPECT_EQ(result.unused_fixed, std::vector<std::string>{"no_*"});
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_NE(result.warnings[0].find("joint 'grip_2': <mimic>"), std::string::npos);
+}
+
+TEST(Urdf, TakesAPelvisThatLooksElsewhere) {
+  UrdfOptions options;
+  options.R_LB = Eigen::AngleAxisd(M_PI_2, Eigen::Vector3d::UnitZ());  // forward is its y axis
+  const std::string text =
+      robot(link("pelvis") + link("leg") + joint("hip", "revolute", "pelvis", "leg", kLimit));
+  const UrdfResult result = load_urdf_text(text, "t", options);
+  ASSERT_TRUE(result.ok()) << all(result.errors);
+  EXPECT_NEAR(result.model.joints[0].origin[0], 0.1, 1e-12);  // y of the link
+  EXPECT_NEAR(result.model.joints[0].origin[1], 0.0, 1e-12);
+}
+
+TEST(Urdf, MovesARoundedInertiaToTheNearestPossibleOne) {
+  const std::string rod =
+      "<link name='a'><inertial><mass value='1'/><inertia ixx='0.02' iyy='0.02' izz='0.041'/>"
+      "</inertial></link>";
+  const UrdfResult result = load_urdf_text(robot(rod), "t");
+  ASSERT_TRUE(result.ok()) << all(result.errors);
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_NEAR(result.model.bodies[0].inertia[5], 0.041, 1e-6);
+  EXPECT_GE(result.model.bodies[0].inertia[0] + result.model.bodies[0].inertia[3],
+            result.model.bodies[0].inertia[5]);
+}
+
+TEST(Urdf, FloatsOnAnEmptyWorld) {
+  const UrdfResult result =
+      load_urdf_text(robot("<link name='world'/>" + link("pelvis") + link("leg") +
+                           "<joint name='free' type='floating'><parent link='world'/><child "
+                           "link='pelvis'/></joint>" +
+                           joint("hip", "revolute", "pelvis", "leg", kLimit)),
+                     "t");
+  ASSERT_TRUE(result.ok()) << all(result.errors);
+  EXPECT_STREQ(result.model.bodies[0].name, "pelvis");
+}
+
 TEST(Urdf, ALinkFixedToTheRootCanBeTheBase) {
   const std::string text = robot("<link name='base'/>" + link("pelvis") + link("leg") +
                                  joint("weld", "fixed", "base", "pelvis") +

@@ -13,17 +13,35 @@ Eigen::Vector3d across(const Eigen::Vector3d& v, const Eigen::Vector3d& axis) {
   return v - axis * axis.dot(v);
 }
 
+// Origin of a joint in the frame of `body`, which is above it, with the joints between at zero:
+// an ankle may roll before it pitches, a hip pitch before it rolls.
+Eigen::Vector3d origin_in(const GaitdModel& model, int body, const GaitdJoint& joint,
+                          Eigen::Quaterniond* turn) {
+  Eigen::Vector3d p = sdk::view(joint.origin);
+  for (int at = joint.parent_body; at != body && at > 0; at = model.bodies[at].parent) {
+    const GaitdJoint& between = model.joints[model.bodies[at].joint];
+    const Eigen::Quaterniond R = sdk::quaternion(between.orientation);
+    p = sdk::view(between.origin) + R * p;
+    *turn = R * *turn;
+  }
+  return p;
+}
+
 }  // namespace
 
 LegGeometry::LegGeometry(const GaitdModel& model, int side) {
   const GaitdLeg& leg = model.legs[side];
   const GaitdJoint& knee = model.joints[leg.knee];
-  const Eigen::Quaterniond turn = sdk::quaternion(knee.orientation);
+  Eigen::Quaterniond turn = sdk::quaternion(knee.orientation);
+  Eigen::Quaterniond unused = Eigen::Quaterniond::Identity();
+  const Eigen::Vector3d hip_to_knee =
+      origin_in(model, model.joints[leg.hip_pitch].child_body, knee, &turn);
+  const Eigen::Vector3d knee_to_ankle =
+      origin_in(model, knee.child_body, model.joints[leg.ankle_pitch], &unused);
   const Eigen::Vector3d axis = turn * (leg.knee_bend_sign * sdk::view(knee.axis));
   // From the child of the hip to the knee, and from the knee to the ankle at knee 0.
-  const Eigen::Vector3d thigh = across(sdk::view(knee.origin), axis);
-  const Eigen::Vector3d shank =
-      across(turn * sdk::view(model.joints[leg.ankle_pitch].origin), axis);
+  const Eigen::Vector3d thigh = across(hip_to_knee, axis);
+  const Eigen::Vector3d shank = across(turn * knee_to_ankle, axis);
   thigh_ = thigh.norm();
   shank_ = shank.norm();
   offset_ = std::atan2(axis.dot(thigh.cross(shank)), thigh.dot(shank));

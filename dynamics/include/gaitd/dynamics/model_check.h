@@ -22,6 +22,11 @@ std::vector<std::string> check_model(const GaitdModel& model);
 // others. With `allow_zero` a point or a thin rod passes too.
 std::string check_inertia(const Eigen::Matrix3d& inertia, bool allow_zero);
 
+// Moves an inertia (kg m^2, about the centre of mass) that the rounding of its figures made
+// impossible to the nearest possible one. False, and nothing is changed, when more than rounding
+// is wrong with it: by more than 5 % of its largest moment.
+bool make_physical(Eigen::Matrix3d* inertia);
+
 }  // namespace gaitd::dynamics
 
 #endif  // GAITD_DYNAMICS_MODEL_CHECK_H_

@@ -15,6 +15,10 @@ struct UrdfOptions {
   // Link whose frame becomes the frame of body 0 (the pelvis). It must be the root of the tree or
   // be fixed to it. Empty: the root.
   std::string root_link;
+  // Axes of body 0 in those of that link: for a pelvis whose x axis does not point forward.
+  Eigen::Quaterniond R_LB = Eigen::Quaterniond::Identity();
+  // Joints, names or globs, that count as fixed: at zero, or where their range is nearest to it.
+  std::vector<std::string> fixed;
 };
 
 // Where a link of the file went. Links on fixed joints are merged into the body that carries them.
@@ -32,6 +36,10 @@ struct UrdfResult {
   GaitdModel model{};
   std::vector<UrdfLink> links;      // every link of the file, in the order of the bodies
   std::vector<std::string> errors;  // everything that is wrong with the file, not only the first
+  // What was taken differently from how it stands there: joints that mimic another one are fixed,
+  // inertias that rounding made impossible are moved to the nearest possible one.
+  std::vector<std::string> warnings;
+  std::vector<std::string> unused_fixed;  // entries of UrdfOptions::fixed that no joint matches
 
   bool ok() const { return errors.empty(); }
   const UrdfLink* find_link(const std::string& name) const;  // nullptr if there is none
@@ -39,7 +47,8 @@ struct UrdfResult {
 
 // Reads the file at `path`. Joints are numbered depth-first from the root, the joints of one link
 // in alphabetical order; body i + 1 is the child of joint i and its frame is the joint frame at
-// position zero. Revolute, continuous (limits +-1e9 rad), prismatic and fixed joints are taken.
+// position zero. Revolute, continuous (limits +-1e9 rad), prismatic and fixed joints are taken, and
+// a floating one between an empty root and the robot. Joints with <mimic> are fixed.
 // Never throws on a bad file: every problem becomes a text in `errors` that says where (file and
 // line), what was found, what was expected and what to do. Allocates; not for the real-time path.
 UrdfResult load_urdf(const std::string& path, const UrdfOptions& options = {});

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "gaitd/dynamics/urdf.h"
+#include "gaitd/dynamics/urdf_outline.h"
+
+namespace gaitd::porting {
+
+// Sentences that say what was guessed, from what, and how sure it is.
+using Reasons = std::vector<std::string>;
+
+// A frame in a link: m, axes of the link.
+struct FrameGuess {
+  std::string name;
+  std::string link;
+  Eigen::Isometry3d X_LF = Eigen::Isometry3d::Identity();
+  Reasons why;
+};
+
+struct LegGuess {
+  std::vector<int> joints;  // of the model, from the pelvis to the foot
+  int hip_pitch = -1;
+  int knee = -1;
+  int ankle_pitch = -1;
+  int ankle_roll = -1;
+};
+
+struct SoleGuess {
+  FrameGuess frame;                      // x to the toe, z up, at the middle
+  std::vector<Eigen::Vector2d> outline;  // m, in that frame, counter-clockwise, at most 8
+};
+
+struct FixedGuess {
+  std::string joint;
+  std::string why;
+};
+
+// What the commanded gait takes from the size of the robot.
+struct Proportions {
+  double scale = 1.0;          // height of the centre of mass against that of Atlas
+  double omega = 0.0;          // 1/s
+  double swing = 0.0;          // s
+  double transfer = 0.0;       // s
+  double length = 0.0;         // m, of a step
+  double swing_height = 0.0;   // m
+  double contact_least = 0.0;  // N
+};
+
+// A robot as far as it is known. Every step of the guessing fills its part.
+struct Guess {
+  std::string name;
+  std::string urdf_file;
+  dynamics::UrdfOutline outline;
+  dynamics::UrdfOptions options;
+  dynamics::UrdfResult urdf;  // with the options
+  GaitdModel model{};         // of it, with feet, legs and posture
+  std::vector<FixedGuess> fixed;
+  Reasons pelvis_why;
+  std::string chest;  // empty: the pelvis
+  Reasons chest_why;
+  std::array<LegGuess, 2> legs;
+  Reasons legs_why;
+  std::array<SoleGuess, 2> soles;
+  std::array<FrameGuess, 2> force_sensors;
+  FrameGuess imu;
+  Reasons posture_why;
+  Proportions proportions;
+  Reasons proportions_why;
+};
+
+// Poses of all bodies with the joints at `q`, rad; body 0 at the origin.
+std::vector<Eigen::Isometry3d> body_poses(const GaitdModel& model, const Eigen::VectorXd& q);
+// Zero, or where the range of a joint is nearest to it.
+Eigen::VectorXd zero_position(const GaitdModel& model);
+// Axis of a joint, in the frame of body 0, of poses from body_poses().
+Eigen::Vector3d joint_axis(const GaitdModel& model, const std::vector<Eigen::Isometry3d>& poses,
+                           int joint);
+std::string lower_case(std::string text);
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+
+}  // namespace gaitd::porting

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/robot/posture.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "cli/robot/arms.h"
+#include "daemon/config/leg_kinematics.h"
+#include "gaitd/dynamics/kinematics.h"
+#include "gaitd/sdk/views.h"
+
+namespace gaitd::porting {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using Task = Eigen::Matrix<double, 6, 1>;
+
+constexpr double kBend = 0.5;     // rad
+constexpr double kMargin = 0.03;  // rad, from the stops
+constexpr double kClose = 5e-4;   // rad and m
+constexpr double kGap = 0.35;     // of the width of a sole, between the soles
+
+class Solver {
+ public:
+  Solver(const GaitdModel& model, double knee_bend)
+      : model_(model), kinematics_(model), knee_bend_(knee_bend) {}
+
+  void pose(const VectorXd& q) {
+    kinematics_.update(Vector3d::Zero(), Eigen::Quaterniond::Identity(), dynamics::Vector6d::Zero(),
+                       q, VectorXd::Zero(q.size()));
+  }
+
+  Vector3d sole(int side) const {
+    const GaitdFrame& frame = model_.feet[side].sole;
+    return kinematics_.frame_position(frame.body, sdk::view(frame.origin));
+  }
+  const Vector3d& com() const { return kinematics_.com(); }
+
+  // Brings the sole of a leg, level and looking forward, to x and y; and to the height `z`, or the
+  // knee to its bend if that is not a number. What is left of the error.
+  double solve(int side, double x, double y, double z, VectorXd* q) {
+    const GaitdLeg& leg = model_.legs[side];
+    dynamics::Matrix6X jacobian(6, kinematics_.velocity_size());
+    Eigen::MatrixXd J(6, leg.joint_count);
+    Task error;
+    for (int k = 0; k < 200; ++k) {
+      pose(*q);
+      const GaitdFoot& foot = model_.feet[side];
+      const Eigen::Quaterniond now =
+          Eigen::Quaterniond(kinematics_.R_WB(foot.body)) * sdk::quaternion(foot.sole.orientation);
+      error.head<3>() = sdk::log_so3(now.conjugate());
+      error.tail<3>() = Vector3d(x, y, z) - sole(side);
+      kinematics_.frame_jacobian(foot.body, sdk::view(foot.sole.origin), jacobian);
+      int knee = 0;
+      for (int i = 0; i < leg.joint_count; ++i) {
+        J.col(i) = jacobian.col(6 + leg.joints[i]);
+        if (leg.joints[i] == leg.knee) knee = i;
+      }
+      // The error of the orientation is that of the foot in its own axes; near zero both agree.
+      error.head<3>() = now * error.head<3>();
+      if (std::isnan(z)) {
+        error[5] = knee_target(leg) - (*q)[leg.knee];
+        J.row(5).setZero();
+        J(5, knee) = 1.0;
+      }
+      if (error.norm() < 1e-9) break;
+      const Eigen::Matrix<double, 6, 6> normal =
+          J * J.transpose() + 1e-6 * Eigen::Matrix<double, 6, 6>::Identity();
+      VectorXd step = J.transpose() * normal.ldlt().solve(error);
+      const double most = step.cwiseAbs().maxCoeff();
+      if (most > 0.2) step *= 0.2 / most;
+      for (int i = 0; i < leg.joint_count; ++i) {
+        const GaitdJoint& joint = model_.joints[leg.joints[i]];
+        const double margin = std::min(kMargin, 0.05 * (joint.position_max - joint.position_min));
+        double& position = (*q)[leg.joints[i]];
+        position = std::clamp(position + step[i], joint.position_min + margin,
+                              joint.position_max - margin);
+      }
+    }
+    return error.norm();
+  }
+
+ private:
+  double knee_target(const GaitdLeg& leg) const {
+    const GaitdJoint& knee = model_.joints[leg.knee];
+    const double target = straight(leg) + leg.knee_bend_sign * knee_bend_;
+    return std::clamp(target, knee.position_min + kMargin, knee.position_max - kMargin);
+  }
+
+  // Where the leg is longest; zero when that is near enough, as people count from there.
+  double straight(const GaitdLeg& leg) const {
+    const GaitdJoint& knee = model_.joints[leg.knee];
+    VectorXd q = Eigen::Map<const VectorXd>(model_.nominal_position, model_.joint_count);
+    const auto length = [&](double angle) {
+      q[leg.knee] = angle;
+      const auto poses = body_poses(model_, q);
+      return (poses[model_.joints[leg.hip_pitch].child_body].translation() -
+              poses[model_.joints[leg.ankle_pitch].child_body].translation())
+          .norm();
+    };
+    double longest = 0.0;
+    double best = 0.0;
+    const double lower = std::max(knee.position_min, -M_PI);
+    const double upper = std::min(knee.position_max, M_PI);
+    for (int i = 0; i <= 100; ++i) {
+      const double angle = lower + (upper - lower) * i / 100;
+      const double now = length(angle);
+      if (now <= longest) continue;
+      longest = now;
+      best = angle;
+    }
+    return std::abs(best) < 0.3 ? 0.0 : best;
+  }
+
+  const GaitdModel& model_;
+  dynamics::Kinematics kinematics_;
+  double knee_bend_;
+};
+
+// Half the distance of the soles in y, m: as the legs hang, but not closer than feet can stand.
+double half_stance(const Guess& guess, const std::array<Vector3d, 2>& hanging,
+                   const std::array<Vector3d, 2>& hips) {
+  double width = 0.0;
+  for (const SoleGuess& sole : guess.soles) {
+    double inner = 0.0;
+    double outer = 0.0;
+    for (const Eigen::Vector2d& p : sole.outline) {
+      inner = std::min(inner, p.y());
+      outer = std::max(outer, p.y());
+    }
+    width = std::max(width, outer - inner);
+  }
+  const double hip = 0.5 * (hips[0].y() - hips[1].y());
+  double half = 0.5 * (hanging[0].y() - hanging[1].y());
+  if (half < 0.6 * hip || half > 1.6 * hip) half = hip;
+  return std::max(half, 0.5 * (1.0 + kGap) * width);
+}
+
+}  // namespace
+
+bool solve_posture(Guess* guess, std::string* error) {
+  GaitdModel& model = guess->model;
+  Eigen::Map<VectorXd> nominal(model.nominal_position, model.joint_count);
+  nominal = zero_position(model);
+  const auto poses = body_poses(model, nominal);
+  std::array<Vector3d, 2> hips;
+  for (int side = 0; side < 2; ++side) {
+    const std::string expected = daemon::compute_bend_signs(model, &model.legs[side]);
+    // At zero a straight leg shows no sign of the hip and the ankle: half bent it does.
+    if (model.legs[side].knee_bend_sign == 0.0) {
+      *error = "the " + std::string(side == 0 ? "left" : "right") + " leg: expected " + expected;
+      return false;
+    }
+    const int hip = model.legs[side].hip_pitch + 1;
+    hips[static_cast<std::size_t>(side)] = poses[static_cast<std::size_t>(hip)].translation();
+  }
+  VectorXd q = nominal;
+  hang_arms(*guess, &q);
+  Solver solver(model, kBend);
+  solver.pose(q);
+  const double half = half_stance(*guess, {solver.sole(0), solver.sole(1)}, hips);
+  for (int side = 0; side < 2; ++side) {
+    const GaitdLeg& leg = model.legs[side];
+    const double signs[] = {leg.hip_pitch_bend_sign, leg.knee_bend_sign, leg.ankle_pitch_bend_sign};
+    const int joints[] = {leg.hip_pitch, leg.knee, leg.ankle_pitch};
+    const double bends[] = {0.25, 0.5, 0.25};
+    for (int i = 0; i < 3; ++i) {
+      const GaitdJoint& joint = model.joints[joints[i]];
+      q[joints[i]] =
+          std::clamp(q[joints[i]] + signs[i] * bends[i], joint.position_min, joint.position_max);
+    }
+  }
+  double x = 0.0;
+  double left = 0.0;
+  double right = 0.0;
+  for (int k = 0; k < 30; ++k) {
+    left = solver.solve(GAITD_LEFT, x, half, NAN, &q);
+    solver.pose(q);
+    const double z = solver.sole(GAITD_LEFT).z();
+    right = solver.solve(GAITD_RIGHT, x, -half, z, &q);
+    solver.pose(q);
+    const double off = solver.com().x() - x;
+    if (std::abs(off) < 1e-4) break;
+    x += off;
+  }
+  if (std::max(left, right) > kClose) {
+    *error = format(
+        "no standing posture: with the soles flat, side by side, %.3f m apart and below the centre "
+        "of mass, the left leg is off by %.3f, the right one by %.3f (rad and m); limits of the "
+        "joints?",
+        2.0 * half, left, right);
+    return false;
+  }
+  nominal = q;
+  const daemon::PostureFigures figures = daemon::compute_posture_figures(model);
+  guess->posture_why.push_back(format(
+      "Solved: soles level, parallel and %.4f m apart, as the legs hang; knees bent by %.1f rad; "
+      "pelvis %.4f and centre of mass %.4f m above the soles, %.1f mm in front of their middle and "
+      "%.1f mm to the left of it.",
+      figures.foot_separation(), kBend, figures.pelvis_height(), figures.com_height(),
+      1e3 * (figures.com[0] - figures.sole_position[0][0]),
+      1e3 * (figures.com[1] - 0.5 * (figures.sole_position[0][1] + figures.sole_position[1][1]))));
+  guess->posture_why.emplace_back("Arms hang at rest, no joint is at a stop.");
+  model.nominal_pelvis_height = figures.pelvis_height();
+  model.nominal_com_height = figures.com_height();
+  model.nominal_foot_separation = figures.foot_separation();
+  return true;
+}
+
+}  // namespace gaitd::porting

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/robot/robot_init.h"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+
+#include "cli/robot/find_legs.h"
+#include "cli/robot/find_sensors.h"
+#include "cli/robot/fixed_joints.h"
+#include "cli/robot/posture.h"
+#include "cli/robot/proportions.h"
+#include "cli/robot/sole_shape.h"
+
+namespace gaitd::porting {
+namespace {
+
+using Eigen::Vector3d;
+
+bool load(const std::string& text, Guess* guess, std::string* error) {
+  guess->options.fixed.clear();
+  for (const FixedGuess& fixed : guess->fixed) guess->options.fixed.push_back(fixed.joint);
+  guess->urdf = dynamics::load_urdf_text(text, guess->urdf_file, guess->options);
+  guess->model = guess->urdf.model;
+  error->clear();
+  for (const std::string& line : guess->urdf.errors) *error += (error->empty() ? "" : "\n") + line;
+  return guess->urdf.ok();
+}
+
+void fill_frame(const Guess& guess, const FrameGuess& from, const std::string& name,
+                GaitdFrame* frame) {
+  const dynamics::UrdfLink* link = guess.urdf.find_link(from.link);
+  std::strncpy(frame->name, name.c_str(), GAITD_NAME_SIZE - 1);
+  frame->body = link->body;
+  const Eigen::Isometry3d X = Eigen::Translation3d(link->p_BL) * link->R_BL * from.X_LF;
+  Vector3d::Map(frame->origin) = X.translation();
+  Eigen::Vector4d::Map(frame->orientation) = Eigen::Quaterniond(X.linear()).normalized().coeffs();
+}
+
+// The link from which both legs hang; the body may be called after a footprint that is fixed to it.
+std::string link_above(const Guess& guess, const LegPair& pair) {
+  const auto joint_to = [&](const std::string& link) {
+    return std::find_if(guess.outline.joints.begin(), guess.outline.joints.end(),
+                        [&](const auto& joint) { return joint.child == link; });
+  };
+  std::array<std::vector<std::string>, 2> above;
+  for (std::size_t side = 0; side < 2; ++side) {
+    std::string link = guess.urdf.model.bodies[pair.joints[side].front() + 1].name;
+    for (auto joint = joint_to(link); joint != guess.outline.joints.end(); joint = joint_to(link)) {
+      if (above[side].size() > guess.outline.joints.size()) break;
+      link = joint->parent;
+      above[side].push_back(link);
+    }
+  }
+  for (const std::string& link : above[0]) {
+    if (std::find(above[1].begin(), above[1].end(), link) != above[1].end()) return link;
+  }
+  return guess.urdf.model.bodies[pair.pelvis].name;
+}
+
+bool find_pelvis(const std::string& text, Guess* guess, std::string* error) {
+  LegPair pair;
+  if (!find_legs(guess->urdf.model, &pair, error)) return false;
+  if (const std::vector<int> toes = find_toes(guess->urdf.model, pair); !toes.empty()) {
+    for (const int toe : toes) {
+      guess->fixed.push_back({guess->urdf.model.joints[toe].name, "a toe"});
+    }
+    if (!load(text, guess, error) || !find_legs(guess->urdf.model, &pair, error)) return false;
+  }
+  const GaitdModel& model = guess->urdf.model;
+  std::array<std::vector<Vector3d>, 2> points;
+  for (std::size_t side = 0; side < 2; ++side) {
+    Reasons unused;
+    for (const ShapePoint& p : shape_points(*guess, pair.joints[side].back() + 1, &unused)) {
+      points[side].push_back(p.p);
+    }
+  }
+  int left = 0;
+  // From the axes of the body to those of the link that becomes the pelvis.
+  const Eigen::Quaterniond R_BL = guess->urdf.find_link(link_above(*guess, pair))->R_BL;
+  const Eigen::Matrix3d R = R_BL.inverse().toRotationMatrix() *
+                            find_directions(model, pair, points, &left, &guess->pelvis_why);
+  guess->pelvis_why.insert(
+      guess->pelvis_why.begin(),
+      format("The body from which two chains of %zu joints hang that mirror each other.",
+             pair.joints[0].size()));
+  std::array<std::vector<std::string>, 2> names;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const std::size_t of =
+        side == 0 ? static_cast<std::size_t>(left) : 1 - static_cast<std::size_t>(left);
+    for (const int joint : pair.joints[of]) names[side].emplace_back(model.joints[joint].name);
+  }
+  guess->options.root_link = link_above(*guess, pair);
+  guess->options.R_LB = Eigen::Quaterniond(R).normalized();
+  if (!load(text, guess, error)) return false;
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (const std::string& name : names[side]) {
+      for (int i = 0; i < guess->urdf.model.joint_count; ++i) {
+        if (name == guess->urdf.model.joints[i].name) guess->legs[side].joints.push_back(i);
+      }
+    }
+  }
+  return true;
+}
+
+bool find_feet(Guess* guess, std::string* error) {
+  const auto poses = body_poses(guess->urdf.model, zero_position(guess->urdf.model));
+  for (std::size_t side = 0; side < 2; ++side) {
+    LegGuess& leg = guess->legs[side];
+    if (!find_roles(guess->urdf.model, &leg, error)) return false;
+    const int foot = leg.joints.back() + 1;
+    SoleGuess& sole = guess->soles[side];
+    sole.frame.link = guess->urdf.model.bodies[foot].name;
+    const std::vector<ShapePoint> points = shape_points(*guess, foot, &sole.frame.why);
+    const Eigen::Matrix3d R = poses[static_cast<std::size_t>(foot)].linear().transpose();
+    if (points.empty() || !find_sole(points, -R.col(2), R.col(0), &sole, error)) {
+      std::string why;
+      for (const std::string& reason : sole.frame.why) why += " " + reason;
+      *error = "foot " + sole.frame.link + ": " +
+               (points.empty() ? "no shape to find the sole from" : *error) + "." + why +
+               " Give it a <collision> with a box of its sole";
+      return false;
+    }
+    GaitdFoot& out = guess->model.feet[side];
+    fill_frame(*guess, sole.frame, side == 0 ? "left_sole" : "right_sole", &out.sole);
+    out.body = foot;
+    out.point_count = static_cast<int>(sole.outline.size());
+    for (std::size_t i = 0; i < sole.outline.size(); ++i) {
+      out.points[i][0] = sole.outline[i].x();
+      out.points[i][1] = sole.outline[i].y();
+    }
+    GaitdLeg& to = guess->model.legs[side];
+    to.joint_count = static_cast<int>(leg.joints.size());
+    std::copy(leg.joints.begin(), leg.joints.end(), to.joints);
+    to.hip_pitch = leg.hip_pitch;
+    to.knee = leg.knee;
+    to.ankle_pitch = leg.ankle_pitch;
+    to.ankle_roll = leg.ankle_roll;
+  }
+  guess->legs_why.emplace_back(
+      "Of the joints whose axes lie sideways, the knee is the one furthest from hip and ankle.");
+  return true;
+}
+
+}  // namespace
+
+bool guess_robot(const std::string& urdf, const std::string& name, Guess* guess,
+                 std::string* error) {
+  guess->urdf_file = urdf;
+  guess->name = name;
+  std::string text;
+  if (!dynamics::read_urdf_text(urdf, &text, error)) return false;
+  guess->outline = dynamics::read_urdf_outline(text);
+  guess->fixed = joints_to_fix(guess->outline);
+  if (!load(text, guess, error)) return false;
+  if (!find_pelvis(text, guess, error)) {
+    const std::string lacking = joints_without_limits(guess->outline);
+    if (!lacking.empty()) *error += "; these lack effort or velocity and were left out: " + lacking;
+    *error = urdf + ": " + *error;
+    return false;
+  }
+  const bool stands = find_feet(guess, error);
+  if (stands) {
+    guess->chest = find_chest(*guess, &guess->chest_why);
+    guess->imu = find_imu(*guess);
+    fill_frame(*guess, guess->imu, guess->imu.name, &guess->model.imus[0]);
+    guess->model.imu_count = 1;
+    for (int side = 0; side < 2; ++side) {
+      guess->force_sensors[static_cast<std::size_t>(side)] = find_force_sensor(*guess, side);
+      fill_frame(*guess, guess->force_sensors[static_cast<std::size_t>(side)],
+                 side == 0 ? "left_force" : "right_force", &guess->model.feet[side].force_sensor);
+    }
+  }
+  if (!stands || !solve_posture(guess, error)) {
+    *error = urdf + ": " + *error;
+    return false;
+  }
+  find_proportions(guess);
+  return true;
+}
+
+}  // namespace gaitd::porting

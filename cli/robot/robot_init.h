@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "cli/robot/guess.h"
+
+namespace gaitd::porting {
+
+// Everything that can be found out about the robot of a URDF. False and why in `error` where it
+// ends: a file that is none, no legs, no sole, no posture.
+bool guess_robot(const std::string& urdf, const std::string& name, Guess* guess,
+                 std::string* error);
+
+}  // namespace gaitd::porting

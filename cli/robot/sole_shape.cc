@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/robot/sole_shape.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/config/outline.h"
+#include "gaitd/dynamics/mesh_points.h"
+
+namespace gaitd::porting {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr std::size_t kMostCorners = 8;
+constexpr int kRim = 64;             // corners for the rim of a cylinder
+constexpr double kThin = 0.002;      // m, what still counts as flat
+constexpr double kThick = 0.010;     // m, for soles that are bent
+constexpr double kLeastFlat = 0.35;  // of what the foot covers, seen from above
+constexpr double kLeastArea = 4e-5;  // m^2
+constexpr double kMostTilt = 0.35;   // rad, of a sole against its neighbourhood
+
+void add_shape(const Guess& guess, const dynamics::UrdfShape& shape, const Eigen::Isometry3d& X_BS,
+               std::vector<ShapePoint>* points, Reasons* why) {
+  const Vector3d half = 0.5 * shape.size;
+  switch (shape.kind) {
+    case dynamics::ShapeKind::kBox:
+      for (int i = 0; i < 8; ++i) {
+        const Vector3d sign((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
+        points->push_back({X_BS * half.cwiseProduct(sign)});
+      }
+      break;
+    case dynamics::ShapeKind::kCylinder:
+      for (int i = 0; i < 2 * kRim; ++i) {
+        const double angle = 2.0 * M_PI * (i / 2) / kRim;
+        points->push_back(
+            {X_BS * Vector3d(shape.size[0] * std::cos(angle), shape.size[0] * std::sin(angle),
+                             (i % 2 == 0 ? half[1] : -half[1]))});
+      }
+      break;
+    case dynamics::ShapeKind::kSphere:
+      points->push_back({X_BS.translation(), shape.size[0]});
+      break;
+    case dynamics::ShapeKind::kMesh: {
+      const auto file = dynamics::find_mesh(guess.urdf_file, shape.file);
+      std::vector<Vector3d> corners;
+      std::string error = "no such file";
+      if (file.empty() || !dynamics::read_mesh_points(file, &corners, &error)) {
+        why->push_back("Mesh " + shape.file + ": " + error + ".");
+        break;
+      }
+      for (const Vector3d& corner : corners) {
+        points->push_back({X_BS * corner.cwiseProduct(shape.size)});
+      }
+    }
+  }
+}
+
+double depth(const ShapePoint& point, const Vector3d& down) {
+  return point.p.dot(down) + point.radius;
+}
+
+// Points within `thickness` of the lowest.
+std::vector<Vector3d> lowest(const std::vector<ShapePoint>& points, const Vector3d& down,
+                             double thickness) {
+  double bottom = -1e9;
+  for (const ShapePoint& point : points) bottom = std::max(bottom, depth(point, down));
+  std::vector<Vector3d> low;
+  for (const ShapePoint& point : points) {
+    if (depth(point, down) >= bottom - thickness) low.push_back(point.p + point.radius * down);
+  }
+  return low;
+}
+
+std::vector<Vector2d> hull_along(const std::vector<Vector3d>& points, const Vector3d& x,
+                                 const Vector3d& y) {
+  std::vector<Vector2d> flat;
+  flat.reserve(points.size());
+  for (const Vector3d& p : points) flat.emplace_back(p.dot(x), p.dot(y));
+  return convex_hull(std::move(flat));
+}
+
+double area_along(const std::vector<Vector3d>& points, const Vector3d& down) {
+  const Vector3d x = down.unitOrthogonal();
+  return polygon_area(hull_along(points, x, x.cross(down)));
+}
+
+// The normal of the plane through the lowest points, when they are nearly in one.
+Vector3d fitted(const std::vector<ShapePoint>& points, Vector3d down) {
+  for (int i = 0; i < 3; ++i) {
+    const std::vector<Vector3d> low = lowest(points, down, kThin);
+    if (low.size() < 3 || area_along(low, down) < kLeastArea) return down;
+    Vector3d mean = Vector3d::Zero();
+    for (const Vector3d& p : low) mean += p;
+    mean /= static_cast<double>(low.size());
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const Vector3d& p : low) spread += (p - mean) * (p - mean).transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+    Vector3d normal = solver.eigenvectors().col(0);
+    if (normal.dot(down) < 0) normal = -normal;
+    if (normal.dot(down) < std::cos(kMostTilt)) return down;
+    if (area_along(lowest(points, normal, kThin), normal) < area_along(low, down)) return down;
+    down = normal;
+  }
+  return down;
+}
+
+}  // namespace
+
+std::vector<ShapePoint> shape_points(const Guess& guess, int body, Reasons* why) {
+  std::vector<ShapePoint> points;
+  for (const bool collision : {true, false}) {
+    for (const dynamics::UrdfShape& shape : guess.outline.shapes) {
+      const dynamics::UrdfLink* link = guess.urdf.find_link(shape.link);
+      if (shape.collision != collision || link == nullptr || link->body != body) continue;
+      const Eigen::Isometry3d X_BL = Eigen::Translation3d(link->p_BL) * link->R_BL;
+      add_shape(guess, shape, X_BL * shape.X_LS, &points, why);
+    }
+    if (points.empty()) continue;
+    why->push_back(collision ? "From the collision shapes."
+                             : "From the visuals, as there are no collision shapes: check it.");
+    break;
+  }
+  return points;
+}
+
+std::vector<Vector2d> convex_hull(std::vector<Vector2d> points) {
+  std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  });
+  const auto turns_left = [](const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x()) > 1e-10;
+  };
+  std::vector<Vector2d> hull;
+  for (int way = 0; way < 2; ++way) {
+    const std::size_t begin = hull.size();
+    for (const Vector2d& point : points) {
+      while (hull.size() >= begin + 2 && !turns_left(hull[hull.size() - 2], hull.back(), point)) {
+        hull.pop_back();
+      }
+      hull.push_back(point);
+    }
+    if (!hull.empty()) hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
+double polygon_area(const std::vector<Vector2d>& points) {
+  double area = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vector2d& a = points[i];
+    const Vector2d& b = points[(i + 1) % points.size()];
+    area += 0.5 * (a.x() * b.y() - b.x() * a.y());
+  }
+  return area;
+}
+
+bool find_sole(const std::vector<ShapePoint>& points, const Vector3d& down, const Vector3d& forward,
+               SoleGuess* sole, std::string* error) {
+  // As the foot hangs, or as its link lies: whichever shows the larger flat part.
+  Vector3d best = down;
+  double flat = area_along(lowest(points, down, kThin), down);
+  for (int axis = 0; axis < 6; ++axis) {
+    const Vector3d along = Vector3d::Unit(axis / 2) * (axis % 2 == 0 ? 1.0 : -1.0);
+    if (along.dot(down) < 0.7) continue;
+    const double area = area_along(lowest(points, along, kThin), along);
+    if (area <= 1.2 * flat) continue;
+    flat = area;
+    best = along;
+  }
+  best = fitted(points, best);
+  const double covered = area_along(lowest(points, best, 1e9), best);
+  double thickness = kThin;
+  flat = area_along(lowest(points, best, thickness), best);
+  if (flat < kLeastFlat * covered) {
+    thickness = kThick;
+    flat = area_along(lowest(points, best, thickness), best);
+    sole->frame.why.push_back(
+        format("Not flat: the lowest %.0f mm count as the sole.", 1e3 * thickness));
+  }
+  if (flat < kLeastArea) {
+    *error = "no flat sole: the lowest part of the foot has no area";
+    return false;
+  }
+  const std::vector<Vector3d> low = lowest(points, best, thickness);
+  Eigen::Matrix3d R;
+  R.col(2) = -best;
+  R.col(0) = (forward - best * forward.dot(best)).normalized();
+  R.col(1) = R.col(2).cross(R.col(0));
+  std::vector<Vector2d> hull = hull_along(low, R.col(0), R.col(1));
+  const std::size_t corners = hull.size();
+  std::vector<double> flat_points;
+  for (const Vector2d& p : hull) flat_points.insert(flat_points.end(), {p.x(), p.y()});
+  daemon::reduce_outline(kMostCorners, &flat_points);
+  hull.clear();
+  for (std::size_t i = 0; i < flat_points.size(); i += 2) {
+    hull.emplace_back(flat_points[i], flat_points[i + 1]);
+  }
+  Vector2d least = hull[0];
+  Vector2d most = hull[0];
+  for (const Vector2d& p : hull) {
+    least = least.cwiseMin(p);
+    most = most.cwiseMax(p);
+  }
+  const Vector2d middle = 0.5 * (least + most);
+  double bottom = -1e9;
+  for (const ShapePoint& point : points) bottom = std::max(bottom, depth(point, best));
+  sole->frame.X_LF.linear() = R;
+  sole->frame.X_LF.translation() = R.col(0) * middle.x() + R.col(1) * middle.y() + best * bottom;
+  sole->outline.clear();
+  for (const Vector2d& p : hull) sole->outline.push_back(p - middle);
+  sole->frame.why.push_back(format("The lowest corners, %.0f mm long and %.0f mm wide%s.",
+                                   1e3 * (most.x() - least.x()), 1e3 * (most.y() - least.y()),
+                                   corners > kMostCorners ? ", outline reduced to 8 points" : ""));
+  return true;
+}
+
+}  // namespace gaitd::porting

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "cli/robot/guess.h"
+
+namespace gaitd::porting {
+
+// A corner of a shape, in the frame of a body; a sphere is one corner with a radius. m.
+struct ShapePoint {
+  Eigen::Vector3d p;
+  double radius = 0.0;
+};
+
+// Corners of all shapes on the links of a body: of the collision shapes, or of the visuals if there
+// are none. `why` says which, and what could not be read.
+std::vector<ShapePoint> shape_points(const Guess& guess, int body, Reasons* why);
+
+// The flat part at the bottom of the points: frame and outline. `down`, `forward`: unit, where the
+// ground and the front of the robot are for the foot as it hangs, axes of the body. False and why
+// in `error` if nothing is flat.
+bool find_sole(const std::vector<ShapePoint>& points, const Eigen::Vector3d& down,
+               const Eigen::Vector3d& forward, SoleGuess* sole, std::string* error);
+
+// Convex hull, counter-clockwise.
+std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points);
+double polygon_area(const std::vector<Eigen::Vector2d>& points);
+
+}  // namespace gaitd::porting

@@ -1,0 +1,47 @@
+# Eight made-up humanoids, as different as published ones are, are described by `gaitctl robot init`
+# alone and walk: at least six of them, without an edit.
+source "$(dirname "$0")/common.sh"
+
+robots=(tiny spheres sideways tilted toes backwards nameless twisted)
+python3 "$GAITD_SOURCE/tests/made_up_robots.py" "$scratch/urdf"
+
+for name in "${robots[@]}"; do
+  folder=$scratch/$name
+  start=$(date +%s%N)
+  expect 0 gaitctl robot init "$scratch/urdf/$name/$name.urdf" -o "$folder" >"$folder.txt"
+  took=$((($(date +%s%N) - start) / 1000000))
+  ((took <= 5000)) || fail "$name: robot init took $took ms, expected at most 5000"
+  for file in robot.yaml stand.yaml walk.yaml posture.svg; do
+    [[ -s $folder/$file ]] || fail "$name: no $file"
+  done
+  gaitd --robot "$folder/robot.yaml" --check-config >>"$folder.txt" 2>&1 ||
+    fail "$name: $(cat "$folder.txt")"
+  printf '%-10s described in %d ms\n' "$name" "$took"
+done
+
+# What the eight are about.
+grep -q 'rpy: \[0, 0, 1.5707963\]' "$scratch/sideways/robot.yaml" || fail "sideways: no turned pelvis"
+grep -q 'link: torso_imu\|link: chest' "$scratch/spheres/robot.yaml" || fail "spheres: IMU not in the chest"
+grep -q 'left_finger_2_joint  # mimics' "$scratch/spheres/robot.yaml" || fail "spheres: mimic not fixed"
+grep -q 'left_toe  # a toe' "$scratch/toes/robot.yaml" || fail "toes: not fixed"
+grep -q 'neck  # the URDF gives no effort' "$scratch/toes/robot.yaml" || fail "toes: neck not fixed"
+grep -q 'left_ft of the URDF' "$scratch/tilted/robot.yaml" || fail "tilted: force sensor not found"
+
+# What is there already stays.
+expect 1 gaitctl robot init "$scratch/urdf/tiny/tiny.urdf" -o "$scratch/tiny" 2>/dev/null
+expect 1 gaitctl robot init "$scratch/urdf/no.urdf" -o "$scratch/no" 2>/dev/null
+[[ ! -e $scratch/no ]] || fail "a folder was made for no robot"
+
+printf '%s\n' "${robots[@]}" | xargs -P2 -I{} bash -c \
+  "gaitctl run $scratch/{}/walk.yaml -v >$scratch/{}.walk 2>&1 || touch $scratch/{}.fell"
+walked=0
+for name in "${robots[@]}"; do
+  if [[ -e $scratch/$name.fell ]]; then
+    printf '%-10s does not walk:\n%s\n' "$name" "$(grep -v '^ *$' "$scratch/$name.walk" | head -12)"
+  else
+    walked=$((walked + 1))
+    printf '%-10s walks\n' "$name"
+  fi
+done
+((walked >= 6)) || fail "$walked of 8 robots walk as they were described, expected 6"
+printf '%d of 8 robots walk as they were described\n' "$walked"
