@@ -3,6 +3,7 @@
 
 #include <array>
 #include <boost/asio/post.hpp>
+#include <cstdlib>
 #include <stdexcept>
 
 namespace gaitd::ros2 {
@@ -50,7 +51,9 @@ std::string configuration(bool localhost) {
         "<Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery>";
   }
   text += "</Domain></CycloneDDS>";
-  return localhost ? text : text + ",${CYCLONEDDS_URI}";
+  const char* of_user = std::getenv("CYCLONEDDS_URI");
+  if (!localhost && of_user != nullptr && *of_user != '\0') text.append(",").append(of_user);
+  return text;
 }
 
 }  // namespace

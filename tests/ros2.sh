@@ -11,6 +11,14 @@ for arguments in '--domain 233' '--namespace a//b' '--rate 0' '--auto-mode' 'sur
   expect 2 gaitd-ros2 "${words[@]}" 2>/dev/null
 done
 
+# What the user says of the network holds, unless it is to be left alone.
+CYCLONEDDS_URI='<CycloneDDS><Nonsense>' expect 1 gaitd-ros2 --socket none >wrong.txt 2>&1
+grep -q 'CYCLONEDDS_URI' wrong.txt || fail "a wrong CYCLONEDDS_URI: $(cat wrong.txt)"
+loopback='<General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces></General>'
+CYCLONEDDS_URI="<CycloneDDS><Domain>$loopback</Domain></CycloneDDS>" \
+  expect 124 timeout 2 gaitd-ros2 --socket none --sim-time --best-effort --drive --stamped
+CYCLONEDDS_URI='<CycloneDDS><Nonsense>' expect 124 timeout 2 gaitd-ros2 --socket none --localhost --no-e-stop
+
 # It comes first and waits for gaitd.
 gaitd-ros2 --localhost --namespace /robots/one --drive --auto-mode >ros2.txt 2>&1 &
 bridge=$!
