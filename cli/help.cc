@@ -26,8 +26,8 @@ struct Group {
 const std::vector<Group>& groups() {
   static const std::vector<Group> kGroups = {
       {"Command the robot",
-       {"status", "watch", "view", "arm", "disarm", "estop", "reset", "mode", "walk", "steps", "drive",
-        "pose", "pause", "resume", "stop", "abort"}},
+       {"status", "watch", "view", "arm", "disarm", "estop", "reset", "mode", "walk", "steps",
+        "drive", "pose", "pause", "resume", "stop", "abort"}},
       {"Play scenarios", {"run", "campaign", "compare", "sim"}},
       {"Read logs", {"report", "log", "doctor"}},
       {"Set up", {"robot", "param", "plugin", "joint", "calibrate", "completion"}}};

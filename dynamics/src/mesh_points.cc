@@ -87,6 +87,7 @@ fs::path find_mesh(const fs::path& urdf, const std::string& name) {
         (folder / (scheme == std::string::npos ? name : name.substr(7))).lexically_normal();
     return is_file(path) ? path : fs::path();
   }
+  if (!name.starts_with("package://") && !name.starts_with("model://")) return {};
   const fs::path inside = fs::path(name.substr(scheme + 3)).lexically_normal();
   if (inside.empty() || inside.is_absolute() || *inside.begin() == "..") return {};
   const fs::path package = *inside.begin();
