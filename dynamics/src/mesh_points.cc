@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "collada.h"
-#include "mesh_bounds.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::dynamics {
 namespace {
