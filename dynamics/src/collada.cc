@@ -6,7 +6,7 @@
 #include <map>
 #include <string_view>
 
-#include "mesh_bounds.h"
+#include "gaitd/sdk/bounds.h"
 #include "xml_reader.h"
 
 namespace gaitd::dynamics {

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "collada.h"
-#include "mesh_bounds.h"
+#include "gaitd/sdk/bounds.h"
 
 namespace gaitd::dynamics {
 namespace {
@@ -87,6 +87,7 @@ fs::path find_mesh(const fs::path& urdf, const std::string& name) {
         (folder / (scheme == std::string::npos ? name : name.substr(7))).lexically_normal();
     return is_file(path) ? path : fs::path();
   }
+  if (!name.starts_with("package://") && !name.starts_with("model://")) return {};
   const fs::path inside = fs::path(name.substr(scheme + 3)).lexically_normal();
   if (inside.empty() || inside.is_absolute() || *inside.begin() == "..") return {};
   const fs::path package = *inside.begin();

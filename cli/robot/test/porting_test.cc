@@ -108,7 +108,8 @@ TEST(SoleShape, HasAtMostEightCornersAllInside) {
   std::string error;
   ASSERT_TRUE(find_sole(points, -Vector3d::UnitZ(), Vector3d::UnitX(), &sole, &error)) << error;
   ASSERT_EQ(sole.outline.size(), 8u);
-  for (const Vector2d& p : sole.outline) {
+  for (const Vector2d& corner : sole.outline) {
+    const Vector2d p = corner + sole.frame.X_LF.translation().head<2>();
     EXPECT_LE(std::hypot(p.x() / 0.1, p.y() / 0.05), 1.0 + 1e-6);
   }
   EXPECT_GT(polygon_area(sole.outline), 0.88 * M_PI * 0.1 * 0.05);

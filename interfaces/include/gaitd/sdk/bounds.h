@@ -29,6 +29,10 @@ inline constexpr std::size_t kUrdfBytes = 4u << 20;
 inline constexpr int kUrdfDepth = 100;       ///< a URDF has 6; TinyXML calls itself for each
 inline constexpr int kUrdfAttributes = 100;  ///< of one element, which TinyXML compares pairwise
 
+/// Bytes of a mesh of a foot, which `gaitctl robot init` reads; those published have 10 MB at most.
+inline constexpr std::size_t kMeshBytes = 32u << 20;
+inline constexpr std::size_t kMeshPoints = 2'000'000;  ///< corners of it that are looked at
+
 // ---- The socket of commands.
 
 /// Of one line, and of those of a client that wait; 64 footsteps with all they can have, the most
