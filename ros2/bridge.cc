@@ -122,8 +122,8 @@ void Bridge::on_robot() {
   spdlog::info("connected to gaitd {}: robot {}, backend {}", source_.version(),
                member(source_.robot(), "name"), member(source_.robot(), "backend"));
   topics_.publish_robot(robot_.get(), stamp());
-  if (options_.estop) estop_relay_->connect();
-  if (options_.drive) drive_relay_->connect();
+  if (options_.estop) estop_relay_->connect_ahead();
+  if (options_.drive) drive_relay_->connect_ahead();
 }
 
 void Bridge::on_status(const json& status, double silent) {
