@@ -87,7 +87,7 @@ Diagnosis diagnose_timing(const json& status) {
     result.level = Level::kWarn;
     result.message = "degraded: " + degraded;
   }
-  if (const json error = at(status, "/log/error"); error.is_string() && error != "") {
+  if (const json error = at(status, "/log/error"); error.is_string() && !text(error).empty()) {
     result.level = Level::kWarn;
     result.message += "; the log: " + text(error);
   }

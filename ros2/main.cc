@@ -8,6 +8,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <memory>
 
@@ -56,9 +57,7 @@ int run(const gaitd::ros2::BridgeOptions& options) {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
   gaitd::ros2::BridgeOptions options;
   CLI::App app("gaitd on the topics of ROS 2", "gaitd-ros2");
   gaitd::ros2::add_options(&app, &options);
@@ -75,6 +74,17 @@ int main(int argc, char** argv) {
     return run(options);
   } catch (const std::exception& e) {
     spdlog::critical("{}", e.what());
+    return 1;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run_program(argc, argv);
+  } catch (...) {
+    std::fputs("gaitd-ros2: does not start: out of memory or threads?\n", stderr);
     return 1;
   }
 }
