@@ -23,7 +23,7 @@ CYCLONEDDS_URI='<CycloneDDS><Nonsense>' expect 124 timeout 2 gaitd-ros2 --socket
 gaitd-ros2 --localhost --namespace /robots/one --drive --auto-mode >ros2.txt 2>&1 &
 bridge=$!
 clean_up_bridge() {
-  kill -KILL "$bridge" 2>/dev/null
+  kill -KILL "$bridge" 2>/dev/null || true
   clean_up
 }
 trap clean_up_bridge EXIT
