@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMostShapes = 5000;
 
-std::string attribute(const TiXmlElement* element, const char* name) {
+std::string attribute_text(const TiXmlElement* element, const char* name) {
   const char* value = element == nullptr ? nullptr : element->Attribute(name);
   return value == nullptr ? "" : value;
 }
@@ -36,8 +36,8 @@ Eigen::Isometry3d origin_of(const TiXmlElement& element) {
   const TiXmlElement* origin = element.FirstChildElement("origin");
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
   Eigen::Vector3d rpy = Eigen::Vector3d::Zero();
-  numbers(attribute(origin, "xyz"), &xyz);
-  numbers(attribute(origin, "rpy"), &rpy);
+  numbers(attribute_text(origin, "xyz"), &xyz);
+  numbers(attribute_text(origin, "rpy"), &rpy);
   return Eigen::Translation3d(xyz) * Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) *
          Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
          Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX());
@@ -51,7 +51,7 @@ bool read_shape(const TiXmlElement& element, UrdfShape* shape) {
   const std::string tag = form->Value();
   if (tag == "box") {
     shape->kind = ShapeKind::kBox;
-    return numbers(attribute(form, "size"), &shape->size);
+    return numbers(attribute_text(form, "size"), &shape->size);
   }
   if (tag == "cylinder" || tag == "capsule") {
     shape->kind = ShapeKind::kCylinder;
@@ -65,8 +65,8 @@ bool read_shape(const TiXmlElement& element, UrdfShape* shape) {
   }
   if (tag != "mesh") return false;
   shape->kind = ShapeKind::kMesh;
-  shape->file = attribute(form, "filename");
-  numbers(attribute(form, "scale"), &shape->size);
+  shape->file = attribute_text(form, "filename");
+  numbers(attribute_text(form, "scale"), &shape->size);
   return !shape->file.empty();
 }
 
@@ -75,7 +75,7 @@ void read_link(const TiXmlElement& element, UrdfOutline* outline) {
     for (const TiXmlElement* e = element.FirstChildElement(tag); e != nullptr;
          e = e->NextSiblingElement(tag)) {
       UrdfShape shape;
-      shape.link = attribute(&element, "name");
+      shape.link = attribute_text(&element, "name");
       shape.collision = std::string(tag) == "collision";
       if (outline->shapes.size() < kMostShapes && read_shape(*e, &shape)) {
         outline->shapes.push_back(shape);
@@ -86,10 +86,10 @@ void read_link(const TiXmlElement& element, UrdfOutline* outline) {
 
 void read_joint(const TiXmlElement& element, UrdfOutline* outline) {
   UrdfJointNote joint;
-  joint.name = attribute(&element, "name");
-  joint.type = attribute(&element, "type");
-  joint.parent = attribute(element.FirstChildElement("parent"), "link");
-  joint.child = attribute(element.FirstChildElement("child"), "link");
+  joint.name = attribute_text(&element, "name");
+  joint.type = attribute_text(&element, "type");
+  joint.parent = attribute_text(element.FirstChildElement("parent"), "link");
+  joint.child = attribute_text(element.FirstChildElement("child"), "link");
   joint.mimic = element.FirstChildElement("mimic") != nullptr;
   const TiXmlElement* limit = element.FirstChildElement("limit");
   joint.has_effort = number(limit, "effort", 0) > 0 && number(limit, "velocity", 0) > 0;
@@ -113,7 +113,7 @@ UrdfOutline read_urdf_outline(const std::string& text) {
     for (const TiXmlElement* s = e->FirstChildElement("sensor"); s != nullptr;
          s = s->NextSiblingElement("sensor")) {
       outline.sensors.push_back(
-          {attribute(s, "name"), attribute(s, "type"), attribute(e, "reference")});
+          {attribute_text(s, "name"), attribute_text(s, "type"), attribute_text(e, "reference")});
     }
   }
   return outline;
