@@ -16,8 +16,8 @@
 #include "cli/report/report_command.h"
 #include "cli/robot/robot_command.h"
 #include "cli/run_command.h"
-#include "cli/view/view_command.h"
 #include "cli/teleop/teleop_command.h"
+#include "cli/view/view_command.h"
 #include "cli/watch_command.h"
 
 namespace gaitd::cli {

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <iostream>
 
+#include "cli/escape_codes.h"
 #include "cli/stop_signals.h"
 #include "daemon/config/printable.h"
 
@@ -18,15 +19,6 @@ namespace gaitd::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-constexpr const char* kEnter = "\033[?1049h\033[?25l\033[2J";  // alternate screen, no cursor, clear
-constexpr const char* kLeave = "\033[?25h\033[?1049l";
-constexpr const char* kHome = "\033[H";
-constexpr const char* kClearLine = "\033[K";
-constexpr const char* kGreen = "\033[32m";
-constexpr const char* kRed = "\033[1;31m";
-constexpr const char* kNoColor = "\033[0m";
-constexpr const char* kClearBelow = "\033[J";
 
 volatile std::sig_atomic_t resized = 0;
 volatile std::sig_atomic_t suspended = 0;
@@ -69,9 +61,9 @@ bool shows_colors(int descriptor) {
 void print_colored(bool good, const std::string& text) {
   const bool colors = shows_colors(STDOUT_FILENO);
   std::cout << std::flush;
-  if (colors) write_all(good ? kGreen : kRed);
+  if (colors) write_all(good ? escape::kGreen : escape::kRed);
   std::cout << text << std::flush;
-  if (colors) write_all(kNoColor);
+  if (colors) write_all(escape::kNoColor);
 }
 
 std::string cut_to_width(const std::string& line, std::size_t width) {
@@ -102,11 +94,11 @@ void Screen::enter() {
     quiet.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
     tcsetattr(STDIN_FILENO, TCSANOW, &quiet);
   }
-  write_all(kEnter);
+  write_all(escape::kEnter);
 }
 
 void Screen::leave() {
-  write_all(kLeave);
+  write_all(escape::kLeave);
   if (keys_) tcsetattr(STDIN_FILENO, TCSANOW, &before_);
 }
 
@@ -115,12 +107,12 @@ bool Screen::draw(const std::vector<std::string>& lines) {
   if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return false;
   const std::size_t width = size.ws_col == 0 ? 80 : size.ws_col;
   const std::size_t height = size.ws_row == 0 ? 24 : size.ws_row;
-  std::string text = kHome;
+  std::string text = escape::kHome;
   for (std::size_t i = 0; i < lines.size() && i < height; ++i) {
     if (i > 0) text += "\r\n";
-    text += cut_to_width(daemon::printable(lines[i]), width) + kClearLine;
+    text += cut_to_width(daemon::printable(lines[i]), width) + escape::kClearLine;
   }
-  if (lines.size() < height) text += std::string("\r\n") + kClearBelow;
+  if (lines.size() < height) text += std::string("\r\n") + escape::kClearBelow;
   return write_all(text);
 }
 

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/base64.h"
 #include "cli/child.h"
 #include "cli/report/animated_png.h"
 #include "daemon/config/names.h"
@@ -60,25 +61,6 @@ bool wait_for_child(pid_t pid, std::chrono::seconds most) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   return true;
-}
-
-std::string from_base64(std::string_view text) {
-  static constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3);
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    const std::size_t digit = kDigits.find(c);
-    if (digit == std::string_view::npos) break;  // '=' at the end
-    bits = bits << 6 | static_cast<std::uint32_t>(digit);
-    count += 6;
-    if (count < 8) continue;
-    count -= 8;
-    bytes += static_cast<char>(bits >> count & 255u);
-  }
-  return bytes;
 }
 
 struct Picture {

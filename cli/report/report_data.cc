@@ -13,6 +13,8 @@
 #include <system_error>
 #include <vector>
 
+#include "cli/base64.h"
+#include "cli/installed_page.h"
 #include "daemon/config/names.h"
 #include "daemon/config/node.h"
 #include "daemon/config/paths.h"
@@ -38,23 +40,6 @@ constexpr char kPlaceholder[] = "\"GAITD_DATA\"";
 std::string read_file(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::string base64(const std::vector<float>& values) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());  // little-endian
-  const std::size_t size = values.size() * sizeof(float);
-  std::string text;
-  text.reserve((size + 2) / 3 * 4);
-  for (std::size_t i = 0; i < size; i += 3) {
-    std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < size ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += i + k <= size ? kDigits[three >> (18 - 6 * k) & 63u] : '=';
-    }
-  }
-  return text;
 }
 
 // Every n-th tick, so that neither bound is passed.
@@ -90,7 +75,8 @@ void add_signals(const LogReader& log, json* data) {
     (*data)["signals"].push_back({{"name", signal.name},
                                   {"unit", signal.unit},
                                   {"words", signal.words},
-                                  {"values", base64(rows)}});
+                                  {"values", base64({reinterpret_cast<const char*>(rows.data()),
+                                                     rows.size() * sizeof(float)})}});
   }
 }
 
@@ -182,13 +168,10 @@ std::string report_data(const std::vector<std::unique_ptr<LogReader>>& logs) {
 }
 
 std::string report_page(const std::string& data, std::string* error) {
-  std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path file = program.parent_path().parent_path() / "share/gaitd/report.html";
-  std::string page = read_file(file);
+  auto [file, page] = installed_page("report");
   const std::size_t place = page.find(kPlaceholder);
   if (place == std::string::npos) {
-    *error = file.string() + ": expected the report page, got " +
+    *error = file + ": expected the report page, got " +
              (page.empty() ? "no file" : "another file") +
              "; gaitd was built without it: install npm and build again";
     return "";

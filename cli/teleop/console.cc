@@ -11,20 +11,13 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "cli/escape_codes.h"
 #include "cli/terminal.h"
 #include "daemon/config/printable.h"
 
 namespace gaitd::cli::teleop {
 namespace {
 
-constexpr const char* kEnter = "\033[?1049h\033[?25l\033[2J";  // alternate screen, no cursor, clear
-constexpr const char* kLeave = "\033[?25h\033[?1049l";
-constexpr const char* kHome = "\033[H";
-constexpr const char* kClearLine = "\033[K";
-constexpr const char* kClearBelow = "\033[J";
-constexpr const char* kGreen = "\033[32m";
-constexpr const char* kRed = "\033[1;31m";
-constexpr const char* kNoColor = "\033[0m";
 constexpr int kLastWords = 500;  // ms that a terminal gets to take them
 
 volatile std::sig_atomic_t suspended = 0;
@@ -90,11 +83,11 @@ void Console::enter() {
   tcsetattr(STDIN_FILENO, TCSANOW, &raw);
   tcflush(STDIN_FILENO, TCIFLUSH);  // what was typed before is not meant for the robot
   shown_.clear();
-  if (screen_) put(kEnter);
+  if (screen_) put(escape::kEnter);
 }
 
 void Console::leave() {
-  if (screen_) waiting_ += kLeave;
+  if (screen_) waiting_ += escape::kLeave;
   for (int waited = 0; !flush() && !ended_ && waited < kLastWords; waited += 50) {
     pollfd terminal{out_ >= 0 ? out_ : STDOUT_FILENO, POLLOUT, 0};
     poll(&terminal, 1, 50);
@@ -134,16 +127,16 @@ void Console::put(const std::string& text) {
 void Console::draw(const std::vector<Line>& lines) {
   if (!flush()) return;
   const winsize size = window();
-  std::string picture = kHome;
+  std::string picture = escape::kHome;
   for (std::size_t i = 0; i < lines.size() && i < size.ws_row; ++i) {
     if (i > 0) picture += "\r\n";
     const bool colored = colors_ && lines[i].tone != Line::Tone::kPlain;
-    if (colored) picture += lines[i].tone == Line::Tone::kGood ? kGreen : kRed;
+    if (colored) picture += lines[i].tone == Line::Tone::kGood ? escape::kGreen : escape::kRed;
     picture += cut_to_width(daemon::printable(lines[i].text), size.ws_col);
-    if (colored) picture += kNoColor;
-    picture += kClearLine;
+    if (colored) picture += escape::kNoColor;
+    picture += escape::kClearLine;
   }
-  if (lines.size() < size.ws_row) picture += std::string("\r\n") + kClearBelow;
+  if (lines.size() < size.ws_row) picture += std::string("\r\n") + escape::kClearBelow;
   const std::string key = picture + std::to_string(size.ws_col) + 'x' + std::to_string(size.ws_row);
   if (key == shown_) return;
   shown_ = key;

@@ -1,30 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/view/foxglove_channels.h"
 
-#include <boost/beast/core/detail/base64.hpp>
-#include <cmath>
 #include <utility>
 
+#include "cli/base64.h"
 #include "cli/view/recorder.h"
 #include "daemon/log/log_format.h"
+#include "daemon/telemetry/log_writer.h"
 #include "daemon/telemetry/signal_schema.h"
 
 namespace gaitd::cli {
-namespace {
-
-std::string base64(const std::string& bytes) {
-  namespace codec = boost::beast::detail::base64;
-  std::string text(codec::encoded_size(bytes.size()), '\0');
-  text.resize(codec::encode(text.data(), bytes.data(), bytes.size()));
-  return text;
-}
-
-}  // namespace
-
-std::uint64_t to_nanoseconds(double time) {
-  return time > 0.0 && time < 1e10 ? static_cast<std::uint64_t>(std::llround(time * 1e9)) : 0;
-}
-
 FoxgloveChannels::FoxgloveChannels(const nlohmann::json& robot, const daemon::SignalTable& table,
                                    OnMessage on_message)
     : on_message_(std::move(on_message)), codec_(table), width_(table.size()) {
@@ -41,14 +26,14 @@ FoxgloveChannels::~FoxgloveChannels() = default;
 
 void FoxgloveChannels::add(const LiveFrame& frame) {
   if (frame.values.size() != width_) return;
-  const std::uint64_t time_ns = to_nanoseconds(frame.time);
+  const std::uint64_t time_ns = daemon::to_nanoseconds(frame.time);
   codec_.append(frame.values, &begin_message(signals_, time_ns));
   end_message();
   if (scene_) scene_->write(time_ns, frame.values, this);
 }
 
 void FoxgloveChannels::add(const daemon::Event& event) {
-  records_.append_event(event, &begin_message(events_, to_nanoseconds(event.time)));
+  records_.append_event(event, &begin_message(events_, daemon::to_nanoseconds(event.time)));
   end_message();
 }
 

@@ -64,7 +64,4 @@ class FoxgloveChannels : private daemon::MessageSink {
   std::uint64_t time_ns_ = 0;
 };
 
-/// A moment of the tick clock as the messages carry it.
-std::uint64_t to_nanoseconds(double time);
-
 }  // namespace gaitd::cli

@@ -5,18 +5,15 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
+#include "cli/installed_page.h"
 #include "daemon/log/glob.h"
 
 namespace gaitd::cli {
 namespace {
 
 using nlohmann::json;
-namespace fs = std::filesystem;
 
 constexpr char kProtocol[] = "gaitd.v1";
 constexpr char kPolicy[] =
@@ -201,7 +198,7 @@ void LiveView::on_frame(const LiveFrame& frame) {
   newest_time_ = frame.time;
   recorder_.add(frame);
   if (channels_ && !foxgloves_.empty()) {
-    for (const auto& client : foxgloves_) client->send_time(to_nanoseconds(frame.time));
+    for (const auto& client : foxgloves_) client->send_time(daemon::to_nanoseconds(frame.time));
     channels_->add(frame);
   }
   if (viewers_.empty()) return;
@@ -283,14 +280,9 @@ void LiveView::tell_recording(const Recorder::End* end, const std::string& error
 }
 
 std::string live_page(std::string* error) {
-  std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path file = program.parent_path().parent_path() / "share/gaitd/view.html";
-  std::ifstream in(file, std::ios::binary);
-  std::string page{std::istreambuf_iterator<char>(in), {}};
+  auto [file, page] = installed_page("view");
   if (page.empty()) {
-    *error =
-        file.string() + ": no such page; gaitd was built without it: install npm and build again";
+    *error = file + ": no such page; gaitd was built without it: install npm and build again";
   }
   return page;
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "daemon/server/json_shape.h"
 #include "gaitd/sdk/bounds.h"
 
 namespace gaitd::cli {
@@ -24,21 +25,8 @@ inline Message text_of(const nlohmann::json& message) {
 /// What came from a browser; discarded if it is no JSON, or nested so deeply that to copy it could
 /// take all of the stack. gaitd takes nothing that deep either.
 inline nlohmann::json parse_message(std::string_view text) {
-  constexpr int kDeepest = bounds::kRequestDepth;
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      in_string = c != '"';
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > kDeepest) return nlohmann::json::value_t::discarded;
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
+  if (daemon::json_shape(text).deepest > bounds::kRequestDepth) {
+    return nlohmann::json::value_t::discarded;
   }
   return nlohmann::json::parse(text, nullptr, false);
 }

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/server/json_shape.h"
+
 namespace gaitd::daemon {
 namespace {
 
@@ -63,36 +65,6 @@ bool may_ask_for_estop(std::string_view line) {
 
 bool is_estop(const json& request) {
   return request.is_object() && request.value("method", json()) == "estop";
-}
-
-// The deepest nesting of arrays and objects in a text, JSON or not, and how many values it has at
-// most: looked at before parsing, so that nothing deep or large is ever built.
-struct Shape {
-  int deepest = 0;
-  std::size_t values = 1;
-};
-
-Shape shape_of(std::string_view text) {
-  Shape shape;
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '[' || c == '{') {
-      shape.deepest = std::max(shape.deepest, ++depth);
-      ++shape.values;
-    } else if (c == ']' || c == '}') {
-      --depth;
-    } else if (c == ',') {
-      ++shape.values;
-    }
-  }
-  return shape;
 }
 
 // Finds a key that an object has twice: which of them is meant nobody can know. A pass of its own,
@@ -234,7 +206,7 @@ void Exchange::read(const RpcLimits& limits, std::string_view line, const Send& 
   const auto refuse = [&send](int code, const std::string& what) {
     send(error_line({code, what}));
   };
-  const Shape shape = shape_of(line);
+  const JsonShape shape = json_shape(line);
   if (shape.deepest > limits.max_depth) {
     return refuse(rpc_code::kInvalidRequest, "invalid request: nested deeper than " +
                                                  std::to_string(limits.max_depth) + " levels");

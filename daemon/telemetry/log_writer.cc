@@ -16,16 +16,11 @@
 
 namespace gaitd::daemon {
 
-namespace {
-
-// MCAP times are unsigned; a tick clock that is before zero or not a number stands at zero.
 std::uint64_t to_nanoseconds(double time) {
   constexpr double kLast = 1e10;  // s
   if (!(time > 0.0)) return 0;
   return static_cast<std::uint64_t>(std::llround(std::min(time, kLast) * 1e9));
 }
-
-}  // namespace
 
 struct LogWriter::Impl {
   explicit Impl(SignalTable signals) : table(std::move(signals)), codec(table) {}

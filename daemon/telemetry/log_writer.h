@@ -14,6 +14,10 @@
 
 namespace gaitd::daemon {
 
+// A moment of the tick clock (s) as messages carry it. MCAP times are unsigned: one that is before
+// zero or not a number stands at zero, one beyond 1e10 s there.
+std::uint64_t to_nanoseconds(double time);
+
 // Writes one log file: MCAP with protobuf messages whose schema is in the file. Not thread-safe;
 // not for the real-time thread. Once writing fails (disk full) it stops for good: every later call
 // only counts what is lost, ok() is false and error() says why. What had been written stays
