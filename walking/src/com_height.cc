@@ -10,6 +10,13 @@
 namespace gaitd::walking {
 namespace {
 
+// Of a step, how far the hip is behind the foot that lands: a half and what the CoM still has to go
+// in the transfer that follows.
+constexpr double kLandingShare = 0.6;
+// Part of a swing in which the CoM comes down for a lower foothold. Neither a jerk nor too late:
+// 0.5 and 0.8 hold the same stairs.
+constexpr double kLoweredAt = 0.65;
+
 // How far the CoM must come down so that a leg can span two footholds.
 double drop(const GaitdPose& a, const GaitdPose& b, const LegReach& r) {
   const Eigen::Vector3d d =
@@ -18,6 +25,19 @@ double drop(const GaitdPose& a, const GaitdPose& b, const LegReach& r) {
   const double horizontal = r.trailing_share * std::hypot(d.x(), sideways);
   const double vertical = std::sqrt(std::max(0.0, r.longest * r.longest - horizontal * horizontal));
   return std::clamp(r.leg_length - vertical, 0.0, r.largest_drop);
+}
+
+// How far the CoM must come down, over the foot that stands, so that the other leg reaches a lower
+// foothold with its sole flat.
+double landing_drop(const GaitdPose& stance, const GaitdPose& next, const LegReach& r) {
+  const Eigen::Vector3d d = sdk::quaternion(stance.orientation).conjugate() *
+                            (sdk::view(next.position) - sdk::view(stance.position));
+  const double below = stance.position[2] - next.position[2];
+  if (below <= 0.0) return 0.0;
+  const double sideways = std::max(0.0, std::abs(d.y()) - r.nominal_separation);
+  const double horizontal = kLandingShare * std::hypot(d.x(), sideways);
+  const double vertical = std::sqrt(std::max(0.0, r.longest * r.longest - horizontal * horizontal));
+  return std::clamp(r.leg_length - vertical + below, 0.0, r.largest_drop + below);
 }
 
 }  // namespace
@@ -36,14 +56,21 @@ double com_height_target(const GaitdGaitState& gait, const LegReach& reach) {
     const double start = gait.trailing_side == GAITD_BOTH ? ground : trailing.position[2];
     ground = start + share * (leading.position[2] - start);
     lower = std::max(lower, share * drop(leading, gait.adjusted[0].pose, reach));
+    if (gait.trailing_side != GAITD_BOTH) {
+      lower = std::max(lower, (1.0 - share) * landing_drop(trailing, leading, reach));
+    }
   } else if (gait.phase == GAITD_PHASE_TRANSFER && gait.trailing_side != GAITD_BOTH) {
-    const double start = gait.footholds[gait.trailing_side].pose.position[2];
-    ground = start + share * (ground - start);
+    const GaitdPose& trailing = gait.footholds[gait.trailing_side].pose;
+    const GaitdPose& leading = gait.footholds[other_side(gait.trailing_side)].pose;
+    ground = trailing.position[2] + share * (ground - trailing.position[2]);
+    lower = std::max(lower, (1.0 - share) * landing_drop(trailing, leading, reach));
   } else if (gait.phase == GAITD_PHASE_SWING) {
     const GaitdPose& stance = gait.footholds[gait.support].pose;
     ground = stance.position[2];
     // Low enough for the step that is coming, never waiting for it.
     lower = std::max((1.0 - share) * lower, drop(stance, gait.adjusted[0].pose, reach));
+    lower = std::max(lower, std::min(1.0, share / kLoweredAt) *
+                                landing_drop(stance, gait.adjusted[0].pose, reach));
   }
   return ground + reach.standing_height - lower;
 }

@@ -7,9 +7,15 @@
 #include "gaitd/sdk/views.h"
 
 namespace gaitd::walking {
+namespace {
 
-void LegConfiguration::set_leg(const GaitdModel& model, int side) {
+constexpr double kShortestStep = 1e-3;  // m, that has a direction
+
+}  // namespace
+
+void LegConfiguration::set_leg(const GaitdModel& model, int side, double hip_ahead) {
   leg_ = LegGeometry(model, side);
+  hip_ahead_ = hip_ahead;
   separation_ = model.nominal_foot_separation;
 }
 
@@ -24,7 +30,15 @@ StepReach LegConfiguration::reach(int side, const GaitdGaitState& gait,
   const Eigen::Vector3d step = sdk::from_yaw(-yaw) * (sdk::view(gait.adjusted[0].pose.position) -
                                                       sdk::view(foothold.position));
   const double sideways = std::max(0.0, std::abs(step.y()) - separation_);
-  StepReach r = step_reach(leg_, std::hypot(step.x(), sideways), -step.z(), straight,
+  const double horizontal = std::hypot(step.x(), sideways);
+  // The CoM passes the middle between the feet half-way through the transfer that follows.
+  const double swing = gait.adjusted[0].swing_duration;
+  const double transfer =
+      gait.footstep_count > 1 ? gait.adjusted[1].transfer_duration : gait.final_transfer_duration;
+  const double progress = 0.5 - 0.5 * std::min(0.5, transfer / (swing + transfer));
+  const double along = step.x() / std::max(horizontal, kShortestStep);
+  const double hip = progress * horizontal + along * hip_ahead_;
+  StepReach r = step_reach(leg_, horizontal, -step.z(), hip, straight,
                            p[Legs::kLargestDrop] * leg_.length(0.0));
   r.collapsed_knee = std::max(p[Legs::kCollapsedKnee], p[Legs::kCollapseShare] * r.collapsed_knee);
   if (gait.phase == GAITD_PHASE_SWING && gait.late_contact != 0) {

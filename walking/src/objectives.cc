@@ -72,7 +72,10 @@ ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
   const Eigen::Vector3d hip = kinematics_.p_WB(model_.joints[leg.hip_pitch].child_body);
   const Eigen::Vector3d ankle = kinematics_.p_WB(model_.joints[leg.ankle_pitch].child_body);
   leg_length_ = (hip - ankle).norm();
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) legs_[side].set_leg(model_, side);
+  const GaitdFoot& foot = model_.feet[GAITD_LEFT];
+  const Eigen::Vector3d sole = kinematics_.frame_position(foot.body, view(foot.sole.origin));
+  const double hip_ahead = hip.x() - kinematics_.com().x() + sole.x() - ankle.x();
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) legs_[side].set_leg(model_, side, hip_ahead);
   posture_joint_.fill(false);
   for (int i = 0; i < model_.joint_count; ++i) posture_joint_[i] = true;
   for (const GaitdLeg& l : model_.legs) {

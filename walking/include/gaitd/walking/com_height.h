@@ -39,8 +39,9 @@ struct LegReach {
 };
 
 // Height (m, W) that the CoM aims at, with both soles flat until lift-off: as high as when
-// standing, lowered by what the trailing leg needs to reach its foothold at the end of a transfer.
-// Blends from one foothold to the next over the phase.
+// standing, lowered by what the trailing leg needs to reach its foothold at the end of a transfer,
+// and the landing leg a lower one at the end of a swing. Blends from one foothold to the next over
+// the phase.
 double com_height_target(const GaitdGaitState& gait, const LegReach& reach);
 
 }  // namespace gaitd::walking

@@ -29,7 +29,8 @@ class LegConfiguration {
     double weight;
   };
 
-  void set_leg(const GaitdModel& model, int side);
+  // `hip_ahead` (m): of the hip over the ankle when the CoM is above the sole.
+  void set_leg(const GaitdModel& model, int side, double hip_ahead);
   void reset(double knee);
   // `side` is this leg, `knee` its measured bend (rad). One call per tick of `dt` seconds.
   const Reference& update(double dt, int side, double knee, const GaitdGaitState& gait,
@@ -45,6 +46,7 @@ class LegConfiguration {
   double collapse_time(const LegParameters& p) const;
   Reference reference_{LegState::kBent, 0.0, 0.0, 0.0, 0.0};
   LegGeometry leg_;
+  double hip_ahead_ = 0.0;   // m
   double separation_ = 0.0;  // m, of the feet in the nominal posture
   StepReach reach_{};
   double time_in_state_ = 0.0;

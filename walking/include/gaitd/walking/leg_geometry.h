@@ -30,10 +30,10 @@ struct StepReach {
 };
 
 // `horizontal` (m) is the step from the standing foot to the coming foothold, without what the feet
-// stand apart anyway; `drop` (m) by how much it is lower. The landing leg has the knee `straight`
-// (rad) at touchdown, with the hip half-way; the hip comes down by at most `largest_drop` (m) from
-// mid-stance to there, plus the drop itself.
-StepReach step_reach(const LegGeometry& leg, double horizontal, double drop, double straight,
-                     double largest_drop);
+// stand apart anyway; `drop` (m) by how much it is lower. At touchdown the hip is `hip` (m) from
+// the ankle that stands, along the step, and the landing leg has the knee `straight` (rad); the hip
+// comes down by at most `largest_drop` (m) from mid-stance to there, plus the drop itself.
+StepReach step_reach(const LegGeometry& leg, double horizontal, double drop, double hip,
+                     double straight, double largest_drop);
 
 }  // namespace gaitd::walking
