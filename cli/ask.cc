@@ -9,23 +9,14 @@
 #include "cli/failure.h"
 #include "cli/print.h"
 #include "cli/progress.h"
+#include "cli/stop_signals.h"
 
 namespace gaitd::cli {
 namespace {
 
 using nlohmann::json;
 
-// Waits, at most 15 s, until the robot has the posture in which it takes commands.
-void wait_until_ready(RpcClient* client) {
-  using std::chrono::milliseconds;
-  for (milliseconds waited{0}; waited < milliseconds(15000); waited += milliseconds(50)) {
-    const daemon::RpcResult status = client->call("status", nullptr);
-    const json* value = std::get_if<json>(&status);
-    if (value == nullptr || !value->is_object()) return;
-    if (value->value("state", json()) != "readying") return;
-    std::this_thread::sleep_for(milliseconds(50));
-  }
-}
+constexpr std::chrono::seconds kReadying{15};
 
 // What both versions are, if they differ; "" otherwise.
 std::string other_version(RpcClient* client) {
@@ -93,7 +84,9 @@ int ask(const Context& context, const std::string& command, const std::string& m
     }
     return fail(context, command, method, *error);
   }
-  if (method == "arm" || method == "sim.reset") wait_until_ready(client.get());
+  if (method == "arm" || method == "sim.reset") {
+    wait_while(client.get(), "readying", kReadying);  // until it takes commands
+  }
   waiting.reset();
   json& value = std::get<json>(result);
   // Whoever did not name the socket learns which one it was.
@@ -112,6 +105,26 @@ CLI::App* add_plain(CLI::App* app, Context* context, const std::string& name,
     context->action = [context, method, full] { return ask(*context, full, method, nullptr); };
   });
   return command;
+}
+
+CLI::Option* add_number(CLI::App* command, const std::string& option,
+                        const std::shared_ptr<json>& params, const std::string& place,
+                        const std::string& description) {
+  return command->add_option_function<double>(
+      option,
+      [params, place = json::json_pointer(place)](double value) { (*params)[place] = value; },
+      description);
+}
+
+void wait_while(RpcClient* client, const std::string& state, std::chrono::milliseconds longest) {
+  using Clock = std::chrono::steady_clock;
+  for (const auto end = Clock::now() + longest; Clock::now() < end && !StopSignals::requested();) {
+    const daemon::RpcResult result = client->call("status", nullptr, std::chrono::seconds(2));
+    const json* status = std::get_if<json>(&result);
+    if (status == nullptr || !status->is_object()) return;
+    if (status->value("state", json()) != state) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
 }
 
 }  // namespace gaitd::cli

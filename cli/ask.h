@@ -27,4 +27,14 @@ int ask(const Context& context, const std::string& command, const std::string& m
 CLI::App* add_plain(CLI::App* app, Context* context, const std::string& name,
                     const std::string& method, const std::string& description);
 
+/// An option that puts a number into `params` at `place`, a JSON pointer ("/pelvis/x"), if it is
+/// given: gaitd knows the defaults of the robot.
+CLI::Option* add_number(CLI::App* command, const std::string& option,
+                        const std::shared_ptr<nlohmann::json>& params, const std::string& place,
+                        const std::string& description);
+
+/// Waits until the robot is not in `state` any more, at most for `longest`, or until this program
+/// is to stop.
+void wait_while(RpcClient* client, const std::string& state, std::chrono::milliseconds longest);
+
 }  // namespace gaitd::cli

@@ -22,9 +22,9 @@
 #include "cli/campaign_search.h"
 #include "cli/campaign_settings.h"
 #include "cli/campaign_summary.h"
-#include "cli/completion_values.h"
 #include "cli/failure.h"
 #include "cli/print.h"
+#include "cli/setting_option.h"
 #include "cli/terminal.h"
 #include "daemon/config/daemon_config.h"
 #include "daemon/config/library_paths.h"
@@ -252,15 +252,8 @@ void add_campaign_command(CLI::App* app, Context* context) {
                    "Folder for results, summary and the logs of the worst runs; by default the "
                    "name of the file and -results")
       ->type_name("FOLDER");
-  auto* setting =
-      command
-          ->add_option(
-              "--set", arguments->settings,
-              "Any key of the configuration or the scenario, for every run; may be repeated")
-          ->type_name("KEY=VALUE")
-          ->take_all()
-          ->expected(1);
-  context->values[setting] = [](const auto&) { return setting_names(); };
+  add_settings(command, context, &arguments->settings,
+               "Any key of the configuration or the scenario, for every run; may be repeated");
   command->add_flag("--trust", arguments->trust,
                     "Load libraries that the campaign or its scenarios name by path");
   command

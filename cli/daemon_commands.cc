@@ -41,11 +41,8 @@ void add_walk(CLI::App* app, Context* context) {
   auto* command = app->add_subcommand(
       "walk", "Walk N advancing steps and one closing step beside the last, which is not counted");
   auto params = std::make_shared<json>(json::object());
-  // Only what was given is sent: the daemon knows the defaults of the robot.
-  const auto number = [&](const std::string& option, const std::string& key,
-                          const std::string& description) {
-    return command->add_option_function<double>(
-        option, [params, key](double value) { (*params)[key] = value; }, description);
+  const auto number = [&](const std::string& name, const std::string& description) {
+    add_number(command, "--" + name, params, "/" + name, description);
   };
   command
       ->add_option_function<int>(
@@ -53,14 +50,12 @@ void add_walk(CLI::App* app, Context* context) {
           "Number of advancing footfalls")
       ->required()
       ->check(kPositiveCount);
-  number("--length", "length", "Each footfall ahead of the previous one, m; default 0");
-  number("--lateral", "lateral",
-         "Each footfall beside the previous one, m, positive to the left; default 0");
-  number("--width", "width",
-         "Distance between the soles, m; by default as in the standing posture");
-  number("--turn", "turn", "Turn per footfall, rad, positive to the left; default 0");
-  number("--swing", "swing", "Duration of a swing, s; by default gait.swing_duration");
-  number("--transfer", "transfer",
+  number("length", "Each footfall ahead of the previous one, m; default 0");
+  number("lateral", "Each footfall beside the previous one, m, positive to the left; default 0");
+  number("width", "Distance between the soles, m; by default as in the standing posture");
+  number("turn", "Turn per footfall, rad, positive to the left; default 0");
+  number("swing", "Duration of a swing, s; by default gait.swing_duration");
+  number("transfer",
          "Duration of a transfer (double support), s; by default gait.transfer_duration");
   command
       ->add_option_function<std::string>(
@@ -102,9 +97,8 @@ void add_pose(CLI::App* app, Context* context) {
   auto* command = pose->add_subcommand(
       "pelvis", "Centre of mass and pelvis against where they are by themselves; nothing: back");
   auto params = std::make_shared<json>(json{{"pelvis", json::object()}});
-  const auto number = [&](const std::string& key, const std::string& description) {
-    command->add_option_function<double>(
-        "--" + key, [params, key](double value) { (*params)["pelvis"][key] = value; }, description);
+  const auto number = [&](const std::string& name, const std::string& description) {
+    add_number(command, "--" + name, params, "/pelvis/" + name, description);
   };
   number("x", "Centre of mass forwards, m");
   number("y", "Centre of mass to the left, m");
@@ -112,9 +106,7 @@ void add_pose(CLI::App* app, Context* context) {
   number("roll", "Of the pelvis, rad");
   number("pitch", "Likewise");
   number("yaw", "Likewise, to the left");
-  command->add_option_function<double>(
-      "--duration", [params](double value) { (*params)["duration"] = value; },
-      "Of the way there, s");
+  add_number(command, "--duration", params, "/duration", "Of the way there, s");
   command->callback([context, params] {
     context->action = [context, params] { return ask(*context, "pose pelvis", "pose", *params); };
   });

@@ -9,12 +9,14 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <thread>
 
 #include "cli/ask.h"
 #include "cli/failure.h"
 #include "cli/print.h"
+#include "cli/progress.h"
 #include "cli/stop_signals.h"
 
 namespace gaitd::cli {
@@ -29,7 +31,7 @@ constexpr milliseconds kAnswer{2000};      // waited for; the robot has stopped 
 constexpr std::chrono::seconds kStop{30};  // from the last velocity to the stand
 
 struct DriveOptions {
-  json velocity = json::object();
+  std::shared_ptr<json> velocity = std::make_shared<json>(json::object());
   double seconds = 0.0;  // 0: until it is interrupted
 };
 
@@ -39,49 +41,48 @@ std::int64_t session() {
   return ((now << 16) ^ getpid()) & ((std::int64_t{1} << 53) - 1);
 }
 
-// Until the robot stands, or somebody else has given it something to do.
-void wait_for_the_stand(RpcClient* client) {
-  for (const auto end = Clock::now() + kStop; Clock::now() < end && !StopSignals::requested();) {
-    const daemon::RpcResult result = client->call("status", nullptr, kAnswer);
-    const json* status = std::get_if<json>(&result);
-    if (status == nullptr || !status->is_object()) return;
-    if (status->value("state", json()) != "walking") return;
-    std::this_thread::sleep_for(kRenewal);
-  }
-}
-
 int drive(const Context& context, const DriveOptions& options) {
   const StopSignals signals;
   const auto client = connect(context, "drive", daemon::least_role("drive"));
   if (!client) return kNoDaemon;
-  json params = options.velocity;
+  json params = *options.velocity;
   params["session"] = session();
   const auto begin = Clock::now();
   const auto over = [&] {
     const std::chrono::duration<double> time = Clock::now() - begin;
     return StopSignals::requested() || (options.seconds > 0.0 && time.count() >= options.seconds);
   };
+  std::optional<Waiting> driving("driving");
   std::string told;
   json answer;
-  for (bool last = false;; params["renew"] = true) {
-    if (last) params["forward"] = params["lateral"] = params["turn"] = 0.0;
+  for (bool last = false;;) {
+    if (last) params = {{"session", params["session"]}, {"end", true}};
     const daemon::RpcResult result = client->call("drive", params, kAnswer);
     if (const auto* error = std::get_if<daemon::RpcError>(&result)) {
+      driving.reset();
       return fail(context, "drive", "drive", *error);
     }
     if (last) break;
     answer = std::get<json>(result);
     const json note = answer.is_object() ? answer.value("note", json()) : json();
     const std::string text = note.is_string() ? note.get<std::string>() : "";
-    if (!context.json && !text.empty() && text != told) std::cout << text << std::endl;
+    if (!context.json && !text.empty() && text != told) {
+      driving.reset();
+      std::cout << text << std::endl;
+      driving.emplace("driving");
+    }
     told = text;
     for (auto next = Clock::now() + kRenewal; Clock::now() < next && !over();) {
       std::this_thread::sleep_for(milliseconds(10));
     }
     last = over();
+    params["renew"] = true;
   }
   if (!context.json && answer.is_object()) answer.erase("note");  // has been told
-  if (!StopSignals::requested()) wait_for_the_stand(client.get());
+  driving.emplace("coming to a stand");
+  // Or somebody else has given it something to do.
+  wait_while(client.get(), "walking", kStop);
+  driving.reset();
   std::cout << (context.json ? json_text(answer) : result_text("drive", "drive", answer))
             << std::flush;
   return kDone;
@@ -96,20 +97,19 @@ void add_drive_command(CLI::App* app, Context* context) {
       "Whoever drives last has the robot: an earlier drive ends and says so. The robot comes to a\n"
       "stand by itself when this program ends however it may (drive.timeout).");
   auto options = std::make_shared<DriveOptions>();
-  const auto number = [&](const std::string& key, const std::string& description) {
-    return command->add_option_function<double>(
-        "--" + key, [options, key](double value) { options->velocity[key] = value; }, description);
-  };
-  number("forward", "Speed ahead, m/s");
-  number("lateral", "Speed sideways, m/s, positive to the left");
-  number("turn", "Speed of the turn, rad/s, positive to the left");
+  const auto& velocity = options->velocity;
+  add_number(command, "--forward", velocity, "/forward", "Speed ahead, m/s");
+  add_number(command, "--lateral", velocity, "/lateral",
+             "Speed sideways, m/s, positive to the left");
+  add_number(command, "--turn", velocity, "/turn",
+             "Speed of the turn, rad/s, positive to the left");
   command
       ->add_option("--for", options->seconds,
                    "End after this time, s, 0.1 to 3600, when the robot stands; else at Ctrl-C")
       ->check(CLI::Range(0.1, 3600.0))
       ->type_name("S");
   command->callback([context, options] {
-    if (options->velocity.empty()) {
+    if (options->velocity->empty()) {
       throw CLI::RequiredError("drive: one of --forward, --lateral and --turn");
     }
     context->action = [context, options] { return drive(*context, *options); };

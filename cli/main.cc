@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // gaitctl: the command line of gaitd.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
@@ -14,6 +16,7 @@
 #include "cli/help.h"
 #include "cli/man_text.h"
 #include "cli/plain_output.h"
+#include "cli/terminal.h"
 #include "cli/usage_error.h"
 #include "gaitd/abi/plugin.h"
 
@@ -22,6 +25,11 @@ namespace {
 std::string version() {
   return "gaitctl " GAITD_VERSION " (plugin ABI " + std::to_string(GAITD_ABI_MAJOR) + "." +
          std::to_string(GAITD_ABI_MINOR) + ", " GAITD_BUILD ")";
+}
+
+bool asks_for_json(int argc, char** argv) {
+  return std::any_of(argv, argv + argc,
+                     [](std::string_view argument) { return argument == "--json"; });
 }
 
 int run(int argc, char** argv) {
@@ -48,8 +56,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
     // What was not parsed may have held --json too.
-    context.json |= std::any_of(argv, argv + argc,
-                                [](std::string_view argument) { return argument == "--json"; });
+    context.json |= asks_for_json(argc, argv);
     const UsageError error = usage_error(app, e);
     return fail(context, kUsage, error.command, error.message);
   }
@@ -59,8 +66,10 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const gaitd::cli::PlainOutput out(&std::cout);
-  const gaitd::cli::PlainOutput err(&std::cerr);
+  // What programs read has lines of its own.
+  const bool whole = asks_for_json(argc, argv);
+  const gaitd::cli::PlainOutput out(&std::cout, whole ? 0 : gaitd::cli::columns_of(STDOUT_FILENO));
+  const gaitd::cli::PlainOutput err(&std::cerr, whole ? 0 : gaitd::cli::columns_of(STDERR_FILENO));
   try {
     return run(argc, argv);
   } catch (const std::exception& e) {

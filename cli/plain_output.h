@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <ostream>
 #include <streambuf>
 #include <string>
@@ -14,7 +15,9 @@ namespace gaitd::cli {
 /// gaitctl itself moves a cursor with does not go through streams.
 class PlainOutput : public std::streambuf {
  public:
-  explicit PlainOutput(std::ostream* stream);
+  /// `columns`: of the terminal that the stream goes to. Lines that are longer go on below, a
+  /// little further in, broken between words; 0: no limit.
+  PlainOutput(std::ostream* stream, std::size_t columns);
   ~PlainOutput() override;
   PlainOutput(const PlainOutput&) = delete;
   PlainOutput& operator=(const PlainOutput&) = delete;
@@ -25,10 +28,12 @@ class PlainOutput : public std::streambuf {
   int sync() override;
 
  private:
-  bool put();  // what is in text_
+  bool put();  // the whole lines in text_; without a limit, all of it
 
   std::ostream* stream_;
   std::streambuf* target_;
+  std::ios_base::fmtflags flags_;
+  std::size_t columns_;
   daemon::Printable filter_;
   std::string text_;
 };

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/completion_values.h"
 #include "cli/failure.h"
 #include "cli/log_damage.h"
 #include "cli/print.h"
 #include "cli/progress.h"
+#include "cli/setting_option.h"
 #include "cli/table.h"
 #include "daemon/config/paths.h"
 #include "daemon/replay/replay.h"
@@ -129,14 +129,10 @@ void add_replay_command(CLI::App* log, Context* context) {
   command->add_option("FILE", arguments->file, "A log of gaitd (.mcap)")
       ->required()
       ->type_name("FILE");
-  auto* setting =
-      command
-          ->add_option(
-              "--set", arguments->set,
-              "Change a configuration key, e.g. whole_body_controller.variant=com_height_qp")
-          ->type_name("KEY=VALUE")
-          ->allow_extra_args(false);
-  context->values[setting] = [](const auto&) { return setting_names(); };
+  add_settings(
+      command, context, &arguments->set,
+      "Change a configuration key, e.g. whole_body_controller.variant=com_height_qp; may be "
+      "repeated");
   command->add_flag("--trust", arguments->trust,
                     "Load a library from where the log says that it was, if the installed one is "
                     "another");

@@ -15,6 +15,7 @@
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "cli/scenario_run.h"
+#include "cli/setting_option.h"
 #include "cli/table.h"
 #include "cli/terminal.h"
 #include "daemon/config/paths.h"
@@ -102,15 +103,8 @@ void add_run_command(CLI::App* app, Context* context) {
           ->required()
           ->type_name("NAME|FILE");
   context->values[scenario] = [](const auto&) { return daemon::Paths::detect().scenarios(); };
-  auto* setting =
-      command
-          ->add_option(
-              "--set", arguments->settings,
-              "Any key of the configuration or the scenario, the value in YAML; may be repeated")
-          ->type_name("KEY=VALUE")
-          ->take_all()
-          ->expected(1);
-  context->values[setting] = [](const auto&) { return setting_names(); };
+  add_settings(command, context, &arguments->settings,
+               "Any key of the configuration or the scenario, the value in YAML; may be repeated");
   const auto* backend =
       command
           ->add_option_function<std::string>(

@@ -104,7 +104,8 @@ std::vector<std::string> status_screen(const json& status) {
       "health     " + health(at(status, "health")),
       "gait       " + gait(status),
       "step       " + steps(status),
-      "ICP error  " + number(at(status, "icp_error"), 1, 1e-3) + " mm",
+      "ICP error  " + number(at(status, "icp_error"), 1, 1e-3) + " mm, margin " +
+          number(at(status, "icp_margin"), 1, 1e-3) + " mm",
       "pelvis     " + pose(at(status, "pelvis")),
       "log        " + log(at(status, "log")),
       ""};
@@ -124,7 +125,8 @@ std::vector<std::string> status_screen(const json& status) {
 
 std::string status_line(const json& status) {
   return number(at(status, "time"), 2) + " s  " + state(status) + "  " + gait(status) + "  step " +
-         steps(status) + "  ICP error " + number(at(status, "icp_error"), 1, 1e-3) + " mm  tick " +
+         steps(status) + "  ICP error " + number(at(status, "icp_error"), 1, 1e-3) +
+         " mm  margin " + number(at(status, "icp_margin"), 1, 1e-3) + " mm  tick " +
          number(at(status, "tick_longest_us"), 0) + " µs  faults " + faults(status);
 }
 

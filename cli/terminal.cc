@@ -21,16 +21,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 volatile std::sig_atomic_t resized = 0;
-volatile std::sig_atomic_t suspended = 0;
 
 void note_resize(int) { resized = 1; }
-void note_suspend(int) { suspended = 1; }
-
-void handle(int signal, void (*handler)(int)) {
-  struct sigaction action {};
-  action.sa_handler = handler;
-  sigaction(signal, &action, nullptr);
-}
 
 bool write_all(const std::string& text) {
   std::size_t done = 0;
@@ -45,11 +37,13 @@ bool write_all(const std::string& text) {
 
 }  // namespace
 
-std::size_t output_columns() {
+std::size_t columns_of(int descriptor) {
   winsize size{};
-  if (isatty(STDOUT_FILENO) == 0 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return 0;
+  if (isatty(descriptor) == 0 || ioctl(descriptor, TIOCGWINSZ, &size) != 0) return 0;
   return size.ws_col;
 }
+
+std::size_t output_columns() { return columns_of(STDOUT_FILENO); }
 
 bool shows_colors(int descriptor) {
   const char* none = std::getenv("NO_COLOR");
@@ -77,15 +71,13 @@ std::string cut_to_width(const std::string& line, std::size_t width) {
 
 Screen::Screen() {
   keys_ = isatty(STDIN_FILENO) != 0 && tcgetattr(STDIN_FILENO, &before_) == 0;
-  handle(SIGWINCH, note_resize);
-  handle(SIGTSTP, note_suspend);
+  handle_signal(SIGWINCH, note_resize);
   enter();
 }
 
 Screen::~Screen() {
   leave();
-  handle(SIGWINCH, SIG_DFL);
-  handle(SIGTSTP, SIG_DFL);
+  handle_signal(SIGWINCH, SIG_DFL);
 }
 
 void Screen::enter() {
@@ -119,10 +111,9 @@ bool Screen::draw(const std::vector<std::string>& lines) {
 Screen::Event Screen::wait(std::chrono::milliseconds time) {
   const Clock::time_point end = Clock::now() + time;
   while (!StopSignals::requested()) {
-    if (suspended != 0) {
-      suspended = 0;
+    if (SuspendSignal::requested()) {
       leave();
-      raise(SIGSTOP);
+      SuspendSignal::suspend();
       enter();
       return Event::kResized;
     }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/suspend_signal.h"
+
 namespace gaitd::cli {
 
 /// A full screen on the terminal of standard output: the alternate screen without cursor, and keys
@@ -31,11 +33,14 @@ class Screen {
   void enter();
   void leave();
 
+  SuspendSignal suspends_;
   bool keys_ = false;  // standard input is a terminal too
   termios before_{};
 };
 
-/// Of the terminal of standard output; 0 if that is none, or does not know.
+/// Of the terminal that `descriptor` is; 0 if it is none, or does not know.
+std::size_t columns_of(int descriptor);
+/// Of that of standard output.
 std::size_t output_columns();
 
 /// Colours only for a person who sees them: `descriptor` is a terminal that has some, and NO_COLOR

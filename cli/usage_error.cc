@@ -2,6 +2,7 @@
 #include "cli/usage_error.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <vector>
 
 #include "daemon/config/issues.h"
@@ -20,7 +21,10 @@ std::vector<std::string> option_names(const CLI::App* app) {
   std::vector<std::string> names;
   for (; app != nullptr; app = app->get_parent()) {
     for (const CLI::Option* option : usage::visible_options(*app)) {
-      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+      for (const std::string& name : option->get_lnames()) {
+        const std::string whole = "--" + name;
+        if (std::find(names.begin(), names.end(), whole) == names.end()) names.push_back(whole);
+      }
     }
   }
   return names;

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/view/gaitd_link.h"
-#include "cli/view/live_source.h"
-#include "cli/view/rpc_relay.h"
+#include "cli/live/gaitd_link.h"
+#include "cli/live/live_source.h"
+#include "cli/live/rpc_relay.h"
 #include "ros2/topics.h"
 #include "ros2/velocity_drive.h"
 

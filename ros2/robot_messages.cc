@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "cli/view/recorder.h"
+#include "cli/live/robot_metadata.h"
 
 namespace gaitd::ros2 {
 namespace {

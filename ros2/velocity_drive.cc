@@ -67,7 +67,7 @@ void VelocityDrive::let_go(Time now) {
   if (driving_) {
     if (asked_at_) return;  // behind the answer to the last one
     driving_ = false;
-    ask({}, true, now);
+    ask({{"session", options_.session}, {"end", true}}, true, now);
   }
   if (!newest_at_ || !fresh(now)) trouble_.clear();
   held_ = false;
@@ -84,12 +84,12 @@ void VelocityDrive::begin(Time now) {
   if (!on_feet()) return hold("the robot is not on its feet under control: " + state_);
   if (mode_ == "stand" && options_.auto_mode) return set_mode(now);
   driving_ = true;
-  ask(newest_, false, now);
+  ask(params(false), false, now);
 }
 
 void VelocityDrive::renew(Time now) {
   if (asked_at_ || now - last_request_ < kRenewal) return;
-  ask(newest_, true, now);
+  ask(params(true), true, now);
 }
 
 void VelocityDrive::set_mode(Time now) {
@@ -104,20 +104,22 @@ void VelocityDrive::set_mode(Time now) {
   });
 }
 
-void VelocityDrive::ask(const Velocity& velocity, bool renewal, Time now) {
+json VelocityDrive::params(bool renewal) const {
+  return {{"forward", newest_.forward},
+          {"lateral", newest_.lateral},
+          {"turn", newest_.turn},
+          {"session", options_.session},
+          {"renew", renewal}};
+}
+
+void VelocityDrive::ask(const json& params, bool renewal, Time now) {
   const std::uint64_t number = ++number_;
   last_request_ = asked_at_.emplace(now);
-  send_("drive",
-        {{"forward", velocity.forward},
-         {"lateral", velocity.lateral},
-         {"turn", velocity.turn},
-         {"session", options_.session},
-         {"renew", renewal}},
-        [this, number, renewal](const json& answer) {
-          if (number != number_) return;  // of a request that was given up
-          asked_at_.reset();
-          on_answer(answer, renewal);
-        });
+  send_("drive", params, [this, number, renewal](const json& answer) {
+    if (number != number_) return;  // of a request that was given up
+    asked_at_.reset();
+    on_answer(answer, renewal);
+  });
 }
 
 void VelocityDrive::on_answer(const json& answer, bool renewal) {
@@ -126,7 +128,7 @@ void VelocityDrive::on_answer(const json& answer, bool renewal) {
     return;
   }
   const bool was_driving = std::exchange(driving_, false);
-  if (!was_driving && renewal) return;  // the zero at the end: it stands anyway
+  if (!was_driving && renewal) return;  // the end: it stands anyway
   trouble_ = text_of(answer, "error", "message");
   if (trouble_.empty()) trouble_ = "gaitd refused without a reason";
   // What could not be begun is tried again; what was taken away is not taken back.

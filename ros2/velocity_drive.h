@@ -20,9 +20,9 @@ struct Velocity {
 };
 
 /// Turns the messages on /cmd_vel into `drive` requests: begins with the first velocity that is not
-/// zero, renews it at most ten times a second while messages come, and asks for zero once when they
-/// cease. Whoever takes the robot over, stops it or lets it fall ends that: then the velocity has
-/// to go to zero, or cease, before it is begun anew. Knows neither clock nor connection.
+/// zero, renews it at most ten times a second while messages come, and ends the drive once when
+/// they cease. Whoever takes the robot over, stops it or lets it fall ends that: then the velocity
+/// has to go to zero, or cease, before it is begun anew. Knows neither clock nor connection.
 class VelocityDrive {
  public:
   using Clock = std::chrono::steady_clock;
@@ -64,7 +64,8 @@ class VelocityDrive {
   void let_go(Time now);
   void begin(Time now);
   void renew(Time now);
-  void ask(const Velocity& velocity, bool renewal, Time now);
+  nlohmann::json params(bool renewal) const;  // of `drive`
+  void ask(const nlohmann::json& params, bool renewal, Time now);
   void on_answer(const nlohmann::json& answer, bool renewal);
   void set_mode(Time now);
 

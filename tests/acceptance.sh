@@ -6,7 +6,8 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export PATH=$PWD/build/release/bin:$PATH
-campaigns=(gate gauntlet terrain estimators model-errors walks footsteps parameters)
+campaigns=(gate gauntlet terrain estimators model-errors walks footsteps parameters
+  drive drive-parameters drive-pushed)
 names=("${campaigns[@]}" mutations sanitizers soak)
 chosen=("$@")
 ((${#chosen[@]})) || chosen=("${names[@]}")

@@ -44,13 +44,19 @@ start_daemon() {
   fail "gaitd does not answer after 10 s"
 }
 
-# stop_daemon [CODE]: on SIGTERM; CODE is the exit code expected.
-stop_daemon() {
+# stop_process NAME PID [CODE]: on SIGTERM; CODE is the exit code expected.
+stop_process() {
   local code=0
-  kill -TERM "$daemon"
-  wait "$daemon" || code=$?
+  kill -TERM "$2"
+  wait "$2" || code=$?
+  ((code == ${3:-0})) || fail "$1 ended with exit code $code on SIGTERM, expected ${3:-0}"
+}
+
+# stop_daemon [CODE]
+stop_daemon() {
+  local pid=$daemon
   daemon=
-  ((code == ${1:-0})) || fail "gaitd ended with exit code $code on SIGTERM, expected ${1:-0}"
+  stop_process gaitd "$pid" "${1:-0}"
 }
 
 # The client that every helper uses; a script may add --socket.

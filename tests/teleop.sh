@@ -66,7 +66,7 @@ expect 0 gaitctl mode stand
 # Forwards, and to a stand.
 start gaitctl teleop
 see 'hold a key to walk'
-see '^ICP error +[0-9]+ mm'
+see '^ICP margin +[+-][0-9]+ mm +error +[0-9]+ mm'
 see '^faults +none'
 before=$(pelvis_x)
 hold w is_in_state walking

@@ -21,13 +21,10 @@ start_view() {
   fail "view prints no address: $(cat view.txt)"
 }
 
-# end_view: on SIGTERM.
 end_view() {
-  local code=0
-  kill -TERM "$view"
-  wait "$view" || code=$?
+  local pid=$view
   view=
-  ((code == 0)) || fail "view ended with $code on SIGTERM: $(cat view.txt)"
+  stop_process view "$pid"
 }
 
 # To other machines: only by TLS, whose certificate stays, and only while nobody else knows its key.

@@ -13,12 +13,12 @@
 
 #include "cli/calibrate/calibration_text.h"
 #include "cli/calibrate/live_motions.h"
-#include "cli/completion_values.h"
 #include "cli/failure.h"
 #include "cli/log_damage.h"
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "cli/scenario_run.h"
+#include "cli/setting_option.h"
 #include "daemon/config/paths.h"
 #include "daemon/replay/robot_of_log.h"
 
@@ -175,13 +175,8 @@ void add_calibrate_command(CLI::App* app, Context* context) {
       ->type_name("FILE");
   command->add_flag("--simulate", arguments->simulate,
                     "With a simulated robot on a private gaitd, in lockstep");
-  auto* setting = command
-                      ->add_option("--set", arguments->settings,
-                                   "With --simulate: any key of the configuration or the scenario")
-                      ->type_name("KEY=VALUE")
-                      ->take_all()
-                      ->expected(1);
-  context->values[setting] = [](const auto&) { return setting_names(); };
+  add_settings(command, context, &arguments->settings,
+               "With --simulate: any key of the configuration or the scenario; may be repeated");
   command
       ->add_option("--log", arguments->simulated_log,
                    "With --simulate: log file; by default a new file in $XDG_STATE_HOME/gaitd/logs "

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
 
@@ -19,16 +18,6 @@ namespace gaitd::cli::teleop {
 namespace {
 
 constexpr int kLastWords = 500;  // ms that a terminal gets to take them
-
-volatile std::sig_atomic_t suspended = 0;
-
-void note_suspend(int) { suspended = 1; }
-
-void handle(int signal, void (*handler)(int)) {
-  struct sigaction action {};
-  action.sa_handler = handler;
-  sigaction(signal, &action, nullptr);
-}
 
 bool is_dumb() {
   const char* kind = std::getenv("TERM");
@@ -62,13 +51,11 @@ Console::Console()
     : screen_(isatty(STDOUT_FILENO) != 0 && !is_dumb()), colors_(shows_colors(STDOUT_FILENO)) {
   tcgetattr(STDIN_FILENO, &before_);
   if (isatty(STDOUT_FILENO) != 0) out_ = open_again(STDOUT_FILENO);
-  handle(SIGTSTP, note_suspend);
   enter();
 }
 
 Console::~Console() {
   leave();
-  handle(SIGTSTP, SIG_DFL);
   if (out_ >= 0) close(out_);
 }
 
@@ -163,12 +150,9 @@ std::string Console::read() {
   }
 }
 
-bool Console::suspend_wanted() const { return suspended != 0; }
-
 void Console::suspend() {
-  suspended = 0;
   leave();
-  raise(SIGSTOP);
+  SuspendSignal::suspend();
   enter();
 }
 

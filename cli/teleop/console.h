@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/suspend_signal.h"
+
 namespace gaitd::cli::teleop {
 
 struct Line {
@@ -37,8 +39,7 @@ class Console {
   std::string read();
   bool ended() const { return ended_; }  ///< nobody is there any more
 
-  /// Whether Ctrl-Z was pressed; suspend() does what it asks for and returns when it is over.
-  bool suspend_wanted() const;
+  /// What Ctrl-Z asks for, SuspendSignal; returns when it is over.
   void suspend();
 
  private:
@@ -47,6 +48,7 @@ class Console {
   void put(const std::string& text);
   bool flush();
 
+  SuspendSignal suspends_;
   bool screen_;
   bool colors_;
   int out_ = -1;  // standard output, not blocking for us alone

@@ -12,7 +12,6 @@ using nlohmann::json;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kRenewal{100};
-constexpr milliseconds kInTime{400};     // a renewal so soon after the last was not too late
 constexpr milliseconds kHandOver{1000};  // a key that stutters must not take the robot back
 constexpr int kMostInFlight = 5;         // beyond, what arrives at last would be too old
 constexpr const char* kWalkMode = "walk-straight";
@@ -101,7 +100,7 @@ std::vector<Request> Pilot::act(const Speed& speed, bool held, Time now) {
     const bool drove = driving_;
     block({});
     say(true, missing_ = why);
-    return drove ? std::vector{drive({}, true)} : std::vector<Request>{};
+    return drove ? std::vector{end()} : std::vector<Request>{};
   }
   if (text(status_, "mode") == "stand" && !mode_set_) {
     if (mode_asked_) return {};
@@ -109,18 +108,21 @@ std::vector<Request> Pilot::act(const Speed& speed, bool held, Time now) {
     return {{"mode", {{"mode", kWalkMode}}}};
   }
   if (in_flight_ >= kMostInFlight || now - sent_ < kRenewal) return {};
-  in_time_ = driving_ && now - sent_ < kInTime;
   sent_ = now;
   const bool renew = driving_;
-  if (!renew) renewed_ = false;
   driving_ = true;
   return {drive(speed, renew)};
+}
+
+Request Pilot::end() {
+  ++in_flight_;
+  return {"drive", {{"session", session_}, {"end", true}}};
 }
 
 std::vector<Request> Pilot::finish() {
   if (!driving_) return {};
   driving_ = false;
-  return {drive({}, true)};
+  return {end()};
 }
 
 std::vector<Request> Pilot::press(Key key, bool estop_open) {
@@ -146,16 +148,17 @@ void Pilot::refused(const std::string& method, const daemon::RpcError& error) {
     return say(true, method + ": " + message);
   }
   if (!driving_) return;  // he has let go, or knows it already
-  if (error.code != daemon::rpc_code::kRefused || !renewed_ || !cannot_drive().empty()) {
+  const std::string reason = text(error.data, "reason");
+  if (reason.empty() || !cannot_drive().empty()) {
     block({});
     return say(true, message);
   }
-  block(in_time_ ? kHandOver : milliseconds(0));
-  say(true, in_time_
-                ? "another program or command has taken the robot over; to take it back let go "
-                  "for a second, then hold a key"
-                : "the connection is slow: the velocity was not renewed in time, and the robot "
-                  "stops");
+  const bool late = reason == "not_renewed";
+  block(late ? milliseconds(0) : kHandOver);
+  say(true, late ? "the connection is slow: the velocity was not renewed in time, and the robot "
+                   "stopped"
+                 : "another program or command has taken the robot over; to take it back let go "
+                   "for a second, then hold a key");
 }
 
 void Pilot::take_answer(const std::string& method, const daemon::RpcResult& result) {
@@ -163,7 +166,6 @@ void Pilot::take_answer(const std::string& method, const daemon::RpcResult& resu
   if (const auto* error = std::get_if<daemon::RpcError>(&result)) return refused(method, *error);
   const std::string note = text(std::get<json>(result), "note");
   if (method == "drive") {
-    renewed_ = true;
     mode_set_ = false;
     if (driving_) say(false, note);
   } else if (method == "mode") {

@@ -19,9 +19,9 @@ struct Request {
 };
 
 /// Decides what is sent to gaitd. A velocity is renewed ten times a second while the operator holds
-/// something, and set to zero once when he lets go; if that gets lost, gaitd stops the robot by
-/// drive.timeout. After anything that ended a walk against his hand – a refusal, a fault, a stop, a
-/// lost connection, somebody else who drives – he has to let go before he drives again.
+/// something, and the drive is ended once when he lets go; if that gets lost, gaitd stops the robot
+/// by drive.timeout. After anything that ended a walk against his hand – a refusal, a fault, a
+/// stop, a lost connection, somebody else who drives – he has to let go before he drives again.
 class Pilot {
  public:
   /// `session` tells two that drive apart.
@@ -53,6 +53,7 @@ class Pilot {
  private:
   std::string cannot_drive() const;  // why; "" if it can
   Request drive(const Speed& speed, bool renew);
+  Request end();
   void refused(const std::string& method, const daemon::RpcError& error);
   void block(std::chrono::milliseconds quiet);
   void say(bool bad, const std::string& text);
@@ -61,9 +62,7 @@ class Pilot {
   nlohmann::json status_;  // null: none yet
   bool driving_ = false;   // a velocity other than zero was sent last
   int in_flight_ = 0;      // velocities without an answer
-  bool in_time_ = false;   // the last one went out soon after the one before
   Time sent_{};            // when it did
-  bool renewed_ = false;   // gaitd has taken one since the drive began
   bool lost_ = false;      // the connection
   bool mode_asked_ = false;
   bool mode_set_ = false;  // the status may be older

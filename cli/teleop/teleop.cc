@@ -108,7 +108,7 @@ void Teleop::take_input(Time now) {
     quit(now);
   }
   if (StopSignals::take()) quit(now);
-  if (console_->suspend_wanted()) {
+  if (SuspendSignal::requested()) {
     send(pilot_.finish(), now);
     keys_.let_go();
     console_->suspend();

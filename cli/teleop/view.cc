@@ -14,7 +14,7 @@ using nlohmann::json;
 using Tone = Line::Tone;
 
 constexpr double kBarEnd = 0.1;  // m; errors of a walk on flat ground are a tenth of it
-constexpr int kBar = 20;         // characters
+constexpr int kBar = 10;         // characters
 
 template <typename... Values>
 std::string format(const char* pattern, Values... values) {
@@ -54,12 +54,14 @@ std::string gait(const json& status) {
 
 Line icp(const json& status) {
   const json error = at(status, "icp_error");
-  if (!error.is_number()) return {"ICP error  -", Tone::kPlain};
+  const json margin = at(status, "icp_margin");
+  if (!error.is_number() || !margin.is_number()) return {"ICP margin -", Tone::kPlain};
   const double meters = error.get<double>();
   const int full = static_cast<int>(std::lround(std::clamp(meters / kBarEnd, 0.0, 1.0) * kBar));
-  return {format("ICP error  %4.0f mm  [%s%s] of 100", 1e3 * meters, std::string(full, '#').c_str(),
-                 std::string(kBar - full, ' ').c_str()),
-          meters > 0.5 * kBarEnd ? Tone::kBad : Tone::kPlain};
+  return {
+      format("ICP margin %+4.0f mm   error %4.0f mm  [%s%s] of 100", 1e3 * margin.get<double>(),
+             1e3 * meters, std::string(full, '#').c_str(), std::string(kBar - full, ' ').c_str()),
+      meters > 0.5 * kBarEnd ? Tone::kBad : Tone::kPlain};
 }
 
 std::string speed(const char* name, const Speed& value) {
@@ -136,6 +138,8 @@ std::string plain_line(const Scene& scene) {
   std::string out = scene.alarm.empty() ? "" : scene.alarm + "; ";
   out += gait(scene.status);
   const json error = at(scene.status, "icp_error");
+  const json margin = at(scene.status, "icp_margin");
+  if (margin.is_number()) out += format(", ICP margin %.0f mm", 1e3 * margin.get<double>());
   if (error.is_number()) out += format(", ICP error %.0f mm", 1e3 * error.get<double>());
   const Speed& v = scene.real;
   out += format(", asked %.2f %.2f %.2f, real %.2f %.2f %.2f", scene.asked.forward,

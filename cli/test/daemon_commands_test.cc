@@ -42,8 +42,8 @@ class Gaitctl : public ::testing::Test {
     methods.add("drive", [this](const json& params) -> RpcResult {
       const std::lock_guard lock(mutex_);
       drives_.push_back(params);
-      stopped_ = params["forward"] == 0.0;
-      if (drives_.size() > 2 && params["forward"] == 3.0) {
+      stopped_ = params.contains("end");
+      if (drives_.size() > 2 && params.value("forward", 0.0) == 3.0) {
         return RpcError{daemon::rpc_code::kRefused, "drive: taken over", {{"tick", 7}}};
       }
       return json{{"accepted", true}, {"tick", 42}, {"note", "slower than asked: 0.7 m/s"}};
@@ -149,11 +149,12 @@ TEST_F(Gaitctl, DriveRenewsItsVelocityAndEndsWithAStand) {
   const std::lock_guard lock(mutex_);
   ASSERT_GE(drives_.size(), 4u);
   EXPECT_FALSE(drives_[0].contains("renew"));
-  for (std::size_t i = 1; i < drives_.size(); ++i) {
+  for (std::size_t i = 1; i + 1 < drives_.size(); ++i) {
     EXPECT_EQ(drives_[i]["renew"], true);
     EXPECT_EQ(drives_[i]["session"], drives_[0]["session"]);
-    EXPECT_EQ(drives_[i]["forward"], i + 1 < drives_.size() ? 2.0 : 0.0);
+    EXPECT_EQ(drives_[i]["forward"], 2.0);
   }
+  EXPECT_EQ(drives_.back(), (json{{"session", drives_[0]["session"]}, {"end", true}}));
 }
 
 TEST_F(Gaitctl, ADriveThatIsTakenOverEndsWithTheReason) {

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "cli/view/message.h"
+#include "cli/live/message.h"
 
 namespace gaitd::cli {
 namespace {

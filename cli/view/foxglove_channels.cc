@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "cli/base64.h"
-#include "cli/view/recorder.h"
+#include "cli/live/robot_metadata.h"
 #include "daemon/log/log_format.h"
 #include "daemon/telemetry/log_writer.h"
 #include "daemon/telemetry/signal_schema.h"

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/view/live_source.h"
+#include "cli/live/live_source.h"
 #include "daemon/log/records_codec.h"
 #include "daemon/log/signal_codec.h"
 #include "daemon/telemetry/message_sink.h"

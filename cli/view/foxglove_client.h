@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/view/rpc_relay.h"
+#include "cli/live/rpc_relay.h"
 #include "cli/view/web_server.h"
 
 namespace gaitd::cli {

@@ -9,12 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/live/gaitd_link.h"
+#include "cli/live/live_source.h"
+#include "cli/live/rpc_relay.h"
 #include "cli/view/foxglove_channels.h"
 #include "cli/view/foxglove_client.h"
-#include "cli/view/gaitd_link.h"
-#include "cli/view/live_source.h"
 #include "cli/view/recorder.h"
-#include "cli/view/rpc_relay.h"
 #include "cli/view/viewer.h"
 #include "cli/view/web_server.h"
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "cli/live/robot_metadata.h"
 #include "cli/report/report_data.h"
 #include "daemon/log/log_reader.h"
 
@@ -16,26 +17,6 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kReports = 8;  // that are kept; each has some megabytes
-
-}  // namespace
-
-daemon::LogMetadata log_metadata_of(const json& robot) {
-  daemon::LogMetadata metadata;
-  const json log = robot.value("log", json::object());
-  for (const auto& [key, value] : log.items()) {
-    if (value.is_string()) metadata[key] = value.get<std::string>();
-  }
-  metadata["robot"] = robot.value("name", "");
-  metadata["backend"] = robot.value("backend", "");
-  metadata["robot_yaml"] = robot.value("robot", json::object()).dump();  // YAML holds JSON
-  metadata["robot_urdf"] = robot.value("urdf", "");
-  if (const json world = robot.value("world", json()); !world.is_null()) {
-    metadata["world"] = world.dump();
-  }
-  return metadata;
-}
-
-namespace {
 
 std::string new_file(const std::string& folder) {
   const std::time_t now = std::time(nullptr);

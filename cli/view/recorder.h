@@ -11,13 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/view/live_source.h"
+#include "cli/live/live_source.h"
 #include "daemon/telemetry/log_writer.h"
 
 namespace gaitd::cli {
-
-/// What a log says of the robot that robot.describe has described.
-daemon::LogMetadata log_metadata_of(const nlohmann::json& robot);
 
 /// Writes what a viewer wants to keep into a log of its own, beside gaitd's, and makes its report:
 /// it works over a network too, and costs gaitd nothing but the frames.

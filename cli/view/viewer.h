@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "cli/live/rpc_relay.h"
 #include "cli/view/pace.h"
-#include "cli/view/rpc_relay.h"
 #include "cli/view/web_server.h"
 
 namespace gaitd::cli {

@@ -11,8 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "cli/live/message.h"
 #include "cli/view/access.h"
-#include "cli/view/message.h"
 
 namespace gaitd::cli {
 

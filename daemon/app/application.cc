@@ -6,43 +6,19 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <sstream>
 #include <thread>
 
 #include "daemon/app/check_config.h"
-#include "daemon/app/metadata.h"
 #include "daemon/app/realtime.h"
+#include "daemon/app/terminal_log.h"
 #include "daemon/app/watch.h"
-#include "daemon/config/command_parse.h"
 #include "daemon/config/library_paths.h"
-#include "daemon/control/command_json.h"
 #include "daemon/control/impedance.h"
-#include "daemon/control/parameter_methods.h"
 #include "daemon/host/layers.h"
-#include "daemon/host/plugin_json.h"
-#include "daemon/telemetry/input.h"
 
 namespace gaitd::daemon {
-namespace {
-
-namespace fs = std::filesystem;
-
-void log_plugin(int level, std::string_view plugin, std::string_view message) {
-  constexpr spdlog::level::level_enum kLevels[] = {spdlog::level::debug, spdlog::level::info,
-                                                   spdlog::level::warn, spdlog::level::err};
-  spdlog::log(kLevels[std::clamp(level, 0, 3)], "{}: {}", plugin, message);
-}
-
-nlohmann::json settings_json(const Settings& settings) {
-  nlohmann::json all;
-  for (const Settings::Entry& entry : settings.effective()) all[entry.key] = to_json(*entry.value);
-  return all;
-}
-
-}  // namespace
 
 Application::Application(const Options& options)
     : options_(options), paths_(Paths::detect()), directory_(paths_.plugin_folders()) {}
@@ -276,191 +252,6 @@ bool Application::load_backend() {
     spdlog::error("backend {}: says that it is a simulation, but gives no truth", backend_id_);
     return false;
   }
-  return true;
-}
-
-std::string Application::default_log_file() const {
-  if (!config_.log.file.empty()) return config_.log.file;
-  char name[64];
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::strftime(name, sizeof(name), "gaitd-%Y%m%d-%H%M%S.mcap", &utc);
-  return (fs::path(config_.log.directory) / name).string();
-}
-
-LogMetadata Application::metadata() const {
-  LogMetadata m;
-  add_robot_metadata(robot_->model, &m);
-  m["robot"] = robot_->name;
-  m["settings"] = settings_json(settings_).dump();
-  m["period"] = std::to_string(config_.period);
-  m["clock"] = config_.clock == GAITD_CLOCK_LOCKSTEP ? "lockstep" : "realtime";
-  m["backend"] = backend_id_;
-  m["version"] = GAITD_VERSION;
-  m["build"] = GAITD_BUILD;
-  nlohmann::json plugins;
-  for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
-    const PluginLibrary& library = pipeline_->layers().in_use(layer).layer->library();
-    plugins[std::string(layer_name(layer))] = {{"variant", library.descriptor().id},
-                                               {"version", library.descriptor().version},
-                                               {"file", library.path().string()},
-                                               {"hash", library.hash()}};
-  }
-  m["plugins"] = plugins.dump();
-  m["truth"] = simulation_ ? "true" : "false";
-  const GaitdStart start = start_pose();
-  const auto& at = start.position;
-  add_replay_metadata(*robot_,
-                      {{"start", {at[0], at[1], at[2], start.yaw}},
-                       {"mode", scenario_ ? scenario_->mode : -1},
-                       {"arm", arms_itself()},
-                       {"simulation", simulation_},
-                       {"period", config_.period},
-                       {"hardware", profile() == Profile::kHardware}},
-                      &m);
-  if (scenario_) {
-    m["scenario"] = scenario_->name;
-    m["seed"] = std::to_string(scenario_->seed);
-    m["world"] = scenario_->simulator_config().dump();
-    m["expect"] = scenario_->expect_section.dump();
-  }
-  return m;
-}
-
-bool Application::start_telemetry() {
-  TelemetryOptions options;
-  options.period = config_.period;
-  options.input_text = [](const Input& input) {
-    return input_text(input.command, input.parameter_owner, input.parameter_place);
-  };
-  options.on_event = [this](const Event& event) { live_->publish(event); };
-  telemetry_ = std::make_unique<Telemetry>(
-      make_signal_table(robot_->model, known_variants_, simulation_), options);
-  live_ = std::make_unique<LiveFeed>(telemetry_.get());
-  if (config_.log.enabled) {
-    log_file_ = default_log_file();
-    McapOptions mcap;
-    mcap.compression = config_.log.compression == LogCompression::kNone ? McapCompression::kNone
-                                                                        : McapCompression::kZstd;
-    std::string error;
-    // A verdict comes from one file.
-    LogLimits limits;
-    if (!scenario_) {
-      limits = {static_cast<std::uint64_t>(1e6 * config_.log.max_size), config_.log.keep};
-    }
-    if (!telemetry_->open_log(log_file_, metadata(), mcap, &error, limits)) {
-      spdlog::error("{}", error);
-      return false;
-    }
-    spdlog::info("log: {}", log_file_);
-  }
-  telemetry_->start();
-  return true;
-}
-
-void Application::prepare_swaps() {
-  std::vector<fs::path> folders = directory_.roots();
-  folders.insert(folders.end(), config_.plugin_folders.begin(), config_.plugin_folders.end());
-  // Who starts a simulation for himself may run there what he wants; a service loads what its
-  // administrator has allowed.
-  const bool any_file = simulation_ && std::getenv("NOTIFY_SOCKET") == nullptr;
-  SwapService::Parts parts{.model = &robot_->model,
-                           .directory = &directory_,
-                           .folders = LibraryFolders(folders),
-                           .any_file_for_clients = any_file,
-                           .any_file_for_scenarios = any_file,
-                           .settings = &settings_,
-                           .parameters = &parameters_,
-                           .telemetry = telemetry_.get(),
-                           .bridge = bridge_.get(),
-                           .log = log_plugin,
-                           .words = known_variants_,
-                           .in_use = {}};
-  std::copy(layer_variants_.begin(), layer_variants_.end(), parts.in_use.begin());
-  swaps_ = std::make_unique<SwapService>(std::move(parts));
-  SwapRules& rules = pipeline_->layers().rules();
-  rules.simulation = simulation_;
-  rules.wall_time_acts = config_.clock == GAITD_CLOCK_REALTIME;
-  swaps_->port().publish(pipeline_->swap_right());  // until the control thread does
-  swaps_->start();
-}
-
-void Application::prepare_status() {
-  const bool lockstep = config_.clock == GAITD_CLOCK_LOCKSTEP;
-  const nlohmann::json scenario = scenario_ ? nlohmann::json(scenario_->name) : nlohmann::json();
-  StatusReport::Sources sources{.model = &robot_->model,
-                                .backend = backend_->instance(),
-                                .telemetry = telemetry_.get(),
-                                .watch = tick_watch_.get(),
-                                .swaps = swaps_.get(),
-                                .estop = &estop_,
-                                .lockstep = lockstep,
-                                .constants = {{"robot", robot_->name},
-                                              {"backend", backend_id_},
-                                              {"clock", lockstep ? "lockstep" : "realtime"},
-                                              {"version", GAITD_VERSION},
-                                              {"scenario", scenario}}};
-  status_ = std::make_unique<StatusReport>(std::move(sources));
-}
-
-nlohmann::json Application::describe_robot() const {
-  nlohmann::json description = robot_description(*robot_);
-  LogMetadata log;
-  add_robot_metadata(robot_->model, &log);
-  description["log"] = log;
-  description["backend"] = backend_id_;
-  description["simulation"] = simulation_;
-  description["world"] = scenario_ ? scenario_->simulator_config() : nlohmann::json();
-  return description;
-}
-
-bool Application::start_server() {
-  tick_watch_ = std::make_unique<TickWatch>(config_.period);
-  bridge_ = std::make_unique<CommandBridge>();
-  bridge_->show_effect_first([this] { return telemetry_->newest_tick(); });
-  Methods methods;
-  add_command_methods(&methods, bridge_.get(),
-                      [this](const std::string& method,
-                             const nlohmann::json& params) -> std::variant<Command, RpcError> {
-                        std::string error;
-                        if (auto command = parse_command(method, params, robot_->model, &error)) {
-                          return *command;
-                        }
-                        return RpcError{rpc_code::kInvalidParams, error};
-                      });
-  add_parameter_methods(&methods, bridge_.get(), &parameters_);
-  prepare_swaps();
-  swaps_->add_methods(&methods);
-  prepare_status();
-  methods.add_snapshot("status", [this] { return status_->status(); });
-  methods.add_snapshot("joint.list", [this] { return status_->joints(); });
-  methods.add_snapshot("robot.describe", [description = describe_robot()] { return description; });
-  live_->add_methods(&methods);
-  methods.add_query("version", [](const Caller& caller) {
-    return nlohmann::json{
-        {"role", role_name(caller.role)},
-        {"version", GAITD_VERSION},
-        {"build", GAITD_BUILD},
-        {"abi", std::to_string(GAITD_ABI_MAJOR) + "." + std::to_string(GAITD_ABI_MINOR)}};
-  });
-  methods.add_snapshot("plugin.list", [this] {
-    std::map<std::string, std::string> active;
-    for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
-      active[std::string(layer_name(layer))] = swaps_->variant(layer);
-    }
-    return plugin_list_json(directory_.list(), active);
-  });
-  ServerOptions options;
-  options.socket_path = config_.socket;
-  std::string error;
-  server_ = CommandServer::start(options, std::move(methods), bridge_.get(), &estop_, &error);
-  if (server_ == nullptr) {
-    spdlog::error("{}", error);
-    return false;
-  }
-  live_->start();
-  spdlog::info("commands: {}", server_->socket_path());
   return true;
 }
 

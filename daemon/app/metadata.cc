@@ -12,7 +12,8 @@ namespace gaitd::daemon {
 
 using nlohmann::json;
 
-void add_robot_metadata(const GaitdModel& model, LogMetadata* metadata) {
+void add_robot_metadata(const Robot& robot, LogMetadata* metadata) {
+  const GaitdModel& model = robot.model;
   json joints = json::array();
   for (int i = 0; i < model.joint_count; ++i) {
     joints.push_back(
@@ -38,7 +39,10 @@ void add_robot_metadata(const GaitdModel& model, LogMetadata* metadata) {
     }
     soles[side == GAITD_LEFT ? "left" : "right"] = corners;
   }
+  const Eigen::Quaterniond& axes = robot.urdf_options.R_LB;
   (*metadata)["pelvis"] = model.bodies[0].name;
+  (*metadata)["pelvis_axes"] = json({axes.x(), axes.y(), axes.z(), axes.w()}).dump();
+  (*metadata)["fixed_joints"] = json(robot.urdf_options.fixed).dump();
   (*metadata)["soles"] = soles.dump();
   (*metadata)["joints"] = joints.dump();
   (*metadata)["legs"] = legs.dump();

@@ -15,7 +15,7 @@ void add_replay_metadata(const Robot& robot, nlohmann::json start, LogMetadata* 
 // What whoever draws it needs: its name, robot.yaml as JSON, the text of its URDF.
 nlohmann::json robot_description(const Robot& robot);
 
-// What the verdict needs to know of the robot (daemon/verdict/verdict.h).
-void add_robot_metadata(const GaitdModel& model, LogMetadata* metadata);
+// What the verdict needs to know of the robot (daemon/verdict/verdict.h), and who draws it.
+void add_robot_metadata(const Robot& robot, LogMetadata* metadata);
 
 }  // namespace gaitd::daemon

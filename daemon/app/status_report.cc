@@ -53,11 +53,6 @@ json status_of(const Telemetry& telemetry) {
   for (const char* name : {"mode", "phase", "support", "step_index", "footsteps_ahead", "paused"}) {
     status[name] = get(std::string("gait/") + name);
   }
-  // No step is under way while it does not walk; the gait machine keeps the phase of a walk that a
-  // fault has ended until the next one begins.
-  const json now = status["state"];
-  const bool idle = now == "disarmed" || now == "readying" || now == "testing";
-  if (idle && status["phase"].is_string()) status["phase"] = "stand";
   const auto pose = [&](const std::string& frame) {
     json axes;
     for (const char* axis : {"x", "y", "z", "yaw"}) axes[axis] = get(frame + "/" + axis);
@@ -88,6 +83,7 @@ json status_of(const Telemetry& telemetry) {
   status["icp_error"] = measured ? json(std::hypot(icp[0].get<double>() - icp[2].get<double>(),
                                                    icp[1].get<double>() - icp[3].get<double>()))
                                  : json();
+  status["icp_margin"] = controlled ? get("icp/margin") : json();
   // Of the last tick, and the longest within a second or two.
   const std::vector<double> longest = telemetry.recent_maxima();
   const auto get_longest = [&](const std::string& name) {

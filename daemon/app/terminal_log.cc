@@ -4,6 +4,7 @@
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -33,6 +34,12 @@ void set_terminal_log_format() {
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
   formatter->add_flag<PrintableMessage>('*').set_pattern("[%H:%M:%S.%e] %^%l%$ %*");
   spdlog::set_formatter(std::move(formatter));
+}
+
+void log_plugin(int level, std::string_view plugin, std::string_view message) {
+  constexpr spdlog::level::level_enum kLevels[] = {spdlog::level::debug, spdlog::level::info,
+                                                   spdlog::level::warn, spdlog::level::err};
+  spdlog::log(kLevels[std::clamp(level, 0, 3)], "{}: {}", plugin, message);
 }
 
 }  // namespace gaitd::daemon

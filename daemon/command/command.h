@@ -7,6 +7,7 @@
 #include "gaitd/abi/backend.h"
 #include "gaitd/abi/types.h"
 #include "gaitd/walking/commands.h"
+#include "gaitd/walking/refusal.h"
 #include "gaitd/walking/stance_pose.h"
 
 namespace gaitd::daemon {
@@ -68,6 +69,7 @@ struct CommandReply {
   // Why it was refused: what, where, expected, got, what to do. Accepted: what is worth knowing
   // about its effect, empty if it simply does what its name says.
   std::array<char, 256> message{};
+  walking::RefusalReason reason = walking::RefusalReason::kNone;
   bool changed_value = false;  // an accepted kSetParameter: these two are set
   double old_value = 0.0;
   double new_value = 0.0;

@@ -88,6 +88,11 @@ void read_drive(MapReader* map, bool holds, walking::VelocityCommand* drive) {
   if (holds) return;
   drive->session = map->integer("session", 0, kMaxSession).value_or(0);
   drive->renewal = map->boolean("renew").value_or(false);
+  drive->ends = map->boolean("end").value_or(false);
+  const walking::Velocity& v = drive->velocity;
+  if (drive->ends && (drive->renewal || v.forward != 0.0 || v.lateral != 0.0 || v.turn != 0.0)) {
+    map->fail("end", "no velocity and no renew beside it", "one of them", "");
+  }
 }
 
 void read_contact_polygon(MapReader* map, GaitdFootstep* footstep) {

@@ -170,7 +170,7 @@ std::vector<NodePtr> read_fixed(MapReader* root, dynamics::UrdfOptions* options)
 dynamics::UrdfResult load_urdf_of(MapReader* root, const std::string& file, const UrdfLoader& load,
                                   Robot* robot, Issues* issues) {
   const auto urdf = root->text("urdf");
-  dynamics::UrdfOptions options;
+  dynamics::UrdfOptions& options = robot->urdf_options;
   read_pelvis(root, &options);
   const std::vector<NodePtr> fixed = read_fixed(root, &options);
   dynamics::UrdfResult result;

@@ -39,6 +39,7 @@ struct Robot {
   std::string name;
   std::string file;  // robot.yaml
   std::string urdf;  // path of the URDF file
+  dynamics::UrdfOptions urdf_options;
   GaitdModel model{};
   ImpedanceProfile impedance;  // of the chosen profile
   Calibration calibration;     // none unless load_calibration() was called

@@ -117,6 +117,7 @@ std::string input_text(const Command& c, int parameter_owner, int parameter_plac
       break;
     case CommandType::kDrive:
       visit_drive(c.drive, Write{&out});
+      if (c.drive.ends) out["ends"] = true;
       break;
     case CommandType::kSetParameter:
       out["owner"] = parameter_owner;
@@ -137,7 +138,10 @@ bool read_input(const json& in, Command* c, int* parameter_owner, int* parameter
     if (c->type == CommandType::kWalk) visit_walk(c->walk, Read{&in});
     if (c->type == CommandType::kJointTest) visit_joint_test(c->joint_test, Read{&in});
     if (c->type == CommandType::kPose) visit_pose(c->pose, Read{&in});
-    if (c->type == CommandType::kDrive) visit_drive(c->drive, Read{&in});
+    if (c->type == CommandType::kDrive) {
+      visit_drive(c->drive, Read{&in});
+      c->drive.ends = in.value("ends", false);
+    }
     if (c->type == CommandType::kFootsteps) {
       c->replace = in.at("replace").get<bool>();
       for (const json& step : in.at("footsteps")) {

@@ -58,6 +58,7 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
   if (c.type == CommandType::kDrive) {
     w.add(R"(,"forward":%.17g,"lateral":%.17g,"turn":%.17g,"renew":%s)", c.drive.velocity.forward,
           c.drive.velocity.lateral, c.drive.velocity.turn, c.drive.renewal ? "true" : "false");
+    if (c.drive.ends) w.add(R"(,"end":true)");
   }
   if (c.type == CommandType::kFootsteps) {
     w.add(R"(,"count":%d,"replace":%s)", c.footstep_count, c.replace ? "true" : "false");

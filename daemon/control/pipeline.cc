@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <utility>
 
 #include "daemon/control/command_note.h"
 #include "daemon/parameters/swap_parameters.h"
 #include "daemon/server/rights.h"
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -192,7 +195,11 @@ void Pipeline::run(std::int64_t tick) {
   if (safety_.update(period_, d, gait_.walking())) begin_control();
   const bool controlled = safety_.controlled();
   const bool ok = controlled && control(period_);
-  if (!controlled) layers_.give_up_swaps("the robot is not under control any more");
+  if (!controlled) {
+    layers_.give_up_swaps("the robot is not under control any more");
+    d.drive = {};
+    d.icp_margin = std::numeric_limits<double>::quiet_NaN();
+  }
   safety_.write(period_, ok, d);
   compensation_.commands(d);
 }
@@ -202,6 +209,7 @@ bool Pipeline::control(double dt) {
   gait_.update(dt, d.robot, d.plan, d.toe_off, d.adjustment);
   d.gait = gait_.state();
   const walking::VelocityWalk& drive = gait_.velocity_walk();
+  d.icp_margin = walking::support_polygon(model_, d.gait).inside_distance(sdk::view(d.robot.icp));
   d.drive = drive.active() ? Drive{true, drive.target(), drive.step().velocity} : Drive{};
   pose_.update(dt, d.gait);
   const bool planned = layers_.plan(d);
@@ -228,7 +236,8 @@ CommandReply Pipeline::execute(const Command& command) {
   const bool needs_control =
       command.type == CommandType::kWalk || command.type == CommandType::kFootsteps ||
       command.type == CommandType::kPause || command.type == CommandType::kResume ||
-      command.type == CommandType::kPose || command.type == CommandType::kDrive;
+      command.type == CommandType::kPose ||
+      (command.type == CommandType::kDrive && !command.drive.ends);
   const char* why = needs_control ? safety_.refusal(kRequestWalk, data_) : nullptr;
   if (why != nullptr) return refused(command, data_.time.tick, why);
   const char* note = command_note(command, safety_.state(), gait_.state());
@@ -243,6 +252,10 @@ CommandReply Pipeline::execute(const Command& command) {
       safety_.raise(kFaultEstop);
       break;
     case CommandType::kReset:
+      if (safety_.state() == SafetyState::kFault) {
+        gait_.reset(data_.robot);  // the walk that the fault has ended
+        data_.gait = gait_.state();
+      }
       why = safety_.clear();
       break;
     case CommandType::kJointTest:
@@ -255,6 +268,14 @@ CommandReply Pipeline::execute(const Command& command) {
       refusal = gait_.walk(command.walk);
       break;
     case CommandType::kDrive:
+      if (command.drive.ends) {
+        const bool drives =
+            gait_.velocity_walk().why_not(command.drive.session) == walking::RefusalReason::kNone;
+        if (!safety_.controlled() || !drives) {
+          note = "nothing to end: this session does not drive";
+          break;
+        }
+      }
       refusal = gait_.drive(command.drive);
       if (gait_.velocity_walk().limit().refused()) note = gait_.velocity_walk().limit().message;
       break;
@@ -284,7 +305,11 @@ CommandReply Pipeline::execute(const Command& command) {
       return refused(command, data_.time.tick, "this command is not for the control pipeline");
   }
   if (why != nullptr) return refused(command, data_.time.tick, why);
-  if (refusal.refused()) return refused(command, data_.time.tick, refusal.message);
+  if (refusal.refused()) {
+    reply = refused(command, data_.time.tick, refusal.message);
+    reply.reason = refusal.reason;
+    return reply;
+  }
   if (command.type == CommandType::kWalk || command.type == CommandType::kFootsteps ||
       (command.type == CommandType::kDrive && !gait_.velocity_walk().idle())) {
     safety_.going_on();

@@ -120,6 +120,7 @@ void visit_balance(V& v, const TickData& d) {
   axes(v, d.robot.com_velocity, 3, "m/s", "com/velocity/");
   v.real(d.objectives.height_target, "m", "com/height_target");
   axes(v, d.robot.icp, 2, "m", "icp/");
+  v.real(d.icp_margin, "m", "icp/margin");
   axes(v, d.plan.icp, 2, "m", "icp/desired/");
   axes(v, d.plan.ecmp, 2, "m", "ecmp/reference/");
   axes(v, d.adjustment.ecmp, 2, "m", "ecmp/desired/");

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "daemon/control/balance_joints.h"
 #include "gaitd/abi/plugin.h"
@@ -69,6 +70,8 @@ struct TickData {
   GaitdRobotState robot{};
   GaitdGaitState gait{};
   Drive drive{};
+  // m, of the estimated ICP inside the support polygon, negative outside; NaN unless under control.
+  double icp_margin = std::numeric_limits<double>::quiet_NaN();
   GaitdIcpPlan plan{};
   GaitdStepAdjustment adjustment{};
   GaitdToeOff toe_off{};

@@ -31,6 +31,8 @@ constexpr Rule kRules[] = {
     {"gait/*", kGait},
     {"footstep/*", kGait},
     {"foot/*/contact", kGait},
+    {"icp/margin", kGait},
+    {"drive/*", kGait},
     {"icp/desired/*", kPlanner},
     {"ecmp/reference/*", kPlanner},
     {"ecmp/desired/*", kAdjuster},

@@ -13,6 +13,20 @@ std::string text_of(const CommandReply& reply) {
   return {text, strnlen(text, reply.message.size())};
 }
 
+// `data.reason` of a refusal; null if it has none.
+const char* reason_name(walking::RefusalReason reason) {
+  switch (reason) {
+    case walking::RefusalReason::kNotRenewed:
+      return "not_renewed";
+    case walking::RefusalReason::kTakenOver:
+      return "taken_over";
+    case walking::RefusalReason::kEnded:
+      return "ended";
+    default:
+      return nullptr;
+  }
+}
+
 }  // namespace
 
 CommandBridge::CommandBridge(Clock::duration timeout) : timeout_(timeout) {
@@ -85,7 +99,9 @@ void CommandBridge::poll(Clock::time_point now) {
     }
     std::string message = text_of(reply);
     if (message.empty()) message = "refused without a reason";
-    entry.mapped().respond(RpcError{rpc_code::kRefused, message, {{"tick", reply.tick}}});
+    nlohmann::json data = {{"tick", reply.tick}};
+    if (const char* reason = reason_name(reply.reason)) data["reason"] = reason;
+    entry.mapped().respond(RpcError{rpc_code::kRefused, message, std::move(data)});
   }
   release_held(now);
   release_answers();

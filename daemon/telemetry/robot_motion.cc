@@ -1,18 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/telemetry/robot_motion.h"
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace gaitd::daemon {
+namespace {
 
-RobotMotion::RobotMotion(const dynamics::UrdfResult& robot, std::string urdf)
+using nlohmann::json;
+
+bool is_number(const json& value) { return value.is_number(); }
+
+}  // namespace
+
+RobotMotion::RobotMotion(const dynamics::UrdfResult& robot, const Eigen::Quaterniond& R_LB,
+                         std::string urdf)
     : model_(robot.model),
+      R_LB_(R_LB),
       links_(robot.links),
       urdf_(std::move(urdf)),
       kinematics_(model_),
       position_(Eigen::VectorXd::Zero(model_.joint_count)),
       velocity_(position_),
-      torque_(position_) {}
+      torque_(position_) {
+  for (dynamics::UrdfLink& link : links_) {
+    if (link.body != 0) continue;
+    link.p_BL = R_LB_ * link.p_BL;
+    link.R_BL = R_LB_ * link.R_BL;
+  }
+}
 
 std::unique_ptr<RobotMotion> RobotMotion::create(const std::map<std::string, std::string>& metadata,
                                                  const SignalTable& table) {
@@ -22,9 +39,24 @@ std::unique_ptr<RobotMotion> RobotMotion::create(const std::map<std::string, std
   if (const auto pelvis = metadata.find("pelvis"); pelvis != metadata.end()) {
     options.root_link = pelvis->second;
   }
+  const auto list = [&](const char* key) {
+    const auto text = metadata.find(key);
+    return text == metadata.end() ? json() : json::parse(text->second, nullptr, false);
+  };
+  // Logs from before robot.yaml had them lack both.
+  const json axes = list("pelvis_axes");
+  if (axes.is_array() && axes.size() == 4 && std::ranges::all_of(axes, is_number)) {
+    const Eigen::Quaterniond R_LB(axes[3].get<double>(), axes[0].get<double>(),
+                                  axes[1].get<double>(), axes[2].get<double>());
+    if (!(R_LB.norm() > 0.5)) return nullptr;
+    options.R_LB = R_LB.normalized();
+  }
+  for (const json& joint : list("fixed_joints")) {
+    if (joint.is_string()) options.fixed.push_back(joint.get<std::string>());
+  }
   const dynamics::UrdfResult robot = dynamics::load_urdf_text(urdf->second, "the log", options);
   if (!robot.ok()) return nullptr;
-  std::unique_ptr<RobotMotion> motion(new RobotMotion(robot, urdf->second));
+  std::unique_ptr<RobotMotion> motion(new RobotMotion(robot, options.R_LB, urdf->second));
   return motion->find_signals(table) ? std::move(motion) : nullptr;
 }
 
@@ -62,8 +94,8 @@ void RobotMotion::read(std::span<const double> values) {
 
 Eigen::Isometry3d RobotMotion::X_parent(int body) const {
   const int parent = model_.bodies[body].parent;
-  const Eigen::Isometry3d X = kinematics_.X_WB(body);
-  return parent < 0 ? X : kinematics_.X_WB(parent).inverse() * X;
+  if (parent < 0) return X_WP();
+  return (parent == 0 ? X_WP() : kinematics_.X_WB(parent)).inverse() * kinematics_.X_WB(body);
 }
 
 }  // namespace gaitd::daemon

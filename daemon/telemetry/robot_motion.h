@@ -16,7 +16,8 @@
 
 namespace gaitd::daemon {
 
-// Where the bodies of the robot are by the signals of a tick, for those who show it.
+// Where the bodies of the robot are by the signals of a tick, for those who show it: the frames are
+// those of the links of the URDF, also where robot.yaml gives the pelvis other axes.
 class RobotMotion {
  public:
   // `metadata` of a log, which holds the URDF. Null where there is no robot in it, or the table
@@ -26,28 +27,30 @@ class RobotMotion {
 
   const GaitdModel& model() const { return model_; }
   const std::string& urdf() const { return urdf_; }
-  // Links of the file and the bodies that carry them.
+  // Links of the file, and where they are in the links of the bodies that carry them.
   const std::vector<dynamics::UrdfLink>& links() const { return links_; }
 
   // One tick, values in table order.
   void read(std::span<const double> values);
 
   // ---- Of the tick that was read last.
-  Eigen::Isometry3d X_WP() const { return kinematics_.X_WB(0); }
-  // Pose of a body in its parent, of the pelvis in the world.
+  // Pose of the link of the pelvis in the world.
+  Eigen::Isometry3d X_WP() const { return kinematics_.X_WB(0) * R_LB_.inverse(); }
+  // Pose of the link of a body in that of its parent, of the pelvis in the world.
   Eigen::Isometry3d X_parent(int body) const;
   const Eigen::VectorXd& position() const { return position_; }  // rad or m, by joint
   const Eigen::VectorXd& velocity() const { return velocity_; }  // rad/s or m/s
   const Eigen::VectorXd& torque() const { return torque_; }      // N m or N, measured
 
  private:
-  RobotMotion(const dynamics::UrdfResult& robot, std::string urdf);
+  RobotMotion(const dynamics::UrdfResult& robot, const Eigen::Quaterniond& R_LB, std::string urdf);
   bool find_signals(const SignalTable& table);
 
   struct JointSignals {
     int position = -1, velocity = -1, torque = -1;
   };
   GaitdModel model_;
+  Eigen::Quaterniond R_LB_;  // axes of body 0 in the link of the pelvis
   std::vector<dynamics::UrdfLink> links_;
   std::string urdf_;
   dynamics::Kinematics kinematics_;

@@ -57,13 +57,12 @@ struct SceneTopics::Impl {
 void SceneTopics::Impl::write_transforms(std::uint64_t time_ns, MessageSink* sink) {
   const GaitdModel& model = motion->model();
   foxglove::FrameTransforms message;
-  for (int body = 0; body < model.body_count; ++body) {
-    const int parent = model.bodies[body].parent;
-    const Eigen::Isometry3d X = motion->X_parent(body);
+  const auto add = [&](const std::string& parent, const std::string& child,
+                       const Eigen::Isometry3d& X) {
     foxglove::FrameTransform* transform = message.add_transforms();
     set_time(time_ns, transform->mutable_timestamp());
-    transform->set_parent_frame_id(parent < 0 ? kWorldFrame : model.bodies[parent].name);
-    transform->set_child_frame_id(model.bodies[body].name);
+    transform->set_parent_frame_id(parent);
+    transform->set_child_frame_id(child);
     transform->mutable_translation()->set_x(X.translation().x());
     transform->mutable_translation()->set_y(X.translation().y());
     transform->mutable_translation()->set_z(X.translation().z());
@@ -72,6 +71,19 @@ void SceneTopics::Impl::write_transforms(std::uint64_t time_ns, MessageSink* sin
     transform->mutable_rotation()->set_y(R.y());
     transform->mutable_rotation()->set_z(R.z());
     transform->mutable_rotation()->set_w(R.w());
+  };
+  for (int body = 0; body < model.body_count; ++body) {
+    const int parent = model.bodies[body].parent;
+    add(parent < 0 ? kWorldFrame : model.bodies[parent].name, model.bodies[body].name,
+        motion->X_parent(body));
+  }
+  // Who reads the URDF alone takes joints that gaitd fixes to be at zero.
+  for (const dynamics::UrdfLink& link : motion->links()) {
+    const char* body = model.bodies[link.body].name;
+    if (link.name == body) continue;
+    Eigen::Isometry3d X(link.R_BL);
+    X.translation() = link.p_BL;
+    add(body, link.name, X);
   }
   write_message(transforms_channel, time_ns, message, sink);
 }

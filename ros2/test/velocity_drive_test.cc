@@ -68,7 +68,7 @@ TEST_F(VelocityDriveTest, BeginsAtOnceAndRenewsTenTimesASecond) {
   EXPECT_TRUE(drive.driving());
 }
 
-TEST_F(VelocityDriveTest, AsksForZeroOnceWhenMessagesCease) {
+TEST_F(VelocityDriveTest, EndsTheDriveOnceWhenMessagesCease) {
   VelocityDrive drive = make();
   stream(&drive, {0.3, 0.0, 0.0}, 4);
   std::vector<json> sent;
@@ -83,10 +83,11 @@ TEST_F(VelocityDriveTest, AsksForZeroOnceWhenMessagesCease) {
   }
   ASSERT_FALSE(sent.empty());
   EXPECT_LE(sent.size(), 6u);
-  for (std::size_t i = 0; i < sent.size(); ++i) {
-    EXPECT_EQ(sent[i]["forward"], i + 1 < sent.size() ? 0.3 : 0.0);
-    EXPECT_EQ(sent[i]["renew"], true) << "a stop takes the robot from nobody";
+  for (std::size_t i = 0; i + 1 < sent.size(); ++i) {
+    EXPECT_EQ(sent[i]["forward"], 0.3);
+    EXPECT_EQ(sent[i]["renew"], true);
   }
+  EXPECT_EQ(sent.back(), (json{{"session", 7}, {"end", true}}));
 }
 
 TEST_F(VelocityDriveTest, ZeroDoesNotTakeTheRobotAndEndsADrive) {
@@ -95,7 +96,7 @@ TEST_F(VelocityDriveTest, ZeroDoesNotTakeTheRobotAndEndsADrive) {
   stream(&drive, {0.3, 0.0, 0.0}, 4);
   const auto sent = stream(&drive, {}, 10);
   ASSERT_EQ(sent.size(), 1u);
-  EXPECT_EQ(sent[0]["forward"], 0.0);
+  EXPECT_EQ(sent[0], (json{{"session", 7}, {"end", true}}));
   EXPECT_FALSE(drive.driving());
 }
 

@@ -86,6 +86,20 @@ CommandSource::json CommandSource::good_walk() {
   return walk;
 }
 
+// Two drivers who take the robot from each other, renew in time or not, and let go.
+CommandSource::json CommandSource::good_drive() {
+  json drive = {{"session", integer(1, 2)}};
+  if (chance(0.15)) {
+    drive["end"] = true;
+    return drive;
+  }
+  drive["forward"] = uniform(-0.4, 0.9);
+  if (chance(0.3)) drive["lateral"] = uniform(-0.3, 0.3);
+  if (chance(0.4)) drive["turn"] = uniform(-0.6, 0.6);
+  if (chance(0.4)) drive["renew"] = true;
+  return drive;
+}
+
 // A few footsteps beside where a foot is now: on the way of a walk they may well be refused.
 CommandSource::json CommandSource::good_footsteps(const Scene& scene) {
   json list = json::array();
@@ -118,7 +132,8 @@ CommandSource::json CommandSource::good_push() {
 
 CommandSource::Call CommandSource::good_call(const Scene& scene) {
   const double draw = uniform(0, 1);
-  if (draw < 0.32) return {"walk", good_walk()};
+  if (draw < 0.22) return {"walk", good_walk()};
+  if (draw < 0.34) return {"drive", good_drive()};
   if (draw < 0.60) return {"footsteps", good_footsteps(scene)};
   if (draw < 0.68) return {"sim.push", good_push()};
   if (draw < 0.82) return {"resume", nullptr};

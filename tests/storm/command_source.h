@@ -74,6 +74,7 @@ class CommandSource {
   Request request(Request::Kind kind, const Call& call);
   Call good_call(const Scene& scene);
   json good_walk();
+  json good_drive();
   json good_footsteps(const Scene& scene);
   json good_push();
   Request refused_by_the_gait(const Scene& scene);

@@ -39,6 +39,7 @@ inline const RefusalRow kRefusals[] = {
     {-32000, {"walk: ", " expected"}},
     {-32000, {"walk: ", " must be "}},
     {-32000, {"walk: ", "gaitctl mode "}},
+    {-32000, {"drive: ", "; ", "gaitctl "}},
     {-32000, {"steps: ", " expected"}},
     {-32000, {"steps: ", "gaitctl mode "}},
     {-32000, {" footsteps: the queue has room for ", "; send fewer, or wait"}},

@@ -25,17 +25,35 @@ GaitdPose level(const GaitdPose& pose) {
   return result;
 }
 
+// A renewal of a session that does not drive.
+Refusal not_driving(RefusalReason why) {
+  const char* what = why == RefusalReason::kNotRenewed
+                         ? "it was not renewed in time, drive.timeout, and the robot stands"
+                     : why == RefusalReason::kTakenOver
+                         ? "another session has taken the robot over"
+                         : "it has ended, by another command, a fault or its own end";
+  Refusal refusal = refuse("drive: %s; begin anew: gaitctl drive", what);
+  refusal.reason = why;
+  return refusal;
+}
+
 }  // namespace
 
 Refusal GaitMachine::drive(const VelocityCommand& command) {
+  if (command.ends) {
+    if (drive_.why_not(command.session) != RefusalReason::kNone) return {};
+    drive_.let_go();
+    drive_on(begun(), GAITD_BOTH);
+    return {};
+  }
   if (pending_mode_ == GAITD_MODE_STAND) {
     return refuse("drive: the gait mode is stand; choose one to walk in: gaitctl mode walk-bent");
   }
   if (state_.paused != 0) return refuse("drive: the walk is paused; go on first: gaitctl resume");
-  if (command.renewal && !drive_.driven_by(command.session)) {
-    return refuse(
-        "drive: it was not renewed in time, or another command has taken the robot over; begin "
-        "anew: gaitctl drive");
+  if (command.renewal) {
+    if (const RefusalReason why = drive_.why_not(command.session); why != RefusalReason::kNone) {
+      return not_driving(why);
+    }
   }
   if (drive_.take(command)) drive_on(begun(), GAITD_BOTH);
   return {};
@@ -112,7 +130,7 @@ void GaitMachine::drive_on(int kept, int landed, const Eigen::Vector3d& missed) 
 
 void GaitMachine::rest_or_drive_on() {
   if (!drive_.idle()) return drive_on(begun(), GAITD_BOTH);
-  if (drive_.timed_out()) drive_.end();
+  if (drive_.timed_out()) drive_.finish();
 }
 
 }  // namespace gaitd::walking

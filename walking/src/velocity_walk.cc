@@ -48,13 +48,27 @@ bool VelocityWalk::take(const VelocityCommand& command) {
   active_ = true;
   session_ = command.session;
   holds_ = command.holds;
+  let_go_ = false;
   age_ = 0.0;
   target_ = bounded(command.velocity);
   return began || target_.forward != before.forward || target_.lateral != before.lateral ||
          target_.turn != before.turn;
 }
 
-void VelocityWalk::end() {
+RefusalReason VelocityWalk::why_not(std::int64_t session) const {
+  if (!active_) return session == session_ ? ended_ : RefusalReason::kEnded;
+  if (session != session_) return RefusalReason::kTakenOver;
+  return let_go_ ? RefusalReason::kEnded : RefusalReason::kNone;
+}
+
+void VelocityWalk::let_go() {
+  let_go_ = true;
+  target_ = {};
+  bound_ = {};
+}
+
+void VelocityWalk::end(RefusalReason why) {
+  if (active_) ended_ = why;
   active_ = false;
   target_ = {};
   step_ = {{}, separation_};

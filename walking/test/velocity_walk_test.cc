@@ -97,7 +97,25 @@ TEST(VelocityWalk, StopsWhenNobodyRenewsIt) {
   EXPECT_NEAR(feet[GAITD_LEFT].pose.position[0], feet[GAITD_RIGHT].pose.position[0], 0.03);
   w.run_for(1.0);
   EXPECT_EQ(w.gait().phase, GAITD_PHASE_STAND);
-  EXPECT_TRUE(w.machine.drive({.velocity = {0.4, 0, 0}, .session = 7, .renewal = true}).refused());
+  EXPECT_EQ(w.machine.drive({.velocity = {0.4, 0, 0}, .session = 7, .renewal = true}).reason,
+            RefusalReason::kNotRenewed);
+}
+
+TEST(VelocityWalk, StopsAtOnceWhenItsDriverEndsIt) {
+  SyntheticWalk w;
+  ASSERT_FALSE(w.machine.drive({.velocity = {0.4, 0, 0}, .session = 7}).refused());
+  w.run_for(0.3);
+  // Nobody ends the drive of somebody else.
+  EXPECT_FALSE(w.machine.drive({.session = 8, .ends = true}).refused());
+  EXPECT_EQ(w.machine.velocity_walk().target().forward, 0.4);
+  EXPECT_FALSE(w.machine.drive({.session = 7, .ends = true}).refused());
+  EXPECT_EQ(w.machine.velocity_walk().target().forward, 0.0);
+  const VelocityCommand late{.velocity = {0.4, 0, 0}, .session = 7, .renewal = true};
+  EXPECT_EQ(w.machine.drive(late).reason, RefusalReason::kEnded);
+  ASSERT_TRUE(w.run_until_stand());
+  w.run_for(0.1);
+  EXPECT_FALSE(w.machine.velocity_walk().active());
+  EXPECT_EQ(w.machine.drive(late).reason, RefusalReason::kEnded);
 }
 
 TEST(VelocityWalk, TheLastWhoBeginsDrives) {
@@ -105,8 +123,12 @@ TEST(VelocityWalk, TheLastWhoBeginsDrives) {
   ASSERT_FALSE(w.machine.drive({.velocity = {0.4, 0, 0}, .session = 7}).refused());
   w.run_for(0.3);
   ASSERT_FALSE(w.machine.drive({.velocity = {0.2, 0, 0}, .session = 8}).refused());
-  EXPECT_TRUE(w.machine.drive({.velocity = {0.4, 0, 0}, .session = 7, .renewal = true}).refused());
-  EXPECT_FALSE(w.machine.drive({.velocity = {0.2, 0, 0}, .session = 8, .renewal = true}).refused());
+  EXPECT_EQ(w.machine.drive({.velocity = {0.4, 0, 0}, .session = 7, .renewal = true}).reason,
+            RefusalReason::kTakenOver);
+  const VelocityCommand renewal{.velocity = {0.2, 0, 0}, .session = 8, .renewal = true};
+  EXPECT_FALSE(w.machine.drive(renewal).refused());
+  ASSERT_FALSE(w.machine.stop().refused());
+  EXPECT_EQ(w.machine.drive(renewal).reason, RefusalReason::kEnded);
 }
 
 TEST(VelocityWalk, OtherFootstepsEndIt) {

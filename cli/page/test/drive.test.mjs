@@ -18,7 +18,7 @@ function driven({mode = 'walk-bent', answer = async () => ({note: null}), conges
   return {drive, calls, told};
 }
 
-test('the first call begins, later ones renew, letting go sends zero once', async (t) => {
+test('the first call begins, later ones renew, letting go ends it once', async (t) => {
   const clock = fakeClock(t);
   const {drive, calls} = driven();
   drive.want('stick', kAhead);
@@ -30,8 +30,8 @@ test('the first call begins, later ones renew, letting go sends zero once', asyn
   drive.want('stick', kNothing);
   await settle();
   clock.tick(1000);
-  assert.deepEqual(calls.map(({forward, renew}) => [forward, renew]),
-                   [[1, false], [1, true], [1, true], [0, true]]);
+  assert.deepEqual(calls.map(({forward, renew, end}) => [forward, renew, end]),
+                   [[1, false, undefined], [1, true, undefined], [1, true, undefined], [undefined, undefined, true]]);
   assert.ok(calls.every(({method, session}) => method === 'drive' && session === 7));
 });
 

@@ -46,7 +46,11 @@ class PilotTest : public ::testing::Test {
   }
   static bool is_stop(const std::vector<Request>& requests) {
     return requests.size() == 1 && requests[0].method == "drive" &&
-           requests[0].params["forward"] == 0.0 && requests[0].params["renew"] == true;
+           requests[0].params == json{{"session", 7}, {"end", true}};
+  }
+
+  static RpcError refusal(const char* reason) {
+    return {daemon::rpc_code::kRefused, "drive: refused", {{"tick", 1}, {"reason", reason}}};
   }
 
   Pilot pilot_{7};
@@ -118,7 +122,7 @@ TEST_F(PilotTest, SaysWhatIsMissingAndWantsTheHandOffFirst) {
 TEST_F(PilotTest, DoesNotFightWithWhoeverTakesTheRobotOver) {
   hold(500);
   round(true, 100);
-  pilot_.take_answer("drive", RpcError{daemon::rpc_code::kRefused, "drive: it was not renewed"});
+  pilot_.take_answer("drive", refusal("taken_over"));
   EXPECT_TRUE(pilot_.bad());
   EXPECT_NE(pilot_.message().find("taken the robot over"), std::string::npos);
   for (int i = 0; i < 50; ++i) EXPECT_TRUE(round(true, 100).empty());
@@ -135,8 +139,8 @@ TEST_F(PilotTest, DoesNotFightWithWhoeverTakesTheRobotOver) {
 
 TEST_F(PilotTest, TellsASlowConnectionFromAnotherDriver) {
   hold(500);
-  round(true, 700);
-  pilot_.take_answer("drive", RpcError{daemon::rpc_code::kRefused, "drive: it was not renewed"});
+  round(true, 100);
+  pilot_.take_answer("drive", refusal("not_renewed"));
   EXPECT_NE(pilot_.message().find("slow"), std::string::npos) << pilot_.message();
   EXPECT_TRUE(round(true, 100).empty());
   round(false);

@@ -17,6 +17,7 @@ Scene walking() {
                      {"phase", "transfer"},
                      {"step_index", 1234},
                      {"icp_error", 0.0123},
+                     {"icp_margin", -0.0456},
                      {"faults", {"estop", "capture"}},
                      {"robot", "atlas"},
                      {"backend", "socketcan"}},
@@ -53,9 +54,10 @@ TEST(View, FitsTheWindow) {
 
 TEST(View, ShowsWhatTheOperatorHasToKnow) {
   const std::string shown = text(screen(walking(), 80, 24));
-  for (const char* part : {"atlas on socketcan", "100 %", "+0.30 m/s", "-0.15 m/s", "+0.28 m/s",
-                           "walking, walk-straight, transfer, step 1234", "12 mm", "estop, capture",
-                           "X-Box One S", "r resets it", "slower than asked", "Esc  E-STOP"}) {
+  for (const char* part :
+       {"atlas on socketcan", "100 %", "+0.30 m/s", "-0.15 m/s", "+0.28 m/s",
+        "walking, walk-straight, transfer, step 1234", "ICP margin  -46 mm", "12 mm",
+        "estop, capture", "X-Box One S", "r resets it", "slower than asked", "Esc  E-STOP"}) {
     EXPECT_NE(shown.find(part), std::string::npos) << part << " in\n" << shown;
   }
   EXPECT_EQ(shown.find("-0.00"), std::string::npos) << shown;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -39,6 +41,89 @@ TEST(Pipeline, StandsWhenArmedAndTakesAWalkThen) {
   b.run_for(0.05);
   EXPECT_EQ(b.state(), SafetyState::kWalking);
   EXPECT_EQ(d.gait.phase, GAITD_PHASE_TRANSFER);
+}
+
+Command drive_command(std::int64_t session, double forward, bool ends) {
+  Command command;
+  command.type = CommandType::kDrive;
+  command.drive.velocity.forward = forward;
+  command.drive.session = session;
+  command.drive.ends = ends;
+  return command;
+}
+
+TEST(Pipeline, TellsHowFarTheCapturePointIsInsideTheFeet) {
+  Bench b;
+  b.run_for(0.1);
+  const TickData& d = b.pipeline->data();
+  EXPECT_TRUE(std::isnan(d.icp_margin));
+  ASSERT_TRUE(b.execute(CommandType::kArm).accepted);
+  b.run_for(5.0);
+  ASSERT_EQ(b.state(), SafetyState::kStanding);
+  // By hand: feet side by side and parallel to the axes, so the edges are those of the outline.
+  double low[2] = {1e9, 1e9};
+  double high[2] = {-1e9, -1e9};
+  for (const GaitdFoothold& foot : d.gait.footholds) {
+    for (int i = 0; i < foot.polygon_count; ++i) {
+      for (int axis = 0; axis < 2; ++axis) {
+        const double at = foot.pose.position[axis] + foot.contact_polygon[i][axis];
+        low[axis] = std::min(low[axis], at);
+        high[axis] = std::max(high[axis], at);
+      }
+    }
+  }
+  const double x = std::min(d.robot.icp[0] - low[0], high[0] - d.robot.icp[0]);
+  const double y = std::min(d.robot.icp[1] - low[1], high[1] - d.robot.icp[1]);
+  EXPECT_GT(d.icp_margin, 0.02);
+  EXPECT_NEAR(d.icp_margin, std::min(x, y), 2e-3);
+  b.execute(CommandType::kEstop);
+  b.run_for(0.01);
+  EXPECT_TRUE(std::isnan(d.icp_margin));
+}
+
+TEST(Pipeline, AWalkThatAFaultHasEndedIsOverAfterTheReset) {
+  Bench b;
+  b.run_for(0.1);
+  ASSERT_TRUE(b.execute(CommandType::kArm).accepted);
+  b.run_for(5.0);
+  ASSERT_TRUE(b.pipeline->execute(drive_command(7, 0.3, false)).accepted);
+  b.run_for(0.4);
+  const TickData& d = b.pipeline->data();
+  ASSERT_NE(d.gait.phase, GAITD_PHASE_STAND);
+  ASSERT_TRUE(d.drive.active);
+  b.execute(CommandType::kEstop);
+  b.run_for(0.01);
+  EXPECT_FALSE(d.drive.active);
+  EXPECT_NE(d.gait.phase, GAITD_PHASE_STAND) << "what it did when it was stopped";
+  ASSERT_TRUE(b.execute(CommandType::kReset).accepted);
+  b.run_for(0.01);
+  EXPECT_EQ(d.gait.phase, GAITD_PHASE_STAND);
+  EXPECT_EQ(d.gait.footstep_count, 0);
+}
+
+TEST(Pipeline, EndsADriveForItsDriverAloneAndRefusesNobodyWhoLetsGo) {
+  Bench b;
+  b.run_for(0.1);
+  const CommandReply disarmed = b.pipeline->execute(drive_command(7, 0.0, true));
+  EXPECT_TRUE(disarmed.accepted);
+  EXPECT_NE(std::string(disarmed.message.data()).find("nothing to end"), std::string::npos);
+  ASSERT_TRUE(b.execute(CommandType::kArm).accepted);
+  b.run_for(5.0);
+  ASSERT_TRUE(b.pipeline->execute(drive_command(7, 0.3, false)).accepted);
+  b.run_for(0.1);
+  const CommandReply other = b.pipeline->execute(drive_command(8, 0.0, true));
+  EXPECT_TRUE(other.accepted);
+  EXPECT_NE(std::string(other.message.data()).find("nothing to end"), std::string::npos);
+  b.run_for(0.01);
+  EXPECT_EQ(b.pipeline->data().drive.target.forward, 0.3);
+  const CommandReply own = b.pipeline->execute(drive_command(7, 0.0, true));
+  EXPECT_TRUE(own.accepted);
+  EXPECT_STREQ(own.message.data(), "");
+  b.run_for(0.01);
+  EXPECT_EQ(b.pipeline->data().drive.target.forward, 0.0);
+  Command late = drive_command(7, 0.3, false);
+  late.drive.renewal = true;
+  EXPECT_EQ(b.pipeline->execute(late).reason, walking::RefusalReason::kEnded);
 }
 
 TEST(Pipeline, AFailingLayerIsAFaultThatLatchesAndDampsTheJoints) {

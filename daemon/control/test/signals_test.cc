@@ -55,6 +55,7 @@ const char* const kNames[] = {
     "com/{x,y,z}",
     "com/velocity/{x,y,z}",
     "icp/{x,y}",
+    "icp/margin",
     "icp/desired/{x,y}",
     "ecmp/reference/{x,y}",
     "ecmp/desired/{x,y}",

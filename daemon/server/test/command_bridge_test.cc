@@ -53,6 +53,23 @@ TEST_F(Bridge, CarriesCommandsInOrderAndAnswersToTheirSenders) {
   EXPECT_FALSE(bridge_->waiting());
 }
 
+TEST_F(Bridge, GivesTheReasonThatProgramsTellApart) {
+  using walking::RefusalReason;
+  const std::pair<RefusalReason, const char*> reasons[] = {
+      {RefusalReason::kNotRenewed, "not_renewed"},
+      {RefusalReason::kTakenOver, "taken_over"},
+      {RefusalReason::kEnded, "ended"}};
+  for (const auto& [reason, name] : reasons) {
+    const auto drive = submit(CommandType::kDrive);
+    ASSERT_TRUE(bridge_->try_pop(*command_));
+    CommandReply reply{command_->request, false, 7, {'n', 'o'}};
+    reply.reason = reason;
+    bridge_->push(reply);
+    bridge_->poll(CommandBridge::Clock::now());
+    EXPECT_EQ(error(*drive).data, (nlohmann::json{{"tick", 7}, {"reason", name}}));
+  }
+}
+
 TEST_F(Bridge, HoldsAnAcceptanceBackUntilItsEffectShows) {
   std::int64_t newest = 7;
   bridge_->show_effect_first([&] { return newest; });

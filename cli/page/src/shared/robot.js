@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import * as THREE from 'three';
 import URDFLoader from 'urdf-loader';
+import {fixJoints, rootAtPelvis} from './frames.js';
 
 export function material(color, opacity = 1) {
   return new THREE.MeshLambertMaterial({color, opacity, transparent: opacity < 1});
@@ -30,12 +31,14 @@ export class Robot {
     loader.loadMeshCb = (path, manager, done) => done(new THREE.Group());
     const robot = loader.parse(log.urdf);
     simplify(robot, opacity);
-    this.pelvis.add(robot);
     this.links = robot.links;
     this.joints = Object.values(robot.joints)
         .map((joint) => ({joint, signal: `joint/${joint.urdfName}/position`,
                           get column() { return log.column(this.signal); }}))
         .filter(({signal}) => log.has(signal));
+    fixJoints(robot, new Set(this.joints.map(({joint}) => joint.urdfName)));
+    rootAtPelvis(robot, log.robot?.pelvis);
+    this.pelvis.add(robot);
   }
 
   show(row) {

@@ -61,16 +61,20 @@ export class Drive extends EventTarget {
 
   renew(run) {
     if (this.unanswered >= kUnanswered || this.congested()) return;
-    this.request(run, this.velocity);
+    this.request(run, this.renewal(this.velocity));
     this.changed();
   }
 
-  async request(run, velocity, last = false) {
+  renewal(velocity) {
     const renew = this.sent;
     this.sent = true;
+    return {...velocity, session: this.session, renew};
+  }
+
+  async request(run, params, last = false) {
     ++this.unanswered;
     try {
-      const {note} = await this.call('drive', {...velocity, session: this.session, renew}) ?? {};
+      const {note} = await this.call('drive', params) ?? {};
       if (run === this.driving) this.say(note ?? '');
     } catch (error) {
       if (run === this.driving) this.fail('drive', error);
@@ -81,12 +85,12 @@ export class Drive extends EventTarget {
     }
   }
 
-  // Zero, not `stop`: that would also end what somebody else lets the robot do meanwhile.
+  // Not `stop`: that would also end what somebody else lets the robot do meanwhile.
   end() {
     const run = this.driving;
     clearInterval(this.timer);
     this.driving = undefined;
-    if (this.sent) this.request(run, kZero, true);
+    if (this.sent) this.request(run, {session: this.session, end: true}, true);
     this.sent = false;
     this.say('');
     this.changed();

@@ -11,6 +11,7 @@ const kLines = [
   ['mode', (s) => s.mode],
   ['phase', (s) => `${s.phase ?? '–'}, ${s.support ?? '–'}`],
   ['step', (s) => `${s.step_index ?? '–'}, ${s.footsteps_ahead ?? 0} ahead${s.paused ? ', PAUSED' : ''}`],
+  ['ICP margin', (s) => typeof s.icp_margin === 'number' ? `${number(1000 * s.icp_margin, 0)} mm` : '–'],
   ['ICP error', (s) => typeof s.icp_error === 'number' ? `${number(1000 * s.icp_error, 1)} mm` : '–'],
   ['tick', (s) => `${number(s.tick_us, 0)} µs, longest ${number(s.tick_longest_us, 0)} µs`],
   ['overruns', (s) => `${s.overruns ?? '–'}${s.late ? `, last: ${s.late.what}, ${number(s.late.time_us, 0)} µs` : ''}`],

@@ -34,6 +34,7 @@ struct VelocityCommand {
   Velocity velocity;
   std::int64_t session = 0;  // of whoever drives; a renewal is taken from him alone
   bool renewal = false;
+  bool ends = false;   // its driver lets go: the robot comes to a stand
   bool holds = false;  // need not be renewed
 };
 

@@ -19,13 +19,21 @@ class VelocityWalk {
   // Whoever began last drives. The velocity goes on from that of the step under way. False if
   // nothing changes for the footsteps.
   bool take(const VelocityCommand& command);
-  void end();
+  // Another producer of footsteps or a fault ends it, or nobody has renewed it.
+  void end(RefusalReason why = RefusalReason::kEnded);
+  // Its driver lets go: as if the time to renew had run out.
+  void let_go();
+  // The robot stands, and nobody drives it any more.
+  void finish() { end(let_go_ ? RefusalReason::kEnded : RefusalReason::kNotRenewed); }
   bool active() const { return active_; }
   // That it is to reach: as asked for, within the bounds of the robot.
   const Velocity& target() const { return target_; }
-  bool driven_by(std::int64_t session) const { return active_ && session == session_; }
+  // Why `session` does not drive; kNone: it does.
+  RefusalReason why_not(std::int64_t session) const;
   bool idle() const { return at_rest(target_); }  // to stand
-  bool timed_out() const { return active_ && !holds_ && age_ > parameters_[Drive::kTimeout]; }
+  bool timed_out() const {
+    return active_ && (let_go_ || (!holds_ && age_ > parameters_[Drive::kTimeout]));
+  }
   // One tick; true when the time to renew has just run out: the robot is to stop.
   bool wait(double dt);
 
@@ -59,7 +67,9 @@ class VelocityWalk {
   double separation_;  // m, of the soles in the nominal posture
   bool active_ = false;
   bool holds_ = false;
-  std::int64_t session_ = 0;
+  bool let_go_ = false;
+  std::int64_t session_ = 0;  // that drives, or drove last
+  RefusalReason ended_ = RefusalReason::kEnded;
   double age_ = 0.0;  // s, of the command
   Velocity target_;
   Step step_;

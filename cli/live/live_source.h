@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/view/gaitd_link.h"
-#include "cli/view/message.h"
+#include "cli/live/gaitd_link.h"
+#include "cli/live/message.h"
 #include "daemon/log/event.h"
 #include "daemon/log/signal.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/view/gaitd_link.h"
+#include "cli/live/gaitd_link.h"
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/post.hpp>

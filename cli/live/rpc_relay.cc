@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/view/rpc_relay.h"
+#include "cli/live/rpc_relay.h"
 
 #include <utility>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/view/live_source.h"
+#include "cli/live/live_source.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cli/view/gaitd_link.h"
+#include "cli/live/gaitd_link.h"
 #include "daemon/server/rights.h"
 
 namespace gaitd::cli {

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+import * as THREE from 'three';
+
+const kMoves = ['revolute', 'continuous', 'prismatic'];
+
+// Puts the joints that gaitd does not know of (`fixed` of robot.yaml, <mimic>) where it takes them to be: where
+// their range is nearest to zero. `moved`: names of the others, which are drawn as they are measured, beyond their
+// limits too.
+export function fixJoints(robot, moved) {
+  for (const joint of Object.values(robot.joints)) {
+    joint.mimicJoints = [];
+    joint.ignoreLimits = true;
+    if (!kMoves.includes(joint.jointType) || moved.has(joint.urdfName)) continue;
+    const {lower, upper} = joint.limit;
+    joint.setJointValue(joint.jointType === 'continuous' ? 0 : Math.max(lower, Math.min(upper, 0)));
+  }
+}
+
+// Puts the robot so that the body whose pose is in the signals is at the origin: `pelvis` of robot.yaml, a link or
+// {link, rpy}, the axes x forward, y left, z up in it. Whatever the file begins with may be elsewhere.
+export function rootAtPelvis(robot, pelvis) {
+  const {link, rpy = [0, 0, 0]} = typeof pelvis === 'object' && pelvis ? pelvis : {link: pelvis};
+  robot.updateMatrixWorld(true);
+  const body = new THREE.Matrix4().makeRotationFromEuler(new THREE.Euler(...rpy.map(Number), 'ZYX'));
+  body.premultiply((robot.links[link] ?? robot).matrixWorld);
+  robot.applyMatrix4(body.invert());
+}
