@@ -53,6 +53,8 @@ struct State {
   uint64_t cycle;     // lockstep: counts the states; 0: a robot that waits for nobody
   uint32_t sequence;  // accepted states
   uint32_t mode_machine;
+  uint32_t repeats;  // states in a row whose tick was that of the one before
+  uint32_t reserved;
   float position[kMotors];  // rad, by index on the wire
   float velocity[kMotors];  // rad/s
   float torque[kMotors];    // N m, as the drive estimates it

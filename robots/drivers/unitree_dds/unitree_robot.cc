@@ -24,15 +24,17 @@ UnitreeRobot::UnitreeRobot(const Settings& settings, const GaitdModel& model,
       model_(model),
       options_(options),
       log_(std::move(log)),
+      has_foot_sensors_(model.feet[GAITD_LEFT].force_sensor.body >= 0 &&
+                        model.feet[GAITD_RIGHT].force_sensor.body >= 0),
       link_(options.link_program, arguments(settings, options.lockstep), log_) {}
 
 bool UnitreeRobot::start(std::vector<std::string>* errors) {
   if (!link_.start(errors)) return false;
   started_ = true;
-  if (settings_.feet.empty()) {
+  if (has_foot_sensors_ && settings_.feet.empty()) {
     log_(GAITD_LOG_WARNING,
-         "unitree_dds.feet names no topic, and the robot has no force sensors of its own: the feet "
-         "stay silent, and where balance needs them arming is refused");
+         "the model has force sensors in its feet and unitree_dds.feet names no topic of theirs: "
+         "they stay silent, and arming is refused");
   }
   const uint64_t count = link_.exchange().state.get(&state_);
   find_conditions();
@@ -40,9 +42,11 @@ bool UnitreeRobot::start(std::vector<std::string>* errors) {
   return count != 0;
 }
 
+// In lock step a period is one of the robot's, not of a clock of this machine.
 double UnitreeRobot::age(int64_t stamp_ns, int64_t now_ns) const {
-  return options_.lockstep ? static_cast<double>(behind_) * options_.period
-                           : std::max(0.0, 1e-9 * static_cast<double>(now_ns - stamp_ns));
+  if (!options_.lockstep) return std::max(0.0, 1e-9 * static_cast<double>(now_ns - stamp_ns));
+  const int64_t repeats = state_.repeats > 1 ? state_.repeats - 1 : 0;
+  return static_cast<double>(behind_ + repeats) * options_.period;
 }
 
 GaitdSignalInfo UnitreeRobot::info(uint32_t sequence, int64_t stamp_ns, int64_t now_ns) const {
@@ -70,7 +74,7 @@ GaitdStatus UnitreeRobot::read(GaitdSensors* sensors) {
   sensors->size = sizeof(*sensors);
   sensors->joint_count = model_.joint_count;
   sensors->imu_count = model_.imu_count;
-  sensors->foot_count = GAITD_MAX_FEET;
+  sensors->foot_count = has_foot_sensors_ ? GAITD_MAX_FEET : 0;
   sensors->tick = tick_;
   sensors->time = static_cast<double>(tick_) * options_.period;
   for (int i = 0; i < model_.joint_count; ++i) {
@@ -84,7 +88,7 @@ GaitdStatus UnitreeRobot::read(GaitdSensors* sensors) {
   for (int i = 0; i < model_.imu_count; ++i) {
     fill_imu(model_.imus[i].body == 0 ? state_.pelvis : state_.torso, now, &sensors->imus[i]);
   }
-  for (int i = 0; i < GAITD_MAX_FEET; ++i) {
+  for (int i = 0; i < sensors->foot_count; ++i) {
     GaitdFootForceSensor& foot = sensors->feet[i];
     foot.info = info(state_.feet.sequence, state_.feet.stamp_ns, now);
     std::copy_n(state_.feet.wrench[i], 3, foot.moment);

@@ -53,6 +53,7 @@ class UnitreeRobot {
   GaitdModel model_;
   RobotOptions options_;
   Log log_;
+  bool has_foot_sensors_;
   LinkProcess link_;
   State state_{};
   int64_t tick_ = 0;    // counts write()

@@ -31,9 +31,11 @@ bool StateWatch::take(const LowState& message, int64_t now_ns) {
     tick_since_ns_ = now_ns;
   } else if (message.tick != tick_) {
     if (static_cast<int32_t>(message.tick - tick_) < 0) restarted_ = true;
+    state_.repeats = 0;
     tick_since_ns_ = now_ns;
   } else {
     ++repeated_;
+    ++state_.repeats;
   }
   tick_ = message.tick;
   machine_now_ = message.mode_machine;
