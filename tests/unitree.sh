@@ -93,3 +93,40 @@ condition() {
     "0 <= r['damped_cycle'] - r['fault_cycle'] <= ${within:-3}" "r['motors']['driven'] == 0"
   echo "$*: $fault"
 }
+
+condition motor 'winding too hot' --fault error:left_knee_joint=512@0.2
+within=110 condition motor 'it switched itself off' --fault off:left_ankle_roll_joint@0.2
+condition estop '(L2+B)' --fault keys:L2+B=0.05@0.2
+condition bus 'mode_machine changed from 5 to 6' --fault machine=6@0.2
+condition bus 'the robot was started again' --fault restart@0.2
+within=60 condition bus 'somebody else commands' --fault writer@0.2
+patience=0.02 within=30 condition sensors '' --fault silent@0.2
+within=30 condition sensors '' --fault stuck@0.2
+
+# What it can do without.
+start_robot harmless --fault torso@0.2 --fault lose=40@0.2 --fault battery=10@0.2
+start_gaitd
+arm
+wait_for state standing 60
+gaitctl disarm >/dev/null
+answer=$(gaitctl arm 2>&1) && fail "armed with a charge of 10 %"
+[[ $(gaitctl status) == *'charge 10 %'* ]] || fail "nothing of the charge: $(gaitctl status)"
+
+stop_daemon
+stop_robot
+
+# gaitd is killed while it drives: its link damps, and ends.
+start_robot killed
+start_gaitd
+arm
+wait_for state standing 60
+link=$(pgrep -f "gaitd-unitree-link lockstep .*\"domain\":$domain," || true)
+[[ -n $link ]] || fail "no link"
+kill -KILL "$daemon"
+wait "$daemon" 2>/dev/null || true
+daemon=
+for _ in {1..100}; do kill -0 "$link" 2>/dev/null || break; sleep 0.05; done
+! kill -0 "$link" 2>/dev/null || fail "the link does not end"
+stop_robot
+expect_report killed "r['motors'] == {'driven': 0, 'damped': 29}" "r['cycles'] - r['last_driven_cycle'] > 20"
+echo "killed: damped for $(python3 -c "import json; r = json.load(open('killed.json')); print(r['cycles'] - r['last_driven_cycle'])") periods"
