@@ -111,11 +111,11 @@ bool FakeG1::take_commands() {
     while (unitree::take_sample(user ? user_commands_ : commands_, &received_)) {
       ++heard_;
       if (deaf_ || (lose_every_ > 0 && heard_ % lose_every_ == 0)) continue;
-      if (!accept(received_, user)) continue;
-      const uint64_t cycle = unitree::cycle_of(received_);
-      answered = answered || cycle == cycle_;
-      // One that repeats an earlier answer is of a cycle that is over.
-      if (options_.lockstep && cycle != cycle_) continue;
+      // One that repeats an earlier answer is of a cycle that is over; whom no state reaches can
+      // name none. What is refused is an answer as well.
+      const bool answers = unitree::cycle_of(received_) == cycle_ || silent_;
+      answered = answered || answers;
+      if (!accept(received_, user) || (options_.lockstep && !answers)) continue;
       ++accepted_;
       heard_cycle_ = static_cast<int64_t>(cycle_);
       if (std::exchange(reacting_, false)) event("commands come again");

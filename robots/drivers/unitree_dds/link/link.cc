@@ -52,7 +52,7 @@ Link::Link(const Settings& settings, bool lockstep, bool rescue, Exchange* excha
 void Link::log(int level, const std::string& line) const {
   const std::string text =
       std::string(1, static_cast<char>(Talk::kLog)) + static_cast<char>('0' + level) + line;
-  send(kTalkFd, text.data(), std::min<size_t>(text.size(), 1000), MSG_NOSIGNAL);
+  send(kTalkFd, text.data(), std::min<size_t>(text.size(), 1000), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
 void Link::listen_to_gaitd() {
