@@ -134,7 +134,9 @@ void StateWatch::report(uint32_t holds, Status* status) const {
   char* text = status->text;
   constexpr size_t kSize = sizeof(status->text);
   text[0] = '\0';
-  if (bad_motor_ >= 0) {
+  if ((holds & kHoldGone) != 0) {
+    std::snprintf(text, kSize, "the link to the robot died, another one damps: restart gaitd");
+  } else if (bad_motor_ >= 0) {
     std::snprintf(text, kSize, "motor of %s: %s", kJointNames[bad_motor_], bad_text_);
   } else if ((holds & kHoldWriter) != 0) {
     std::snprintf(text, kSize, "somebody else commands the robot");
@@ -148,8 +150,6 @@ void StateWatch::report(uint32_t holds, Status* status) const {
     std::snprintf(text, kSize, "the robot was started again: restart gaitd, to take control");
   } else if ((holds & kHoldSilent) != 0) {
     std::snprintf(text, kSize, "the robot is silent: no state on %s", kLowState);
-  } else if ((holds & kHoldGone) != 0) {
-    std::snprintf(text, kSize, "the link to the robot died, another one damps: restart gaitd");
   } else if ((holds & kHoldLate) != 0) {
     std::snprintf(text, kSize, "the controller was late, and the robot damped");
   } else if ((holds & kHoldEstop) != 0) {

@@ -31,7 +31,7 @@ TEST(Link, CommandsReachTheRobotAndStatesGaitd) {
   EXPECT_EQ(0u, daemon.sensors.feet[0].info.valid);  // it has none
   EXPECT_EQ(0, robot.wrong);
   daemon.robot->stop();
-  EXPECT_TRUE(robot.damped());
+  EXPECT_TRUE(Robot::wait([&] { return robot.damped(); }, 0.1));
 }
 
 TEST(Link, RefusesARobotThatIsNotThatOfTheModelAndSaysWhy) {
@@ -182,7 +182,7 @@ TEST(Link, DampsForAWhileAndEndsWhenGaitdIsGone) {
     ASSERT_EQ("", daemon.start());
     ASSERT_TRUE(daemon.drive(&robot));
   }
-  EXPECT_TRUE(robot.damped());
+  EXPECT_TRUE(Robot::wait([&] { return robot.damped(); }, 0.1));
   const int before = robot.heard;
   std::this_thread::sleep_for(200ms);
   EXPECT_GT(robot.heard, before + 20);
