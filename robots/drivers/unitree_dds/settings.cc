@@ -111,7 +111,8 @@ uint64_t Settings::motor_mask() const {
 
 Settings parse_settings(const std::string& text, const GaitdModel& model, Errors* errors) {
   Settings settings;
-  JsonReader map(json::parse(text, nullptr, false), "unitree_dds", errors);
+  const json document = json::parse(text, nullptr, false);
+  JsonReader map(document, "unitree_dds", errors);
   map.allow({"can", "interface", "domain", "control", "give_back", "listen", "command_timeout",
              "state_timeout", "rate", "damping", "damp_time", "mode_machine", "feet",
              "max_stiffness", "max_damping", "lowest_charge", "lockstep_timeout", "joints"});
