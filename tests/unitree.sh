@@ -39,7 +39,7 @@ arm() {
   local answer
   for _ in {1..100}; do
     answer=$(gaitctl arm 2>&1) && return
-    [[ $answer == *"no estimate yet"* || $answer == *"gives no estimate"* ]] || break
+    [[ $answer == *"estimate yet"* || $answer == *"is silent"* ]] || break  # before its first ticks
     sleep 0.1
   done
   fail "not armed: $answer; $(gaitctl status)"
@@ -61,7 +61,7 @@ PYTHON
 # It stands and walks.
 start_robot walk
 start_gaitd
-[[ $(field state) == disarmed ]] || fail "a robot comes up disarmed, not $(field state)"
+wait_for state disarmed 20
 arm
 wait_for state standing 60
 gaitctl mode walk-bent >/dev/null
