@@ -85,7 +85,12 @@ void StateWatch::look_at_motors(const LowState& message) {
     if ((options_.motors >> i & 1) == 0) continue;
     const MotorState& motor = message.motor_state[i];
     const uint64_t bit = uint64_t{1} << i;
-    if (motor.mode != 0) was_on_ |= bit;
+    if (motor.mode != 0) {
+      was_on_ |= bit;
+      fell_off_ &= ~bit;
+    } else if ((was_on_ & bit) != 0 && driving_states_ == kSwitchOnStates) {
+      fell_off_ |= bit;  // also once it is no longer driven for that
+    }
     const char* text = motor_error_text(motor.motorstate);
     if (text[0] != '\0') {
       std::snprintf(bad_text_, sizeof(bad_text_), "%s (0x%X)", text, motor.motorstate);
@@ -93,7 +98,7 @@ void StateWatch::look_at_motors(const LowState& message) {
       std::snprintf(bad_text_, sizeof(bad_text_), "case at %d °C", motor.temperature[0]);
     } else if (motor.temperature[1] > kHottestWinding) {
       std::snprintf(bad_text_, sizeof(bad_text_), "winding at %d °C", motor.temperature[1]);
-    } else if (motor.mode == 0 && (was_on_ & bit) != 0 && driving_states_ == kSwitchOnStates) {
+    } else if ((fell_off_ & bit) != 0) {
       std::snprintf(bad_text_, sizeof(bad_text_), "it switched itself off");
     } else {
       continue;

@@ -50,6 +50,7 @@ class StateWatch {
   bool driving_ = false;
   int driving_states_ = 0;  // in a row
   uint64_t was_on_ = 0;     // motors that have said so
+  uint64_t fell_off_ = 0;   // and then switched themselves off
   int bad_motor_ = -1;
   char bad_text_[64] = "";
   const char* estop_keys_ = nullptr;  // pressed now

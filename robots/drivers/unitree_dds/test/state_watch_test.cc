@@ -196,6 +196,12 @@ TEST(StateWatch, AMotorThatIsOffWhileDrivenSwitchedItselfOff) {
   EXPECT_EQ(0u, b.status().conditions);
   b.next();
   EXPECT_STREQ("motor of left_knee_joint: it switched itself off", b.status().text);
+  b.watch.set_driving(false);  // gaitd has heard of it
+  b.next();
+  EXPECT_EQ(uint32_t{GAITD_HEALTH_MOTOR}, b.status().conditions);
+  b.message.motor_state[3].mode = 1;
+  b.next();
+  EXPECT_EQ(0u, b.status().conditions);
 }
 
 TEST(StateWatch, SimulatorsThatNeverSayOnAreBelievedToBeOn) {
