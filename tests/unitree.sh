@@ -100,7 +100,7 @@ condition() {
 
 condition motor 'winding too hot' --fault error:left_knee_joint=512@0.2
 within=110 condition motor 'it switched itself off' --fault off:left_ankle_roll_joint@0.2
-condition estop '(L2+B)' --fault keys:L2+B=0.05@0.2
+condition estop '(L2+B)' --fault keys:L2+B@0.2
 ignored=1 condition bus 'mode_machine changed from 5 to 6' --fault machine=6@0.2
 condition bus 'the robot was started again' --fault restart@0.2
 within=60 condition bus 'somebody else commands' --fault writer@0.2
