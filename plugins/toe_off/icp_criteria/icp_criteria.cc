@@ -74,7 +74,7 @@ IcpCriteria::Candidate IcpCriteria::candidate(const GaitdGaitState& gait) const 
   return c;
 }
 
-void IcpCriteria::evaluate(const GaitdToeOffInput& in, const Candidate& c, GaitdToeOff& out) const {
+bool IcpCriteria::evaluate(const GaitdToeOffInput& in, const Candidate& c, GaitdToeOff& out) const {
   const GaitdFoot& foot = model_.feet[c.side];
   const GaitdFootState& measured = in.robot->feet[c.side];
   const GaitdFoothold& toe = in.gait->footholds[c.side];
@@ -111,6 +111,7 @@ void IcpCriteria::evaluate(const GaitdToeOffInput& in, const Candidate& c, Gaitd
   ok[GAITD_TOE_OFF_COP] = value[GAITD_TOE_OFF_COP] <= p_[P::kCopDistance] * foot_length_;
   ok[GAITD_TOE_OFF_CMP] = value[GAITD_TOE_OFF_CMP] <= p_[P::kCmpDistance];
   ok[GAITD_TOE_OFF_ANKLE] = value[GAITD_TOE_OFF_ANKLE] <= 0.0;
+  return distance(predicted, view(in.plan->ecmp)) <= p_[P::kCmpDistance];
 }
 
 bool IcpCriteria::rolling_on(const GaitdRobotState& robot, const GaitdGaitState& gait) const {
@@ -132,7 +133,7 @@ GaitdStatus IcpCriteria::process(const GaitdToeOffInput& in, GaitdToeOff& out) {
   const Candidate c = candidate(gait);
   const bool goes_on = state_.active != 0 && rolling_on(*in.robot, gait);
   const int side = goes_on ? state_.side : c.side;
-  if (c.side != GAITD_BOTH) evaluate(in, c, out);
+  const bool heel_free = c.side != GAITD_BOTH && evaluate(in, c, out);
   if (goes_on) {
     out.active = 1;
   } else if (c.side == GAITD_BOTH || in.robot->feet[c.side].contact == GAITD_CONTACT_NONE) {
@@ -141,7 +142,7 @@ GaitdStatus IcpCriteria::process(const GaitdToeOffInput& in, GaitdToeOff& out) {
     const int32_t* ok = out.satisfied;
     const bool all = ok[GAITD_TOE_OFF_ICP] && ok[GAITD_TOE_OFF_ICP_DISTANCE] &&
                      ok[GAITD_TOE_OFF_COP] && ok[GAITD_TOE_OFF_CMP];
-    const bool limit = ok[GAITD_TOE_OFF_ICP] && ok[GAITD_TOE_OFF_ANKLE];
+    const bool limit = ok[GAITD_TOE_OFF_ICP] && ok[GAITD_TOE_OFF_ANKLE] && heel_free;
     state_.time_satisfied = all || limit ? state_.time_satisfied + in.time.period : 0.0;
     out.active = state_.time_satisfied > p_[P::kHoldTime] ? 1 : 0;
   }

@@ -9,7 +9,8 @@ namespace gaitd::plugins {
 // Decides when the trailing foot rolls over its toe (Griffin et al. 2018, section IV; theory
 // section 6). Toe-off starts when the leading foot is far enough ahead, clearly higher or lower,
 // and all four criteria hold for a moment, or when the trailing ankle has no dorsiflexion left and
-// the first one holds. It then lasts until the foot is lifted. Values in the output:
+// the first one holds, unless the plan still has its CMP behind the toe, where only the heel
+// carries. It then lasts until the foot is lifted. Values in the output:
 //   icp           m, how far the worse of measured and desired ICP is inside the predicted support
 //                 polygon (toe point and leading foothold); at least 0 expected
 //   icp_distance  the larger distance of the two to the leading foothold over the distance of the
@@ -46,9 +47,9 @@ class IcpCriteria {
       sdk::real_parameter("cop_distance", "foot lengths", 0, 1, 0.8,
                           "of the trailing CoP to the toe point"),
       sdk::real_parameter("cmp_distance", "m", 0, 0.5, 0.03,
-                          "of the desired CMP to the predicted polygon"),
+                          "of the CMP, desired or planned, to the predicted polygon"),
       sdk::real_parameter("ankle_limit", "rad", 0, 1.5, 0.6,
-                          "dorsiflexion after which the ankle alone starts toe-off"),
+                          "dorsiflexion after which toe-off starts wherever the CoP is"),
       sdk::real_parameter("hold_time", "s", 0, 0.2, 0.002, "for which the criteria must hold"),
       sdk::real_parameter("swing_start", "", 0.3, 1, 0.7,
                           "part of a swing after which the stance foot may roll"),
@@ -74,7 +75,8 @@ class IcpCriteria {
   Eigen::Vector3d toe_point(const GaitdFoothold& foothold, int side) const;
   bool rolling_on(const GaitdRobotState& robot, const GaitdGaitState& gait) const;
   bool far_enough(const GaitdFoothold& trailing, const GaitdFoothold& leading) const;
-  void evaluate(const GaitdToeOffInput& in, const Candidate& c, GaitdToeOff& out) const;
+  // Whether the CMP of the plan can do without the heel.
+  bool evaluate(const GaitdToeOffInput& in, const Candidate& c, GaitdToeOff& out) const;
 
   const GaitdModel model_;
   sdk::Parameters<P> p_{kParameters};
