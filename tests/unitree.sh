@@ -17,7 +17,7 @@ trap clean_up_robot EXIT
 start_robot() {
   local name=$1
   shift
-  gaitd-fake-g1 --lockstep --patience 20 --domain "$domain" --feet rt/gaitd/feet --report "$name.json" "$@" >robot.txt 2>&1 &
+  gaitd-fake-g1 --lockstep --patience 20 --domain "$domain" --report "$name.json" "$@" >robot.txt 2>&1 &
   robot=$!
   for _ in {1..200}; do grep -q ready robot.txt && return || sleep 0.05; done
   fail "the fake robot does not start: $(cat robot.txt)"
@@ -32,7 +32,7 @@ stop_robot() {
 start_gaitd() {
   start_daemon --robot g1 --backend unitree_dds --clock lockstep --set unitree_dds.interface=lo \
     --set unitree_dds.domain="$domain" --set unitree_dds.listen=0.2 --set unitree_dds.lockstep_timeout=20 \
-    --set unitree_dds.feet=rt/gaitd/feet --set unitree_dds.damp_time=0.5 --set safety.ready_duration=0.5 --set log.enabled=false "$@"
+    --set unitree_dds.damp_time=0.5 --set safety.ready_duration=0.5 --set log.enabled=false "$@"
 }
 
 arm() {

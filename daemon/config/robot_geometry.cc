@@ -101,7 +101,7 @@ void RobotGeometry::read_feet(MapReader* root) {
 void RobotGeometry::read_foot(MapReader map, int side) {
   GaitdFoot* foot = &model_->feet[side];
   const std::string name(kSideNames[side]);
-  map.require({"link", "sole", "outline", "force_sensor"});
+  map.require({"link", "sole", "outline"});
   const dynamics::UrdfLink* foot_link = link(&map, "link");
   foot->body = foot_link ? foot_link->body : -1;
 
@@ -110,6 +110,12 @@ void RobotGeometry::read_foot(MapReader map, int side) {
   sole.finish();
   read_outline(&map, foot);
 
+  foot->force_sensor.body = -1;
+  foot->force_sensor.orientation[3] = 1.0;
+  if (!map.has("force_sensor")) {
+    map.finish();
+    return;
+  }
   MapReader sensor = map.map("force_sensor");
   sensor.require({"link"});
   const dynamics::UrdfLink* sensor_link = link(&sensor, "link");
