@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -175,6 +176,7 @@ struct Daemon {
   std::string lines;
   std::unique_ptr<UnitreeRobot> robot;
   GaitdSensors sensors{};
+  pid_t link = -1;
 
   Daemon() {
     settings.interface = "lo";
@@ -194,6 +196,15 @@ struct Daemon {
     }
     settings.joint_count = model.joint_count;
     model.imu_count = 1;
+  }
+  // The link damps on for a while: not into the next test.
+  ~Daemon() {
+    if (robot) end();
+    if (link > 0) waitpid(link, nullptr, 0);
+  }
+  void end() {
+    link = robot->link();
+    robot.reset();
   }
   // "" or why it does not start.
   std::string start() {

@@ -177,11 +177,10 @@ TEST(Link, AnotherLinkDampsWhenItIsKilled) {
 
 TEST(Link, DampsForAWhileAndEndsWhenGaitdIsGone) {
   Robot robot;
-  {
-    Daemon daemon;
-    ASSERT_EQ("", daemon.start());
-    ASSERT_TRUE(daemon.drive(&robot));
-  }
+  Daemon daemon;
+  ASSERT_EQ("", daemon.start());
+  ASSERT_TRUE(daemon.drive(&robot));
+  daemon.end();
   EXPECT_TRUE(Robot::wait([&] { return robot.damped(); }, 0.1));
   const int before = robot.heard;
   std::this_thread::sleep_for(200ms);
