@@ -20,7 +20,7 @@ using sdk::quaternion;
 using sdk::view;
 
 constexpr double kDriveError = 0.03;    // of the effort limit: friction and scale of drives
-constexpr double kEncoderError = 1e-4;  // rad, white from tick to tick
+constexpr double kEncoderError = 5e-4;  // rad, white: noise, and play of the drives
 constexpr double kForceError = 0.03;    // of the weight: the IMU, the masses, light pushes
 constexpr double kMomentError = 0.01;   // of the weight times the height of the CoM
 constexpr double kForcePrior = 10.0;    // of the weight: wrenches that nothing tells are small
@@ -54,10 +54,15 @@ FootWrenches::FootWrenches(const GaitdModel& model)
   const Eigen::Map<const Eigen::VectorXd> q(model_.nominal_position, model_.joint_count);
   standing.update(Vector3d::Zero(), Quaterniond::Identity(), Vector6d::Zero(), q,
                   Eigen::VectorXd::Zero(model_.joint_count));
+  in_leg_.assign(static_cast<std::size_t>(model_.joint_count), false);
+  for (const int joint : rows_) in_leg_[static_cast<std::size_t>(joint)] = true;
   mass_matrix_.topRows(kBaseSize) = standing.mass_matrix().topRightCorner(kBaseSize, q.size());
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     mass_matrix_.row(kBaseSize + static_cast<int>(i)) =
         standing.mass_matrix().row(kBaseSize + rows_[i]).tail(q.size());
+  }
+  for (int j = 0; j < model_.joint_count; ++j) {
+    if (!in_leg_[static_cast<std::size_t>(j)]) mass_matrix_.col(j).setZero();
   }
   for (Vector6d& wrench : wrench_) wrench.setZero();
 }
@@ -87,7 +92,9 @@ void FootWrenches::read_joints(const GaitdSensors& sensors, double dt) {
     rate_[j] = 0.0;
     if (!sdk::usable(joint) || !std::isfinite(joint.torque)) continue;
     const double limit = kFastest * model_.joints[j].velocity_limit;
-    if (begun_) rate_[j] = std::clamp((joint.position - q_[j]) / dt, -limit, limit);
+    if (begun_ && in_leg_[static_cast<std::size_t>(j)]) {
+      rate_[j] = std::clamp((joint.position - q_[j]) / dt, -limit, limit);
+    }
     q_[j] = joint.position;
     torque_[j] = joint.torque;
   }

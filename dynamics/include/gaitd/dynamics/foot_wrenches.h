@@ -33,6 +33,9 @@ namespace gaitd::dynamics {
 // Joints above the legs count as standing still: the play of a waist looks like a jolt of the
 // trunk, and how the trunk really moves against the pelvis is slow.
 //
+// Joints above the legs count as standing still: the play of a waist looks like a jolt of the
+// trunk, and how the trunk really moves against the pelvis is slow.
+//
 // A foot cannot pull: where that comes out, the other one carries all.
 class FootWrenches {
  public:
@@ -77,7 +80,8 @@ class FootWrenches {
 
   const GaitdModel model_;
   Kinematics kinematics_;
-  std::vector<int> rows_;  // joint of each row behind those of the base
+  std::vector<bool> in_leg_;  // by joint
+  std::vector<int> rows_;     // joint of each row behind those of the base
   std::vector<Subtree> subtrees_;
   Eigen::VectorXd q_, rate_, torque_;
   Eigen::MatrixXd mass_matrix_;  // rows of the residuals, columns of the joints, standing
