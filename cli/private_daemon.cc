@@ -67,6 +67,7 @@ std::optional<DaemonEnd> run_daemon(const DaemonRun& run, const Watch& watch, st
   std::vector<std::string> arguments{run.program, "--scenario", run.scenario, "--clock", "lockstep",
                                      "--socket",  socket,       "--log",      run.log};
   if (run.trust) arguments.emplace_back("--trust");
+  if (!run.robot.empty()) arguments.insert(arguments.end(), {"--robot", run.robot});
   for (const std::string& setting : run.settings) {
     arguments.push_back("--set");
     arguments.push_back(setting);

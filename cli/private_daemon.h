@@ -20,6 +20,7 @@ struct DaemonRun {
   std::filesystem::path output;       ///< takes its standard output and error
   std::vector<std::string> settings;  ///< KEY=VALUE
   bool trust = false;                 ///< of the libraries that the scenario names
+  std::string robot = {};             ///< in place of that of the scenario; may be empty
 };
 
 /// How it ended.

@@ -31,6 +31,7 @@ struct Arguments {
   std::vector<std::string> scenarios;
   std::vector<std::string> settings;
   std::string log;
+  std::string robot;
   bool trust = false;
   bool verbose = false;
 };
@@ -59,7 +60,8 @@ int run(const Context& context, const Arguments& arguments) {
         context, kUsage, "run",
         "--log " + arguments.log + ": one file for several scenarios; give a folder (ending in /)");
   }
-  const RunOptions options{gaitd_program(), arguments.settings, arguments.log, arguments.trust};
+  const RunOptions options{gaitd_program(), arguments.settings, arguments.log, arguments.trust,
+                           arguments.robot};
   std::vector<RunReport> reports;
   for (const std::string& scenario : arguments.scenarios) {
     reports.push_back(run_with_progress(scenario, options, scenario));
@@ -103,6 +105,13 @@ void add_run_command(CLI::App* app, Context* context) {
           ->required()
           ->type_name("NAME|FILE");
   context->values[scenario] = [](const auto&) { return daemon::Paths::detect().scenarios(); };
+  const auto* robot =
+      command
+          ->add_option(
+              "--robot", arguments->robot,
+              "In place of the robot of the scenarios: a name, or the path of a robot.yaml")
+          ->type_name("NAME|FILE");
+  context->values[robot] = [](const auto&) { return daemon::Paths::detect().robots(); };
   add_settings(command, context, &arguments->settings,
                "Any key of the configuration or the scenario, the value in YAML; may be repeated");
   const auto* backend =

@@ -195,8 +195,9 @@ RunReport run_scenario(const std::string& name, const RunOptions& options,
   std::error_code ignored;
   fs::remove(log, ignored);
 
-  DaemonRun run{options.gaitd,    report.file,  log, fs::path(log).replace_extension(".txt"),
-                options.settings, options.trust};
+  DaemonRun run{
+      options.gaitd,    report.file,   log,          fs::path(log).replace_extension(".txt"),
+      options.settings, options.trust, options.robot};
   Watch watch;
   if (progress) {
     watch = [&](const std::string& socket) {

@@ -20,6 +20,7 @@ struct RunOptions {
   std::vector<std::string> settings;  ///< KEY=VALUE, over those of the scenario
   std::filesystem::path log;  ///< where to write: a file, or a folder (ending in /); may be empty
   bool trust = false;         ///< load libraries that the scenario names by path
+  std::string robot = {};  ///< in place of that of the scenario: a name or a robot.yaml; or empty
 };
 
 /// Progress of the present scenario: simulated time and duration, s.

@@ -1,6 +1,6 @@
 # Debian packages by CPack: gaitd (programs, plugins, robots, service), gaitd-dev (headers and
-# libraries for plugins and whole-body controllers), gaitd-mujoco (the backend mujoco) and gaitd-ros2 (the
-# bridge to ROS 2).
+# libraries for plugins and whole-body controllers), gaitd-mujoco (the backend mujoco), gaitd-ros2 (the
+# bridge to ROS 2) and gaitd-unitree (the backend unitree_dds).
 configure_file(cmake/package/gaitd.pc.in gaitd.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gaitd.pc DESTINATION lib/pkgconfig COMPONENT dev)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/examples/plugin
@@ -31,6 +31,14 @@ if(TARGET gaitd-ros2)
           COMPONENT ros2_system EXCLUDE_FROM_ALL)
 endif()
 
+# ---- gaitd-unitree
+if(TARGET plugin_backend_unitree_dds)
+  install(FILES ${gaitd_etc}/systemd/gaitd-unitree.conf DESTINATION /usr/share/doc/gaitd-unitree/examples
+          RENAME unitree.conf COMPONENT unitree_system EXCLUDE_FROM_ALL)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/copyright DESTINATION /usr/share/doc/gaitd-unitree
+          COMPONENT unitree_system EXCLUDE_FROM_ALL)
+endif()
+
 # cpack packs what is built, it does not build the tests first.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY TRUE)
 set(CPACK_GENERATOR DEB)
@@ -47,6 +55,9 @@ endif()
 if(TARGET gaitd-ros2)
   list(APPEND CPACK_COMPONENTS_ALL ros2 ros2_system)
 endif()
+if(TARGET plugin_backend_unitree_dds)
+  list(APPEND CPACK_COMPONENTS_ALL unitree unitree_system)
+endif()
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_COMPONENT_GAITD_GROUP gaitd)
 set(CPACK_COMPONENT_SYSTEM_GROUP gaitd)
@@ -54,6 +65,8 @@ set(CPACK_COMPONENT_DEV_GROUP gaitd-dev)
 set(CPACK_COMPONENT_MUJOCO_GROUP gaitd-mujoco)
 set(CPACK_COMPONENT_ROS2_GROUP gaitd-ros2)
 set(CPACK_COMPONENT_ROS2_SYSTEM_GROUP gaitd-ros2)
+set(CPACK_COMPONENT_UNITREE_GROUP gaitd-unitree)
+set(CPACK_COMPONENT_UNITREE_SYSTEM_GROUP gaitd-unitree)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
@@ -82,4 +95,9 @@ set(CPACK_DEBIAN_GAITD-ROS2_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_GAITD-ROS2_PACKAGE_DEPENDS "gaitd (= ${PROJECT_VERSION}-1)")
 set(CPACK_DEBIAN_GAITD-ROS2_PACKAGE_CONTROL_EXTRA
     ${gaitd_scripts}/ros2/postinst ${gaitd_scripts}/ros2/prerm ${gaitd_scripts}/postrm)
+set(CPACK_DEBIAN_GAITD-UNITREE_PACKAGE_NAME gaitd-unitree)
+set(CPACK_DEBIAN_GAITD-UNITREE_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_GAITD-UNITREE_DESCRIPTION "Unitree's humanoids as a backend of gaitd, over CycloneDDS")
+set(CPACK_DEBIAN_GAITD-UNITREE_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_GAITD-UNITREE_PACKAGE_DEPENDS "gaitd (= ${PROJECT_VERSION}-1)")
 include(CPack)

@@ -76,7 +76,8 @@ class Frames {
       warn(format("the %s foot stands on the other side of the pelvis", name),
            "left is +y: feet and legs in robot.yaml may be exchanged");
     }
-    if (const double tilt = angle_to_up(foot.force_sensor); tilt > kUpright) {
+    const bool sensor = foot.force_sensor.body >= 0;
+    if (const double tilt = sensor ? angle_to_up(foot.force_sensor) : 0.0; tilt > kUpright) {
       warn(format("force sensor of the %s foot: its z axis is %.2f rad off the vertical", name,
                   tilt),
            "right only if it is mounted like that: standing, it must measure force upwards");

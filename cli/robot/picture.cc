@@ -95,7 +95,9 @@ void draw(const Guess& guess, const std::vector<Eigen::Isometry3d>& bodies, doub
     view->line(bodies[static_cast<std::size_t>(foot.body)].translation(), X.translation(), "#777",
                3);
     view->frame(X, 0.06 * size, side == GAITD_LEFT ? "left sole" : "right sole");
-    view->frame(pose(bodies, foot.force_sensor), 0.03 * size, "");
+    if (foot.force_sensor.body >= 0) {
+      view->frame(pose(bodies, foot.force_sensor), 0.03 * size, "");
+    }
   }
   view->frame(bodies[0], 0.1 * size, "pelvis");
   for (int i = 0; i < model.imu_count; ++i)

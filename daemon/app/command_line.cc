@@ -12,12 +12,13 @@ void add_options(CLI::App* app, Options* options, usage::ValueSources* values) {
                         "Show the version and exit");
   app->add_option("--config", options->config, "Configuration file (default: gaitd.yaml found)")
       ->type_name("FILE");
-  const auto* backend = app->add_option("--backend", options->backend,
-                                        "Simulation or robot: simbody, mujoco, socketcan, "
-                                        "or the path of a plugin")
-                            ->type_name("NAME|FILE");
+  const auto* backend =
+      app->add_option("--backend", options->backend,
+                      "Simulation or robot: simbody, mujoco, socketcan, unitree_dds, "
+                      "or the path of a plugin")
+          ->type_name("NAME|FILE");
   (*values)[backend] = [](const auto&) {
-    return std::vector<std::string>{"simbody", "mujoco", "socketcan"};
+    return std::vector<std::string>{"simbody", "mujoco", "socketcan", "unitree_dds"};
   };
   const auto* robot =
       app->add_option("--robot", options->robot, "Name of a robot or path of a robot.yaml")

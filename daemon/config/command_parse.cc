@@ -9,12 +9,14 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "daemon/config/leg_kinematics.h"
 #include "daemon/config/names.h"
 #include "daemon/config/yaml_reader.h"
 
 namespace gaitd::daemon {
 namespace {
 
+constexpr std::array<std::string_view, 2> kLengthUnits = {"m", "legs"};
 constexpr int kMaxSteps = 1000;
 constexpr std::int64_t kMaxSession = std::int64_t{1} << 53;  // whole as a double
 constexpr Bounds kDuration = {0.05, 20.0, "s"};
@@ -67,7 +69,7 @@ NodePtr expanded(std::string_view method, const NodePtr& params, bool plain,
   return params;
 }
 
-void read_walk(MapReader* map, walking::WalkCommand* walk) {
+void read_walk(MapReader* map, const GaitdModel* model, walking::WalkCommand* walk) {
   map->require({"steps"});
   walk->steps = static_cast<int>(map->integer("steps", 1, kMaxSteps).value_or(0));
   walk->length = map->number("length", {-2.0, 2.0, "m"}).value_or(0.0);
@@ -77,6 +79,11 @@ void read_walk(MapReader* map, walking::WalkCommand* walk) {
   walk->swing_duration = map->number("swing", kDuration).value_or(0.0);
   walk->transfer_duration = map->number("transfer", kDuration).value_or(0.0);
   walk->first_side = map->choice("first", kSideNames).value_or(GAITD_BOTH);
+  const bool in_legs = map->choice("unit", kLengthUnits).value_or(0) == 1;
+  const double unit = in_legs && model ? leg_length(*model) : 1.0;
+  walk->length *= unit;
+  walk->lateral *= unit;
+  walk->width *= unit;
 }
 
 // A scenario's velocity holds until its next command; a client's has to be renewed.
@@ -251,7 +258,7 @@ std::optional<Command> parse_command(std::string_view method, const NodePtr& par
     command.mode = map.choice("mode", kModeNames).value_or(GAITD_MODE_STAND);
   } else if (method == "walk") {
     command.type = CommandType::kWalk;
-    read_walk(&map, &command.walk);
+    read_walk(&map, model, &command.walk);
   } else if (method == "drive" || method == "velocity") {
     command.type = CommandType::kDrive;
     read_drive(&map, method == "velocity", &command.drive);

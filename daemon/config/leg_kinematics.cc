@@ -117,4 +117,13 @@ std::string compute_bend_signs(const GaitdModel& model, GaitdLeg* leg) {
   return "";
 }
 
+double leg_length(const GaitdModel& model) {
+  Kinematics kinematics(model);
+  pose(&kinematics, nominal_position(model));
+  const GaitdLeg& leg = model.legs[GAITD_LEFT];
+  const Vector3d knee = origin(kinematics, model, leg.knee);
+  return (origin(kinematics, model, leg.hip_pitch) - knee).norm() +
+         (origin(kinematics, model, leg.ankle_pitch) - knee).norm();
+}
+
 }  // namespace gaitd::daemon

@@ -268,6 +268,7 @@ std::optional<Robot> read_robot(const NodePtr& document, const std::string& file
   for (int i = 0; i < robot.model.joint_count; ++i) {
     robot.model.joints[i].rotor_inertia = rotor_inertia[i];
   }
+  geometry.read_drive_limits(root.map("drive_limits"));
   read_parameters(root.map("parameters"), SettingSource::kRobot, settings, &found);
   read_profiles(root.map("profiles"), profile, &geometry, settings, &robot);
   robot.can = root.node("can");

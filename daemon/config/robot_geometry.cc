@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
+#include <optional>
 
 #include "daemon/config/joint_names.h"
 #include "daemon/config/names.h"
@@ -21,6 +23,12 @@ constexpr int kMaxLegJoints = 12;
 void copy_name(const std::string& name, char* out) {
   std::strncpy(out, name.c_str(), GAITD_NAME_SIZE - 1);
   out[GAITD_NAME_SIZE - 1] = '\0';
+}
+
+std::string printed(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%g", value);
+  return text;
 }
 
 std::string limits_text(const GaitdJoint& joint) {
@@ -93,7 +101,7 @@ void RobotGeometry::read_feet(MapReader* root) {
 void RobotGeometry::read_foot(MapReader map, int side) {
   GaitdFoot* foot = &model_->feet[side];
   const std::string name(kSideNames[side]);
-  map.require({"link", "sole", "outline", "force_sensor"});
+  map.require({"link", "sole", "outline"});
   const dynamics::UrdfLink* foot_link = link(&map, "link");
   foot->body = foot_link ? foot_link->body : -1;
 
@@ -102,6 +110,12 @@ void RobotGeometry::read_foot(MapReader map, int side) {
   sole.finish();
   read_outline(&map, foot);
 
+  foot->force_sensor.body = -1;
+  foot->force_sensor.orientation[3] = 1.0;
+  if (!map.has("force_sensor")) {
+    map.finish();
+    return;
+  }
   MapReader sensor = map.map("force_sensor");
   sensor.require({"link"});
   const dynamics::UrdfLink* sensor_link = link(&sensor, "link");
@@ -262,6 +276,34 @@ void RobotGeometry::read_joint_values(MapReader map, const Bounds& bounds, doubl
     const std::string path = map.path_of(entry.key);
     const auto value = read_number(*entry.value, path, bounds, issues_);
     for (const int index : joints_like(entry, path)) values[index] = value.value_or(0.0);
+  }
+}
+
+// What a drive gives, where the URDF tells the limit of the joint. More than that is a mistake.
+void RobotGeometry::read_drive_limits(MapReader map) {
+  const GaitdModel urdf = *model_;
+  for (const Node::Entry& entry : map.entries()) {
+    const std::string path = map.path_of(entry.key);
+    MapReader limits(entry.value, path, issues_);
+    const auto effort = limits.number("effort", {1e-3, 1e6, "N m"});
+    const auto velocity = limits.number("velocity", {1e-3, 1e4, "rad/s"});
+    limits.finish();
+    for (const int index : joints_like(entry, path)) {
+      GaitdJoint& joint = model_->joints[index];
+      const auto take = [&](std::string_view key, const std::optional<double>& value, double most,
+                            double* limit) {
+        if (!value) return;
+        if (*value <= most) {
+          *limit = *value;
+        } else {
+          limits.fail(
+              key, "at most that of the URDF for " + std::string(joint.name) + ", " + printed(most),
+              printed(*value), "");
+        }
+      };
+      take("effort", effort, urdf.joints[index].effort_limit, &joint.effort_limit);
+      take("velocity", velocity, urdf.joints[index].velocity_limit, &joint.velocity_limit);
+    }
   }
 }
 

@@ -35,6 +35,9 @@ class RobotGeometry {
   // Values of joints by name or glob; later ones win.
   void read_joint_values(MapReader map, const Bounds& bounds, double* values);
 
+  // Lower limits of effort and velocity than those of the URDF, by name or glob; later ones win.
+  void read_drive_limits(MapReader map);
+
   // Joints that a name or glob stands for; reports when there are none.
   std::vector<int> joints_like(const Node::Entry& entry, std::string_view path);
 

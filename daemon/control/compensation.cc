@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "gaitd/sdk/sensors.h"
 #include "gaitd/sdk/views.h"
 
 namespace gaitd::daemon {
@@ -27,6 +28,9 @@ Compensation::Compensation(const GaitdModel& model, const Calibration& calibrati
     used_ = used_ || joint.zero != 0.0 || joint.stiffness > 0.0 || joint.torque_bias != 0.0 ||
             joint.coulomb > 0.0 || joint.viscous > 0.0;
   }
+  for (const GaitdFoot& foot : model.feet) {
+    feet_sensed_ = feet_sensed_ && sdk::has_force_sensor(foot);
+  }
   for (const FootCalibration& foot : calibration.feet) {
     used_ = used_ || foot.mass > 0.0 || foot.force != std::array<double, 3>{} ||
             foot.moment != std::array<double, 3>{};
@@ -40,10 +44,15 @@ double Compensation::bend(int joint, double torque) const {
   return std::clamp(torque / stiffness, -kLargestBend, kLargestBend);
 }
 
+// N m, of a joint that turns at `rate` (rad/s).
+double Compensation::friction(int joint, double rate) const {
+  const JointCalibration& own = calibration_.joints[joint];
+  return own.coulomb * std::tanh(rate / kTurnRate) + own.viscous * rate;
+}
+
 // N m, that do not arrive at a link that is to turn at `rate` (rad/s).
 double Compensation::lost(int joint, double rate) const {
-  const JointCalibration& own = calibration_.joints[joint];
-  return own.coulomb * std::tanh(rate / kTurnRate) + own.viscous * rate - own.torque_bias;
+  return friction(joint, rate) - calibration_.joints[joint].torque_bias;
 }
 
 void Compensation::joint(double gain, double dt, int index, GaitdJointSensor& sensor) {
@@ -54,6 +63,8 @@ void Compensation::joint(double gain, double dt, int index, GaitdJointSensor& se
   const double now = bend(index, torque_[index]);
   sensor.position -= own.zero + now;
   if (known_) sensor.velocity -= (now - before) / dt;
+  // Where the load on the feet comes from the torques of the joints, those are to arrive there.
+  if (!feet_sensed_) sensor.torque -= friction(index, sensor.velocity);
 }
 
 void Compensation::foot(int side, const GaitdRobotState& robot,

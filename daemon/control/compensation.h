@@ -29,12 +29,14 @@ class Compensation {
 
  private:
   double bend(int joint, double torque) const;
+  double friction(int joint, double rate) const;
   double lost(int joint, double rate) const;
   void joint(double gain, double dt, int index, GaitdJointSensor& sensor);
   void foot(int side, const GaitdRobotState& robot, GaitdFootForceSensor& sensor) const;
 
   const GaitdModel model_;
   const Calibration calibration_;
+  bool feet_sensed_ = true;                        // the feet have force sensors
   bool used_ = false;                              // something differs from the model
   bool known_ = false;                             // the filters have begun
   std::array<double, GAITD_MAX_JOINTS> torque_{};  // N m, filtered

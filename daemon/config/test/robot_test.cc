@@ -164,6 +164,90 @@ TEST_F(Atlas, LeavesTheDrivesToTheDefaultsInSimulation) {
   EXPECT_GT(robot->impedance.heel_strike.damping[ankle], robot->impedance.support.damping[ankle]);
 }
 
+TEST(UnitreeG1, HasItsPublishedFigures) {
+  Settings settings;
+  Issues issues;
+  const auto robot = load_robot(Paths::detect().robot("g1").value_or("").string(),
+                                Profile::kSimulation, &settings, &issues);
+  ASSERT_TRUE(robot) << issues.error_text();
+  EXPECT_EQ(issues.warning_text(), "");
+  const GaitdModel& model = robot->model;
+  EXPECT_EQ(model.joint_count, 29);
+  EXPECT_EQ(model.body_count, 30);
+  EXPECT_NEAR(model.total_mass, 33.341142, 1e-6);
+  EXPECT_STREQ(model.bodies[model.chest_body].name, "torso_link");
+  for (const std::string& error : dynamics::check_model(model)) ADD_FAILURE() << error;
+
+  const PostureFigures figures = compute_posture_figures(model);
+  const auto& left = figures.sole_position[GAITD_LEFT];
+  EXPECT_NEAR(figures.com[0], left[0], 0.001);
+  EXPECT_NEAR(figures.com[1], 0.0, 0.001);
+  EXPECT_NEAR(model.nominal_foot_separation, 0.129, 0.001);
+  for (const GaitdLeg& leg : model.legs) {
+    EXPECT_EQ(leg.joint_count, 6);
+    EXPECT_EQ(leg.knee_bend_sign, 1.0);
+    EXPECT_EQ(model.joints[leg.knee].position_max, 2.8798);
+  }
+  ASSERT_EQ(model.imu_count, 2);
+  EXPECT_STREQ(model.bodies[model.imus[0].body].name, "pelvis");
+  EXPECT_STREQ(model.bodies[model.imus[1].body].name, "torso_link");
+
+  // The drives: what was tested, where the URDF allows more.
+  const GaitdJoint& knee = model.joints[joint_index(model, "left_knee_joint")];
+  EXPECT_EQ(knee.effort_limit, 111.0);
+  EXPECT_EQ(knee.velocity_limit, 14.5);
+  EXPECT_EQ(knee.rotor_inertia, 0.025101925);
+  const GaitdJoint& ankle = model.joints[joint_index(model, "right_ankle_pitch_joint")];
+  EXPECT_EQ(ankle.effort_limit, 35.0);
+  EXPECT_EQ(ankle.rotor_inertia, 0.00721945);
+  for (int i = 0; i < model.joint_count; ++i) {
+    EXPECT_GT(model.joints[i].rotor_inertia, 0.0) << model.joints[i].name;
+  }
+}
+
+// Of the maker's description with all its links, by a computation of its own: straight legs, and
+// the posture of the maker's examples.
+TEST(UnitreeG1, StandsAsTheUnmergedRobotDoes) {
+  Settings settings;
+  Issues issues;
+  auto robot = load_robot(Paths::detect().robot("g1").value_or("").string(), Profile::kSimulation,
+                          &settings, &issues);
+  ASSERT_TRUE(robot) << issues.error_text();
+  GaitdModel& model = robot->model;
+  std::fill(std::begin(model.nominal_position), std::end(model.nominal_position), 0.0);
+  PostureFigures figures = compute_posture_figures(model);
+  EXPECT_NEAR(figures.pelvis_height(), 0.791864, 1e-6);
+  EXPECT_NEAR(figures.com_height(), 0.7032, 1e-4);
+  EXPECT_NEAR(figures.com[0] - figures.sole_position[GAITD_LEFT][0], 0.0203 - 0.035, 1e-4);
+
+  for (const char* side : {"left_", "right_"}) {
+    const double mirror = side[0] == 'l' ? 1.0 : -1.0;
+    const std::pair<const char*, double> joints[] = {
+        {"hip_pitch", -0.1},          {"knee", 0.3},   {"ankle_pitch", -0.2},
+        {"shoulder_pitch", 0.3},      {"elbow", 0.97}, {"shoulder_roll", mirror * 0.25},
+        {"wrist_roll", mirror * 0.15}};
+    for (const auto& [name, position] : joints) {
+      model.nominal_position[joint_index(model, std::string(side) + name + "_joint")] = position;
+    }
+  }
+  figures = compute_posture_figures(model);
+  EXPECT_NEAR(figures.pelvis_height(), 0.784202, 1e-6);
+  EXPECT_NEAR(figures.com_height(), 0.6888, 1e-4);
+  EXPECT_NEAR(figures.foot_separation(), 0.237013, 1e-6);
+  EXPECT_NEAR(figures.com[0] - figures.sole_position[GAITD_LEFT][0], 0.0332 - 0.035, 1e-4);
+  for (const double tilt : figures.sole_tilt) EXPECT_LT(tilt, 1e-9);
+}
+
+TEST(Robot, TakesLimitsOfDrivesBelowThoseOfTheUrdf) {
+  const std::string inertia = "rotor_inertia: {\"*\": 0.0}";
+  EXPECT_EQ(errors_with(inertia, inertia + "\ndrive_limits: {\"?_leg_kny\": {effort: 300}}"), "");
+  EXPECT_ERROR(inertia, inertia + "\ndrive_limits: {l_leg_kny: {effort: 891, velocity: 5}}",
+               "drive_limits.l_leg_kny.effort: expected at most that of the URDF for l_leg_kny, "
+               "890, got 891");
+  EXPECT_ERROR(inertia, inertia + "\ndrive_limits: {l_knee: {effort: 5}}",
+               "drive_limits.l_knee: expected a joint of the URDF or a glob");
+}
+
 TEST(Robot, NamesTheUnknownLinkAndJoint) {
   EXPECT_ERROR("{name: pelvis_imu, link: pelvis", "{name: pelvis_imu, link: pelviss",
                "imus[0].link: expected a link of the URDF, got pelviss; did you mean 'pelvis'?");

@@ -58,6 +58,7 @@ InvariantEkf::InvariantEkf(const GaitdModel& model)
     double back = 0.0;
     for (int i = 0; i < foot.point_count; ++i) back = std::min(back, foot.points[i][0]);
     feet_[side].points[kToe] = view(foot.toe_point);
+    if (!sdk::has_force_sensor(foot) && !ground_) ground_.emplace(model_);
     feet_[side].points[kHeel] = {back, foot.toe_point[1], 0.0};
   }
 }
@@ -68,6 +69,7 @@ void InvariantEkf::reset() {
   joints_seen_ = false;
   twist_begun_ = false;
   imu_ = 0;
+  if (ground_) ground_->reset();
   filter_.reset();
   rate_.setZero();
   specific_force_.setZero();
@@ -185,9 +187,12 @@ void InvariantEkf::read_forces(const GaitdStateEstimatorInput& in, GaitdRobotSta
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     Foot& f = feet_[side];
     GaitdFootState& state = out.feet[side];
-    const sdk::Vector6d wrench = sdk::sole_wrench(model_.feet[side], in.sensors->feet[side]);
+    const bool sensed = sdk::has_force_sensor(model_.feet[side]);
+    const sdk::Vector6d wrench = sensed
+                                     ? sdk::sole_wrench(model_.feet[side], in.sensors->feet[side])
+                                     : ground_->wrench(side);
     view(state.wrench) = wrench;
-    f.normal_force += share * (std::max(0.0, wrench[5]) - f.normal_force);
+    f.normal_force += (sensed ? share : 1.0) * (std::max(0.0, wrench[5]) - f.normal_force);
     const P threshold = f.contact == GAITD_CONTACT_NONE ? P::kContactOn : P::kContactOff;
     f.contact = f.normal_force > p_[threshold] * full ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
     state.contact = f.contact;
@@ -198,6 +203,16 @@ void InvariantEkf::read_forces(const GaitdStateEstimatorInput& in, GaitdRobotSta
       state.cop[1] = wrench[0] / wrench[5];
     }
   }
+}
+
+void InvariantEkf::observe_ground(const GaitdStateEstimatorInput& in) {
+  if (!ground_) return;
+  const dynamics::FootWrenches::Motion motion = {
+      .imu = imu_,
+      .orientation = filter_.orientation,
+      .rate = rate_ + place_.rate - filter_.gyro_bias,
+      .specific_force = specific_force_ - filter_.accelerometer_bias};
+  ground_->update(motion, p_[P::kForceFilter], in.time.period, *in.sensors);
 }
 
 // What the operator says of the heading and the place, and what gravity says of the tilt.
@@ -356,7 +371,7 @@ void InvariantEkf::observe_balance(const GaitdStateEstimatorInput& in,
   double load = 0.0;
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), loaded = Eigen::Vector3d::Zero();
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    if (!sdk::usable(in.sensors->feet[side])) return;
+    if (sdk::has_force_sensor(model_.feet[side]) && !sdk::usable(in.sensors->feet[side])) return;
     const GaitdFootState& foot = robot.feet[side];
     if (foot.cop_valid == 0) continue;
     load += foot.wrench[5];
@@ -434,13 +449,14 @@ GaitdStatus InvariantEkf::process(const GaitdStateEstimatorInput& in, GaitdRobot
     out.valid = 0;  // nothing to begin with
     return GAITD_OK;
   }
-  read_forces(in, out);
   if (!initialised_) {
     initialise(in, out);
     time_since_start_ = 0.0;
   } else {
     predict(in, out);
+    observe_ground(in);
   }
+  read_forces(in, out);
   update_trust(in);
   correct(in, out);
   if (time_since_start_ >= kJolt) observe_balance(in, out);

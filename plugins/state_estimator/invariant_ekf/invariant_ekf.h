@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
+#include "gaitd/dynamics/foot_wrenches.h"
 #include "gaitd/dynamics/kinematics.h"
 #include "gaitd/sdk/imu_place.h"
 #include "gaitd/sdk/layer.h"
@@ -112,6 +114,7 @@ class InvariantEkf {
 
   bool read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void read_forces(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
+  void observe_ground(const GaitdStateEstimatorInput& in);
   void initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
   void set_covariance(const Eigen::Vector3d& centre, bool levelled);
   void choose_imu(int imu, const GaitdRobotState& joints);
@@ -133,9 +136,10 @@ class InvariantEkf {
   double weight_;  // N
   sdk::Parameters<P> p_{kParameters};
   dynamics::Kinematics kinematics_;
-  double time_unsupported_ = 0.0;  // s, for which no foot is trusted
-  bool hangs_ = false;             // on a hoist
-  RightInvariantFilter filter_;    // axes of the pelvis, origin of the IMU in use
+  double time_unsupported_ = 0.0;                 // s, for which no foot is trusted
+  bool hangs_ = false;                            // on a hoist
+  std::optional<dynamics::FootWrenches> ground_;  // for feet without force sensors
+  RightInvariantFilter filter_;                   // axes of the pelvis, origin of the IMU in use
   int imu_ = 0;
   sdk::ImuPlace place_;  // of that IMU
 

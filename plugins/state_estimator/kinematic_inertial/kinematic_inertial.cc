@@ -53,6 +53,9 @@ KinematicInertial::KinematicInertial(const GaitdModel& model)
     for (int i = 0; i < leg.joint_count; ++i) late_joint_[leg.joints[i]] = true;
   }
   sdk::mark_joints_to_imus(model_, late_joint_);
+  for (const GaitdFoot& foot : model_.feet) {
+    if (!sdk::has_force_sensor(foot) && !ground_) ground_.emplace(model_);
+  }
 }
 
 void KinematicInertial::reset() {
@@ -70,6 +73,7 @@ void KinematicInertial::reset() {
   about_change_.setZero();
   about_slow_.setZero();
   about_imu_ = -1;
+  if (ground_) ground_->reset();
   specific_force_.setZero();
   last_cop_.setZero();
   joints_seen_ = false;
@@ -266,11 +270,12 @@ void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobot
     const GaitdFootForceSensor& sensor = in.sensors->feet[side];
     GaitdFootState& state = out.feet[side];
     Foot& f = feet_[side];
-    const sdk::Vector6d wrench = sdk::sole_wrench(foot, sensor);
+    const bool sensed = sdk::has_force_sensor(foot);
+    const sdk::Vector6d wrench = sensed ? sdk::sole_wrench(foot, sensor) : ground_->wrench(side);
     view(state.wrench) = wrench;
     const Eigen::Vector3d moment = wrench.head<3>();
     const Eigen::Vector3d force = wrench.tail<3>();
-    f.normal_force += blend * (std::max(0.0, force.z()) - f.normal_force);
+    f.normal_force += (sensed ? blend : 1.0) * (std::max(0.0, force.z()) - f.normal_force);
     state.normal_force = f.normal_force;
     const double threshold =
         p_[f.contact == GAITD_CONTACT_NONE ? P::kContactOn : P::kContactOff] * full;
@@ -299,7 +304,7 @@ void KinematicInertial::observe_bias(const GaitdStateEstimatorInput& in,
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), cop = Eigen::Vector3d::Zero();
   double total = 0.0;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    if (!usable(in.sensors->feet[side])) return;
+    if (sdk::has_force_sensor(model_.feet[side]) && !usable(in.sensors->feet[side])) return;
     const GaitdFootState& foot = robot.feet[side];
     if (foot.cop_valid == 0) continue;
     force += sole_orientation(side) * view(foot.wrench).tail<3>();
@@ -516,6 +521,10 @@ GaitdStatus KinematicInertial::process(const GaitdStateEstimatorInput& in, Gaitd
   }
   update_attitude(in, out, dt);
   update_kinematics(out);
+  if (ground_ && about_imu_ >= 0) {
+    ground_->update({about_imu_, orientation_, rate_ + imu_rate_, specific_force_},
+                    p_[P::kForceFilter], dt, *in.sensors);
+  }
   read_feet(in, out);
   time_quiet_ += dt;
   observe_bias(in, out);

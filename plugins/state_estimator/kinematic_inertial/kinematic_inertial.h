@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
+#include "gaitd/dynamics/foot_wrenches.h"
 #include "gaitd/dynamics/kinematics.h"
 #include "gaitd/sdk/layer.h"
 #include "gaitd/sdk/sensors.h"
@@ -132,6 +134,7 @@ class KinematicInertial {
   double weight_;  // N
   sdk::Parameters<P> p_{kParameters};
   dynamics::Kinematics kinematics_;
+  std::optional<dynamics::FootWrenches> ground_;  // for feet without force sensors
 
   bool initialised_ = false;  // gravity has shown where up is
   sdk::Gravity gravity_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gaitd/sdk/sensors.h"
 #include "gaitd/sdk/views.h"
 
 namespace gaitd::plugins {
@@ -96,6 +97,8 @@ void FootFeedback::update(double dt, double gain, double limit, const dynamics::
                           const GaitdRobotState& robot, const GaitdObjectives& objectives,
                           const GaitdWbcInfo& wanted, GaitdJointCommands& commands) {
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    // Without a sensor the load comes from the torques: what friction takes of them is in none.
+    if (!sdk::has_force_sensor(model_.feet[side])) continue;
     integrate(side, dt, gain, robot.feet[side], objectives, wanted);
     add(side, limit, dynamics, robot.feet[side], commands);
   }

@@ -116,7 +116,7 @@ FootWrench FootSensors::own_wrench(int side, Bodies bodies) {
   foot.momentum = momentum;
 
   const GaitdFrame& frame = model_.feet[side].force_sensor;
-  const BodyMotion& sensor = bodies[frame.body];
+  const BodyMotion& sensor = bodies[sensor_body(model_.feet[side])];
   const Eigen::Matrix3d R_SW = (sensor.R_WB * rotation(frame)).transpose();
   const Eigen::Vector3d arm = com - sensor.point(Eigen::Vector3d(frame.origin));
   return {R_SW * force, R_SW * (arm.cross(force) - spin)};

@@ -91,7 +91,9 @@ std::vector<std::string> check_simulated_model(const GaitdModel& model) {
     const std::string where = side == GAITD_LEFT ? "model left foot" : "model right foot";
     check_outline(where, foot, &errors);
     check_frame(model, where + " sole", foot.sole, &errors);
-    check_frame(model, where + " force sensor", foot.force_sensor, &errors);
+    if (foot.force_sensor.body >= 0) {
+      check_frame(model, where + " force sensor", foot.force_sensor, &errors);
+    }
     if (foot.body < 0 || foot.body >= model.body_count) {
       errors.push_back(where + ": expected a body of the robot, got index " +
                        std::to_string(foot.body));

@@ -61,7 +61,7 @@ void Plant::place(const State& state) {
   physics_->place(state);
   if (hoist_) hoist_->reset(physics_->bodies());
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    const int body = model_.feet[side].force_sensor.body;
+    const int body = sensor_body(model_.feet[side]);
     wrench_[side] = sum_foot_wrench(model_, side, physics_->bodies()[body], physics_->touches());
   }
   truth_.update(physics_->touches());
@@ -91,13 +91,13 @@ bool Plant::step() {
       step_, {state.q, joint_rate_, sensors_.measured_position(), sensors_.measured_velocity()});
   update_forces();
   // The forces act where the feet were before the step.
-  BodyMotion sensor_body[GAITD_MAX_FEET];
+  BodyMotion moved[GAITD_MAX_FEET];
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    sensor_body[side] = physics_->bodies()[model_.feet[side].force_sensor.body];
+    moved[side] = physics_->bodies()[sensor_body(model_.feet[side])];
   }
   if (!physics_->step(forces_, drives_.get())) return false;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    wrench_[side] = sum_foot_wrench(model_, side, sensor_body[side], physics_->touches());
+    wrench_[side] = sum_foot_wrench(model_, side, moved[side], physics_->touches());
   }
   truth_.update(physics_->touches());
   sensors_.sample(state, physics_->bodies(), drives_->readings(), wrench_);

@@ -16,6 +16,10 @@ constexpr uint64_t kImuFrames = kFootFrames + GAITD_MAX_FEET;
 Sensors::Sensors(const GaitdModel& model, const SensorFigures& figures, double time_step,
                  int steps_per_period, uint64_t seed)
     : joint_count_(model.joint_count),
+      foot_count_(model.feet[GAITD_LEFT].force_sensor.body >= 0 &&
+                          model.feet[GAITD_RIGHT].force_sensor.body >= 0
+                      ? GAITD_MAX_FEET
+                      : 0),
       steps_per_period_(steps_per_period),
       joints_(model, figures, time_step, seed),
       feet_(model, figures, time_step, seed),
@@ -84,7 +88,7 @@ void Sensors::read(int64_t tick, double time, GaitdSensors* sensors) const {
   sensors->size = sizeof(GaitdSensors);
   sensors->joint_count = joint_count_;
   sensors->imu_count = static_cast<int32_t>(imus_.size());
-  sensors->foot_count = GAITD_MAX_FEET;
+  sensors->foot_count = foot_count_;
   sensors->tick = tick;
   sensors->time = time;
   const JointReadings& joints = joint_channel_.line.shown();
@@ -100,10 +104,11 @@ void Sensors::read(int64_t tick, double time, GaitdSensors* sensors) const {
     Eigen::Map<Eigen::Vector3d>(imu.angular_rate) = reading.angular_rate;
     Eigen::Map<Eigen::Vector3d>(imu.specific_force) = reading.specific_force;
   }
-  for (size_t side = 0; side < GAITD_MAX_FEET; ++side) {
+  for (int side = 0; side < sensors->foot_count; ++side) {
     GaitdFootForceSensor& foot = sensors->feet[side];
-    const FootWrench& reading = foot_channels_[side].line.shown();
-    foot.info = foot_channels_[side].transport.info(tick, time);
+    const auto& channel = foot_channels_[static_cast<size_t>(side)];
+    const FootWrench& reading = channel.line.shown();
+    foot.info = channel.transport.info(tick, time);
     Eigen::Map<Eigen::Vector3d>(foot.force) = reading.force;
     Eigen::Map<Eigen::Vector3d>(foot.moment) = reading.moment;
   }

@@ -88,7 +88,7 @@ typedef struct GaitdFoot {
   GaitdFrame sole;                         /* sole frame in the body of the foot */
   double points[GAITD_MAX_FOOT_POINTS][2]; /* m, sole frame, physical outline, counter-clockwise */
   double toe_point[3];                     /* m, sole frame: middle of the front edge */
-  GaitdFrame force_sensor;
+  GaitdFrame force_sensor; /* body -1: the foot has none */
   double reserve[4]; /* 0 */
 } GaitdFoot;
 
@@ -168,7 +168,7 @@ typedef struct GaitdSensors {
   uint32_t size;
   int32_t joint_count;
   int32_t imu_count;
-  int32_t foot_count;
+  int32_t foot_count; /* 0: the feet have no force sensors */
   int64_t tick;
   double time; /* s, tick clock */
   GaitdJointSensor joints[GAITD_MAX_JOINTS];

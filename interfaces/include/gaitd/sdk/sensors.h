@@ -21,6 +21,8 @@ inline bool usable(const GaitdFootForceSensor& foot) {
   return foot.info.valid != 0 && view(foot.force).allFinite() && view(foot.moment).allFinite();
 }
 
+inline bool has_force_sensor(const GaitdFoot& foot) { return foot.force_sensor.body >= 0; }
+
 // The first IMU of the model that is usable, or -1.
 inline int first_usable_imu(const GaitdModel& model, const GaitdSensors& sensors) {
   for (int i = 0; i < sensors.imu_count && i < model.imu_count; ++i) {
@@ -49,7 +51,7 @@ inline constexpr double kLongestFlight = 0.5;
 
 /// Does the specific force of an IMU (m/s^2) show where up is? A robot that falls, or is just being
 /// set down, shows something else: it has to be that of gravity, and the feet have to carry the
-/// robot, or it must have lasted, as on a hoist.
+/// robot, or it must have lasted, as on a hoist. Feet without sensors are taken to carry it.
 class Gravity {
  public:
   void reset() { lasted_ = 0.0; }
@@ -58,8 +60,8 @@ class Gravity {
              const Eigen::Vector3d& specific_force, double period) {
     const double error = specific_force.norm() - model.gravity;
     lasted_ = std::abs(error) < kShare * model.gravity ? lasted_ + period : 0.0;
-    double load = 0.0;
-    for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    double load = sensors.foot_count > 0 ? 0.0 : model.total_mass * model.gravity;
+    for (int side = 0; side < sensors.foot_count; ++side) {
       const GaitdFootForceSensor& foot = sensors.feet[side];
       if (usable(foot)) load += view(foot.force).norm();
     }

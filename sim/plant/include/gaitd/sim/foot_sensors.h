@@ -26,6 +26,11 @@ struct FootWrench {
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // N m
 };
 
+// Body that carries the sensor; where there is none, the foot itself.
+inline int sensor_body(const GaitdFoot& foot) {
+  return foot.force_sensor.body >= 0 ? foot.force_sensor.body : foot.body;
+}
+
 // Sums the forces of `touches` on the foot `side`; `sensor` is the motion of the body that carries
 // the sensor, in the state they act in.
 FootWrench sum_foot_wrench(const GaitdModel& model, int side, const BodyMotion& sensor,

@@ -63,6 +63,7 @@ class Sensors {
                const FootWrench (&wrench)[GAITD_MAX_FEET]);
 
   int joint_count_;
+  int foot_count_;
   int steps_per_period_;
   JointSensors joints_;
   FootSensors feet_;
