@@ -10,11 +10,7 @@
 #include "daemon/config/issues.h"
 #include "daemon/config/settings.h"
 #include "gaitd/abi/types.h"
-
-namespace gaitd::dynamics {
-struct UrdfOptions;
-struct UrdfResult;
-}  // namespace gaitd::dynamics
+#include "gaitd/dynamics/urdf.h"
 
 namespace gaitd::daemon {
 
