@@ -15,6 +15,7 @@
 namespace gaitd::cli::g1 {
 namespace {
 
+constexpr uint64_t kSeed = 0x9E3779B97F4A7C15u;  // of the noise
 constexpr double kServe = 0.05;     // s that a lock step looks for an answer before it looks around
 constexpr double kRepeat = 0.02;    // s until a state that nobody answered is sent again
 constexpr double kCatchUp = 0.02;   // s that a late machine makes up for; more is left out
@@ -33,7 +34,7 @@ FakeG1::FakeG1(const GaitdModel& model, std::unique_ptr<sim::Plant> plant, Optio
       options_(std::move(options)),
       node_(options_.domain, options_.interface),
       pending_(options_.faults),
-      random_(0x9E3779B97F4A7C15u),
+      random_(kSeed),
       machine_(options_.machine) {
   using namespace unitree;  // NOLINT(google-build-using-namespace): of this function
   for (int i = 0; i < model_.joint_count; ++i) wire_[i] = wire_index(model_.joints[i].name);
@@ -167,6 +168,7 @@ void FakeG1::advance() {
   }
   if (hung_ && driven) {
     hung_ = false;
+    random_ = kSeed;  // however long the driver took to come
     event("driven");
   }
   if (!hung_) {

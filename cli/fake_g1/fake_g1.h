@@ -95,6 +95,7 @@ class FakeG1 {
 
   uint64_t cycle_ = 1;  // of the state that is shown
   uint64_t filled_cycle_ = 0;
+  GaitdSensors sensors_{};   // of that cycle
   int64_t moving_ = 0;       // cycles since it was first driven
   int64_t heard_cycle_ = 0;  // of the last accepted command
   bool commanded_ = false, hung_ = true, user_ = false, reacting_ = false, diverged_ = false;

@@ -102,23 +102,22 @@ void FakeG1::send_feet(const GaitdSensors& sensors) {
 
 void FakeG1::send_state() {
   if (silent_) return;
-  GaitdSensors sensors{};
-  plant_->read(&sensors);
-  send_feet(sensors);
+  const bool again = options_.lockstep && filled_cycle_ == cycle_;  // noise and all
+  if (!again) plant_->read(&sensors_);
+  send_feet(sensors_);
   for (int i = 0; i < model_.imu_count && !torso_silent_; ++i) {
     if (model_.imus[i].body == 0) continue;
     unitree::ImuState message;
     std::memset(&message, 0, sizeof(message));
     const sim::BodyMotion body = plant_->physics().bodies()[model_.imus[i].body];
-    fill_imu(sensors.imus[i],
+    fill_imu(sensors_.imus[i],
              Eigen::Quaterniond(body.R_WB) * sdk::quaternion(model_.imus[i].orientation),
              options_.force_bias, &message);
     dds_write(torso_, &message);
   }
   const auto tick = static_cast<uint32_t>(std::floor(1000 * now() + 1e-6)) - tick_shift_;
-  const bool again = options_.lockstep && filled_cycle_ == cycle_;  // noise and all
   if (!stuck_ && !again) {
-    fill(sensors);
+    fill(sensors_);
     filled_cycle_ = cycle_;
     stuck_tick_ = tick;
   }

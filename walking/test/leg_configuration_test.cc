@@ -27,7 +27,10 @@ class LegsOfAWalk : public SyntheticWalk {
   explicit LegsOfAWalk(int mode) {
     EXPECT_FALSE(machine.set_mode(mode).refused());
     tick();
-    for (int side : {GAITD_LEFT, GAITD_RIGHT}) legs[side].reset(knee[side]);
+    for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
+      legs[side].set_leg(gaitd::testing::atlas(), side, 0.08);
+      legs[side].reset(knee[side]);
+    }
     on_update = [this] { update(); };
   }
   void update() {

@@ -87,7 +87,7 @@ TEST(Pipeline, AWalkThatAFaultHasEndedIsOverAfterTheReset) {
   ASSERT_TRUE(b.execute(CommandType::kArm).accepted);
   b.run_for(5.0);
   ASSERT_TRUE(b.pipeline->execute(drive_command(7, 0.3, false)).accepted);
-  b.run_for(0.4);
+  b.run_for(0.05);
   const TickData& d = b.pipeline->data();
   ASSERT_NE(d.gait.phase, GAITD_PHASE_STAND);
   ASSERT_TRUE(d.drive.active);
