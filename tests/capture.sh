@@ -6,7 +6,7 @@ source "$(dirname "$0")/common.sh"
 fall() {
   local name=$1
   shift
-  gaitctl run push-bent-forward --set 'disturbances.0.force=[2900, 0, 0]' --log "$scratch/$name.mcap" \
+  gaitctl run push-bent-sideways --set 'disturbances.0.force=[0, 1500, 0]' --log "$scratch/$name.mcap" \
     "$@" >"$scratch/$name.verdict" 2>&1 && fail "the robot recovers: $(cat "$scratch/$name.verdict")"
   gaitctl log info "$scratch/$name.mcap" | grep ' fault  *{' | head -1 >"$scratch/$name.event"
   time=$(awk '{ print $1 }' "$scratch/$name.event")

@@ -20,8 +20,9 @@ constexpr double kLikeAtlas = 0.25;     // of the scale
 
 struct Scaled {
   const char* name;
-  double value;     // default
-  double exponent;  // of the scale: 1 for lengths, 0.5 for speeds and times
+  double value;        // default
+  double exponent;     // of the scale: 1 for lengths, 0.5 for speeds and times
+  double least = 0.0;  // that the parameter takes
 };
 
 constexpr Scaled kScaled[] = {
@@ -29,7 +30,7 @@ constexpr Scaled kScaled[] = {
     {"gait.max_foot_separation", 0.75, 1.0}, {"gait.max_step_forward", 1.0, 1.0},
     {"gait.max_step_backward", 0.6, 1.0},    {"gait.max_foot_travel", 1.85, 1.0},
     {"gait.max_step_height", 0.45, 1.0},     {"gait.return_limit", 0.15, 1.0},
-    {"gait.recovery_swing", 0.45, 0.5},      {"gait.recovery_transfer", 0.06, 0.5},
+    {"gait.recovery_swing", 0.45, 0.5, 0.2}, {"gait.recovery_transfer", 0.06, 0.5, 0.05},
     {"swing.touchdown_velocity", 0.3, 0.5},  {"swing.late_velocity", 0.3, 0.5},
     {"swing.edge_height", 0.12, 1.0},        {"icp_planner.exit_step_length", 0.2, 1.0},
     {"icp_planner.margin", 0.015, 1.0},      {"icp_planner.fit_limit", 0.08, 1.0},
@@ -67,8 +68,8 @@ std::vector<std::pair<std::string, double>> scaled_parameters(const Proportions&
   std::vector<std::pair<std::string, double>> parameters;
   if (std::abs(proportions.scale - 1.0) < kLikeAtlas) return parameters;
   for (const Scaled& scaled : kScaled) {
-    parameters.emplace_back(scaled.name,
-                            rounded(scaled.value * std::pow(proportions.scale, scaled.exponent)));
+    const double value = scaled.value * std::pow(proportions.scale, scaled.exponent);
+    parameters.emplace_back(scaled.name, std::max(scaled.least, rounded(value)));
   }
   return parameters;
 }

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMaxShownEvents = 20;
-constexpr std::size_t kMaxShownText = 48;
+constexpr std::size_t kMaxShownText = 100;
 
 std::string dump(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
