@@ -28,7 +28,8 @@ PostureFigures compute_posture_figures(const GaitdModel& model);
 // the foot keep their directions. Returns "" or why the three joints do not work as a leg.
 std::string compute_bend_signs(const GaitdModel& model, GaitdLeg* leg);
 
-// m, thigh and shank of the left leg: from hip pitch to knee to ankle pitch, in the nominal posture.
+// m, thigh and shank of the left leg: from hip pitch to knee to ankle pitch, in the nominal
+// posture.
 double leg_length(const GaitdModel& model);
 
 }  // namespace gaitd::daemon

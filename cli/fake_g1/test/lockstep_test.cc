@@ -104,7 +104,8 @@ TEST(FakeG1, GivesTheSameBitsForTheSameCommandsInLockstep) {
   const std::vector<double> once = sway(domain), again = sway(domain);
   ASSERT_EQ(size_t{kCycles} * (3 * kMotors + 6), once.size());
   ASSERT_EQ(once.size(), again.size());
-  // Until the first command has come through, it hangs for as many cycles as the link takes to begin.
+  // Until the first command has come through, it hangs for as many cycles as the link takes to
+  // begin.
   const auto driven = 8 * (3 * kMotors + 6);
   const auto differ =
       std::mismatch(once.begin() + driven, once.end(), again.begin() + driven).first;

@@ -88,8 +88,8 @@ typedef struct GaitdFoot {
   GaitdFrame sole;                         /* sole frame in the body of the foot */
   double points[GAITD_MAX_FOOT_POINTS][2]; /* m, sole frame, physical outline, counter-clockwise */
   double toe_point[3];                     /* m, sole frame: middle of the front edge */
-  GaitdFrame force_sensor; /* body -1: the foot has none */
-  double reserve[4]; /* 0 */
+  GaitdFrame force_sensor;                 /* body -1: the foot has none */
+  double reserve[4];                       /* 0 */
 } GaitdFoot;
 
 /* Joint indices; -1 where the robot has no such joint. `bend` is +1 when a positive knee position
