@@ -17,27 +17,28 @@ constexpr double kLandingShare = 0.6;
 // 0.5 and 0.8 hold the same stairs.
 constexpr double kLoweredAt = 0.65;
 
-// How far the CoM must come down so that a leg can span two footholds.
-double drop(const GaitdPose& a, const GaitdPose& b, const LegReach& r) {
+// m, by how much the hip is lower than when standing for a leg to span `share` of the way between
+// two footholds; negative where it could be higher.
+double lowered(const GaitdPose& a, const GaitdPose& b, double share, const LegReach& r) {
   const Eigen::Vector3d d =
       sdk::quaternion(a.orientation).conjugate() * (sdk::view(b.position) - sdk::view(a.position));
   const double sideways = std::max(0.0, std::abs(d.y()) - r.nominal_separation);
-  const double horizontal = r.trailing_share * std::hypot(d.x(), sideways);
+  const double horizontal = share * std::hypot(d.x(), sideways);
   const double vertical = std::sqrt(std::max(0.0, r.longest * r.longest - horizontal * horizontal));
-  return std::clamp(r.leg_length - vertical, 0.0, r.largest_drop);
+  return r.leg_length - vertical;
+}
+
+// How far the CoM must come down so that the trailing leg spans two footholds.
+double drop(const GaitdPose& a, const GaitdPose& b, const LegReach& r) {
+  return std::clamp(lowered(a, b, r.trailing_share, r), 0.0, r.largest_drop);
 }
 
 // How far the CoM must come down, over the foot that stands, so that the other leg reaches a lower
 // foothold with its sole flat.
 double landing_drop(const GaitdPose& stance, const GaitdPose& next, const LegReach& r) {
-  const Eigen::Vector3d d = sdk::quaternion(stance.orientation).conjugate() *
-                            (sdk::view(next.position) - sdk::view(stance.position));
   const double below = stance.position[2] - next.position[2];
   if (below <= 0.0) return 0.0;
-  const double sideways = std::max(0.0, std::abs(d.y()) - r.nominal_separation);
-  const double horizontal = kLandingShare * std::hypot(d.x(), sideways);
-  const double vertical = std::sqrt(std::max(0.0, r.longest * r.longest - horizontal * horizontal));
-  return std::clamp(r.leg_length - vertical + below, 0.0, r.largest_drop + below);
+  return std::clamp(lowered(stance, next, kLandingShare, r) + below, 0.0, r.largest_drop + below);
 }
 
 }  // namespace
