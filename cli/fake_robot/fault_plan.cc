@@ -2,7 +2,8 @@
 #include "cli/fake_robot/fault_plan.h"
 
 #include <array>
-#include <charconv>
+
+#include "cli/fake_robot/fault_text.h"
 
 namespace gaitd::cli {
 namespace {
@@ -12,44 +13,12 @@ constexpr std::array<const char*, 18> kKinds = {
     "foot",    "estop",     "heartbeat",   "down",      "bus-off",    "range",
     "timeout", "nan-range", "estop-stuck", "imu-stuck", "foot-stuck", "short"};
 
-bool read_number(const std::string& text, double* value) {
-  const char* end = text.data() + text.size();
-  const auto [last, error] = std::from_chars(text.data(), end, *value);
-  return error == std::errc() && last == end && *value >= 0;
-}
-
-// Cuts off what follows the last `mark`; "" when there is none.
-std::string cut(std::string* text, char mark) {
-  const size_t at = text->rfind(mark);
-  if (at == std::string::npos) return "";
-  std::string tail = text->substr(at + 1);
-  text->erase(at);
-  return tail;
-}
-
 }  // namespace
 
 std::optional<Fault> parse_fault(const std::string& text, std::string* error) {
-  std::string rest = text;
-  const std::string time = cut(&rest, '@');
-  const std::string value = cut(&rest, '=');
-  Fault fault;
-  fault.target = cut(&rest, ':');
-  size_t kind = 0;
-  while (kind < kKinds.size() && rest != kKinds[kind]) ++kind;
-  if (kind == kKinds.size()) {
-    *error = text + ": expected one of";
-    for (const char* name : kKinds) *error += std::string(" ") + name;
-    *error += ", got " + rest;
-    return std::nullopt;
-  }
-  fault.kind = static_cast<FaultKind>(kind);
-  if ((!time.empty() && !read_number(time, &fault.time)) ||
-      (!value.empty() && !read_number(value, &fault.value))) {
-    *error = text + ": expected KIND[:TARGET][=VALUE][@TIME] with numbers from 0";
-    return std::nullopt;
-  }
-  return fault;
+  const std::optional<FaultText> read = parse_fault_text(text, kKinds, error);
+  if (!read) return std::nullopt;
+  return Fault{static_cast<FaultKind>(read->kind), read->target, read->value, read->time};
 }
 
 }  // namespace gaitd::cli
