@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/hip_descent.h"
 #include "gaitd/walking/support.h"
 
 namespace gaitd::walking {
@@ -12,12 +13,15 @@ namespace {
 
 using sdk::view;
 
-constexpr double kHeightRate = 8.0;        // 1/s, of the reference filter of the CoM height
+// Over sqrt(g / h), of the reference filters of the CoM height and of the knee that bends for a
+// foot on its way down. Slower ones are behind a foot that finds no ground, faster ones jerk.
+constexpr double kHeightRate = 5.4;
 constexpr double kTouchdownTime = 0.05;    // s, in which the touchdown damping fades
 constexpr double kHeelStrikeTime = 0.1;    // s after touchdown in which the drives damp
 constexpr double kClosingTouchdown = 0.5;  // of the touchdown velocity
 constexpr double kLevelRate = 1.0;         // 1/s, with which a walk levels the pelvis
-constexpr double kNever = 1e9;             // rad
+constexpr double kNever = 1e9;             // rad, or m
+constexpr double kShortestLeg = 0.3;       // of its length
 constexpr double kToeEdge = 0.01;  // m, points this far behind the toe point are not on the edge
 constexpr double kYawRate = 6.0;   // 1/s, of the reference filter of the heading
 constexpr std::uint32_t kAngularRows = 0b000111;
@@ -63,7 +67,10 @@ double late_time(const GaitdGaitState& gait) {
 }  // namespace
 
 ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
-    : model_(model), weight_(model.total_mass * model.gravity), kinematics_(model) {
+    : model_(model),
+      weight_(model.total_mass * model.gravity),
+      height_rate_(kHeightRate * std::sqrt(model.gravity / model.nominal_com_height)),
+      kinematics_(model) {
   kinematics_.update(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(), sdk::Vector6d::Zero(),
                      sdk::head(model_.nominal_position, model_.joint_count),
                      Eigen::VectorXd::Zero(model_.joint_count));
@@ -75,7 +82,12 @@ ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
   const GaitdFoot& foot = model_.feet[GAITD_LEFT];
   const Eigen::Vector3d sole = kinematics_.frame_position(foot.body, view(foot.sole.origin));
   const double hip_ahead = hip.x() - kinematics_.com().x() + sole.x() - ankle.x();
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) legs_[side].set_leg(model_, side, hip_ahead);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    legs_[side].set_leg(model_, side, hip_ahead);
+    const GaitdFoot& f = model_.feet[side];
+    ankle_in_sole_[side] =
+        this->ankle(side) - kinematics_.frame_position(f.body, view(f.sole.origin));
+  }
   posture_joint_.fill(false);
   for (int i = 0; i < model_.joint_count; ++i) posture_joint_[i] = true;
   for (const GaitdLeg& l : model_.legs) {
@@ -243,7 +255,12 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
       .nominal_separation = model_.nominal_foot_separation,
       .largest_drop = parameters_[Objective::kReachDrop] * model_.nominal_com_height};
   out.height_target = com_height_target(gait, reach) + pose_height_;
-  height_.update(dt, out.height_target, kHeightRate);
+  if (gait.phase == GAITD_PHASE_SWING) {
+    const double hip = highest_hip_of_swing(robot, gait, reach.longest);
+    const double above = standing - leg_length_ - ankle_in_sole_[gait.next_side].z();
+    out.height_target = std::min(out.height_target, hip + above);
+  }
+  height_.update(dt, out.height_target, height_rate_);
   const double stiffness = parameters_[Objective::kHeightStiffness];
   const double limit = parameters_[Objective::kHeightAccelerationLimit] * model_.gravity;
   const double wanted = height_.acceleration() + stiffness * (height_.value() - robot.com[2]) +
@@ -451,21 +468,67 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
   view(task.weight).tail<3>().setConstant(heavier * parameters_[Objective::kSwingWeight]);
 }
 
+Eigen::Vector3d ObjectiveBuilder::hip(int side) const {
+  return kinematics_.p_WB(model_.joints[model_.legs[side].hip_pitch].child_body);
+}
+
+Eigen::Vector3d ObjectiveBuilder::ankle(int side) const {
+  return kinematics_.p_WB(model_.joints[model_.legs[side].ankle_pitch].child_body);
+}
+
+double ObjectiveBuilder::highest_hip_of_swing(const GaitdRobotState& robot,
+                                              const GaitdGaitState& gait, double longest) const {
+  // A foot that still rises asks for nothing.
+  if (gait.time_in_phase < leg_parameters_[Legs::kExtendFraction] * gait.phase_duration) {
+    return kNever;
+  }
+  const GaitdPose& stance = gait.footholds[gait.support].pose;
+  return highest_hip(swing_, gait.time_in_phase, gait.phase_duration,
+                     {.hip = hip(gait.next_side),
+                      .ankle_in_sole = ankle_in_sole_[gait.next_side],
+                      .longest = longest,
+                      .lever = Eigen::Vector3d(view(robot.com) - view(stance.position)).head<2>(),
+                      .velocity = Eigen::Vector3d(view(robot.com_velocity)).head<2>(),
+                      .omega = gait.omega,
+                      .gravity = model_.gravity});
+}
+
+void ObjectiveBuilder::update_lowering(double dt, const GaitdRobotState& robot,
+                                       const GaitdGaitState& gait) {
+  const double straight = leg_parameters_[Legs::kStraightKnee];
+  const bool comes_down =
+      gait.phase == GAITD_PHASE_SWING &&
+      gait.time_in_phase >= leg_parameters_[Legs::kExtendFraction] * gait.phase_duration;
+  if (!comes_down) {
+    lowering_.reset(straight);
+    return;
+  }
+  const LegGeometry& leg = legs_[gait.support].geometry();
+  const double longest = leg.length(straight);
+  const Eigen::Vector3d stance = ankle(gait.support);
+  const double high = highest_hip_of_swing(robot, gait, longest) - stance.z();
+  const double behind = (hip(gait.support) - stance).head<2>().norm();
+  const double length = std::hypot(behind, std::max(high, kShortestLeg * longest));
+  lowering_.update(dt, leg.knee(std::min(longest, length)), height_rate_);
+}
+
 void ObjectiveBuilder::update_privileged(double dt, const GaitdRobotState& robot,
                                          const GaitdGaitState& gait, GaitdObjectives& out) {
   for (int i = 0; i < GAITD_MAX_JOINTS; ++i) {
     out.privileged_acceleration[i] = 0.0;
     out.privileged_weight[i] = 0.0;
   }
+  update_lowering(dt, robot, gait);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdLeg& leg = model_.legs[side];
     const double knee = leg.knee_bend_sign * robot.joint_position[leg.knee];
     const double rate = leg.knee_bend_sign * robot.joint_velocity[leg.knee];
     const LegConfiguration::Reference& r =
-        legs_[side].update(dt, side, knee, gait, leg_parameters_);
+        legs_[side].update(dt, side, knee, lowering_, gait, leg_parameters_);
     // The leg acts as a unit: half the knee to hip and ankle each keeps the direction of the
     // line from hip to ankle (theory section 4).
-    const double bend = r.stiffness * (r.knee - knee) - r.damping * rate;
+    const double bend =
+        r.acceleration + r.stiffness * (r.knee - knee) + r.damping * (r.rate - rate);
     out.privileged_acceleration[leg.knee] = leg.knee_bend_sign * bend;
     out.privileged_acceleration[leg.hip_pitch] = 0.5 * leg.hip_pitch_bend_sign * bend;
     out.privileged_acceleration[leg.ankle_pitch] = 0.5 * leg.ankle_pitch_bend_sign * bend;

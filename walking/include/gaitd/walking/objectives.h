@@ -70,6 +70,13 @@ class ObjectiveBuilder {
                const GaitdToeOff& toe_off, GaitdObjectives& out) const;
   void add_swing_foot(int side, const GaitdRobotState& robot, const GaitdGaitState& gait,
                       const GaitdPose& lift_off, GaitdObjectives& out);
+  // m, W, of the joints of hip and ankle pitch.
+  Eigen::Vector3d hip(int side) const;
+  Eigen::Vector3d ankle(int side) const;
+  // m, W: for the foot in swing to come down on a leg of `longest` metres.
+  double highest_hip_of_swing(const GaitdRobotState& robot, const GaitdGaitState& gait,
+                              double longest) const;
+  void update_lowering(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait);
   void update_privileged(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                          GaitdObjectives& out);
   void update_impedance(const GaitdGaitState& gait, GaitdObjectives& out) const;
@@ -84,8 +91,9 @@ class ObjectiveBuilder {
   double load_share(int side, const GaitdGaitState& gait) const;
 
   const GaitdModel model_;
-  double weight_;      // N
-  double leg_length_;  // m, hip to ankle in the nominal posture
+  double weight_;       // N
+  double height_rate_;  // 1/s
+  double leg_length_;   // m, hip to ankle in the nominal posture
   dynamics::Kinematics kinematics_;
   Eigen::Quaterniond chest_in_pelvis_;
   std::array<bool, GAITD_MAX_JOINTS> posture_joint_{};  // neither leg nor spine
@@ -100,6 +108,8 @@ class ObjectiveBuilder {
   int swing_step_ = -1;      // step index of the trajectory in swing_
   int swing_revision_ = -1;  // plan revision it was made for
   ReferenceFilter height_;
+  ReferenceFilter lowering_;  // rad, bend of the leg that stands, for the other foot to come down
+  Eigen::Vector3d ankle_in_sole_[GAITD_MAX_FEET];  // m, above a level sole
   ReferenceFilter yaw_;
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // rad, held while standing, level in a walk
   double pose_height_ = 0.0;                        // m
