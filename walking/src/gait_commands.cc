@@ -91,7 +91,11 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
   if (Refusal r = check_room(walk.steps + 1 - (queue_.size() - kept)); r.refused()) return r;
   // The feet from which the first new footstep is taken: the last two places on the way.
   GaitdPose feet[2] = {state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose};
-  for (int side = 0; side < 2; ++side) feet[side].position[2] -= height_offset_;
+  for (int side = 0; side < 2; ++side) {
+    feet[side].position[2] -= height_offset_;
+    // On the commanded way, also where a push has moved a foot off it.
+    if (kept > 0 && goals_[side].known) feet[side] = goals_[side].step.pose;
+  }
   for (int i = 0; i < kept; ++i) feet[queue_[i].side] = queue_[i].pose;
   int first = walk.first_side;
   if (kept > 0) {
@@ -134,6 +138,8 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
     return r;
   }
   queue_.truncate(kept);
+  returns_ = true;
+  returned_ = 0;
   drive_.end();
   FootstepGenerator generator(walk, middle, first, width, parameters_);
   for (int i = 0; i < generator.count(); ++i) {
@@ -180,6 +186,8 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
   }
   if (Refusal r = check_capture(steps, count, kept, count); r.refused()) return r;
   queue_.truncate(kept);
+  returns_ = true;
+  returned_ = 0;
   drive_.end();
   for (int i = 0; i < count; ++i) {
     GaitdFootstep step = steps[i];
@@ -221,6 +229,7 @@ GaitdFootstep GaitMachine::closing_step(const GaitdPose& stance, int side) const
 
 Refusal GaitMachine::stop() {
   drive_.end();
+  returns_ = false;
   state_.paused = 0;
   const int kept = std::min(first_free(), queue_.size());
   GaitdPose stance;
@@ -265,6 +274,7 @@ int GaitMachine::begun() const {
 
 Refusal GaitMachine::abort() {
   drive_.end();
+  returns_ = false;
   state_.paused = 0;
   queue_.truncate(begun());
   publish_footsteps();

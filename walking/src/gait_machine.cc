@@ -13,6 +13,9 @@ namespace {
 // Of the distance of the feet in the nominal posture: closer the legs get in each other's way.
 constexpr double kNominalShare = 0.8;
 
+// Of the same distance: the gap that is left between two soles side by side.
+constexpr double kSolesApart = 0.05;
+
 // Over sqrt(g h), h the height of the CoM: a foot that is faster is still on its way.
 constexpr double kLandedRise = 0.05;
 constexpr double kLandedSlide = 0.15;
@@ -42,6 +45,15 @@ GaitMachine::GaitMachine(const GaitdModel& model)
       capture_check_(model),
       drive_(model),
       nominal_omega_(std::sqrt(model.gravity / model.nominal_com_height)) {
+  closest_ = kSolesApart * model.nominal_foot_separation;
+  for (const GaitdFoot& foot : model.feet) {
+    double inner = 0.0, outer = 0.0;
+    for (int i = 0; i < foot.point_count; ++i) {
+      inner = std::min(inner, foot.points[i][1]);
+      outer = std::max(outer, foot.points[i][1]);
+    }
+    closest_ += 0.5 * (outer - inner);
+  }
   const int separation = static_cast<int>(Gait::kMinFootSeparation);
   set_parameter(separation, kGaitParameters[separation].default_value);
   state_.size = sizeof(state_);
@@ -87,6 +99,8 @@ void GaitMachine::apply_pending_mode() { state_.mode = pending_mode_; }
 
 void GaitMachine::begin_stand() {
   apply_pending_mode();
+  goals_ = {};
+  returning_ = false;
   state_.phase = GAITD_PHASE_STAND;
   state_.support = GAITD_BOTH;
   state_.next_side = GAITD_BOTH;
@@ -173,9 +187,11 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   sdk::view(landed.pose.position) = sdk::view(robot.feet[side].position);
   state_.footholds[side] = foothold_of(model_, landed);
   state_.early_contact = early ? 1 : 0;
+  if (!recovering_) goals_[side] = {queue_[0], true};
   queue_.pop();
-  path_offset_ = kept(shift_);
-  if (queue_.size() == 0) path_offset_.setZero();
+  if (returning_ && comes_back()) push_return(other_side(side));
+  path_offset_.setZero();
+  if (queue_.size() > 0) path_offset_ = following(shift_, queue_[0], landed.pose);
   if (recovering_) close_after_recovery();
   if (drive_.active() && !recovering_) {
     path_offset_.setZero();  // the way begins anew where the foot is
@@ -184,14 +200,6 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   time_shift_ = 0.0;
   apply_pending_mode();
   begin_transfer(robot, other_side(side));
-}
-
-// Coming back at once would take steps that are too long for the legs.
-Eigen::Vector3d GaitMachine::kept(const Eigen::Vector3d& shift) const {
-  const double length = shift.norm();
-  const double back =
-      std::min((1.0 - parameters_[Gait::kShiftKept]) * length, parameters_[Gait::kReturnLimit]);
-  return length > 0.0 ? Eigen::Vector3d(shift * (1.0 - back / length)) : shift;
 }
 
 Eigen::Quaterniond GaitMachine::heading() const {
@@ -276,6 +284,8 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
         if (recover(dt, robot)) break;
         if (queue_.size() > 0 && state_.paused == 0) {
           begin_transfer(robot, GAITD_BOTH);
+        } else if (over && comes_back()) {
+          begin_return(robot);
         } else if (over) {
           recovering_ = false;
           begin_stand();
@@ -316,7 +326,9 @@ void GaitMachine::publish_footsteps() {
     position += offset;
     if (i > 0) keep_in_region(state_.adjusted[i]);
     position.z() += height_offset_;
-    offset = kept(offset);
+    if (i + 1 < state_.footstep_count) {
+      offset = following(offset, queue_[i + 1], state_.adjusted[i].pose);
+    }
     if (2 * i + 1 < StepTiming::kPhases) {
       state_.adjusted[i].transfer_duration += time_changes_[2 * i];
       state_.adjusted[i].swing_duration += time_changes_[2 * i + 1];

@@ -74,6 +74,17 @@ class GaitMachine {
   void adjust(const GaitdStepAdjustment& adjustment);
   // What the next foothold keeps of a shift (m).
   Eigen::Vector3d kept(const Eigen::Vector3d& shift) const;
+  // The same for `next`, which is taken from a foot at `stance` (W): not too close to it.
+  Eigen::Vector3d following(const Eigen::Vector3d& shift, const GaitdFootstep& next,
+                            const GaitdPose& stance) const;
+  // m, level: from where the foot was last told to be to where it stands.
+  Eigen::Vector3d astray(int side) const;
+  // Whether all footsteps are taken, but the feet do not stand where the last ones led.
+  bool comes_back() const;
+  // One more step of that foot to where it was last told to be.
+  void push_return(int side);
+  // From standing, or the end of the transfer to it.
+  void begin_return(const GaitdRobotState& robot);
   // Standing, or on the way to it: whether only a step can catch the robot; begins that step.
   bool recover(double dt, const GaitdRobotState& robot);
   GaitdFootstep recovery_step(const GaitdRobotState& robot, int side) const;
@@ -127,10 +138,19 @@ class GaitMachine {
   double time_unheld_ = 0.0;            // s, since the feet cannot hold the ICP
   double landed_impulse_ = 0.0;         // N s, of the load on the swing foot since it came
   bool recovering_ = false;             // the steps of now are the robot's own
-  double height_offset_ = 0.0;          // m, measured minus commanded height of the ground so far
+  struct Goal {
+    GaitdFootstep step;
+    bool known;
+  };
+  std::array<Goal, GAITD_MAX_FEET> goals_{};  // last footstep of each foot since the robot stood
+  bool returns_ = false;                      // to the goals after the last footstep
+  bool returning_ = false;
+  int returned_ = 0;            // steps taken for it
+  double height_offset_ = 0.0;  // m, measured minus commanded height of the ground so far
   int pending_mode_ = GAITD_MODE_WALK_BENT;
   std::uint32_t next_id_ = 1;
   double nominal_omega_;
+  double closest_ = 0.0;  // m, sideways, of the middles of two soles that do not touch
 };
 
 }  // namespace gaitd::walking

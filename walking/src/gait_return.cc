@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// The way back to the commanded footholds after steps that had to leave them.
+#include <algorithm>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/gait_machine.h"
+#include "gaitd/walking/support.h"
+
+namespace gaitd::walking {
+namespace {
+
+constexpr double kArrived = 0.2;    // nominal distances of the feet: as good as where it was told
+constexpr int kMostReturning = 10;  // steps: who is pushed all the time does not step for ever
+
+}  // namespace
+
+// Coming back at once would take steps that are too long for the legs.
+Eigen::Vector3d GaitMachine::kept(const Eigen::Vector3d& shift) const {
+  const double length = shift.norm();
+  const double back =
+      std::min((1.0 - parameters_[Gait::kShiftKept]) * length, parameters_[Gait::kReturnLimit]);
+  return length > 0.0 ? Eigen::Vector3d(shift * (1.0 - back / length)) : shift;
+}
+
+Eigen::Vector3d GaitMachine::following(const Eigen::Vector3d& shift, const GaitdFootstep& next,
+                                       const GaitdPose& stance) const {
+  if (shift.isZero(0.0)) return shift;
+  Eigen::Vector3d offset = kept(shift);
+  const Eigen::Quaterniond heading =
+      sdk::from_yaw(sdk::yaw_of(sdk::quaternion(stance.orientation)));
+  const Eigen::Vector3d step =
+      heading.conjugate() * (sdk::view(next.pose.position) + offset - sdk::view(stance.position));
+  const double side = side_sign(next.side);
+  const double lacking = closest_ - side * step.y();
+  if (lacking > 0.0) offset += heading * Eigen::Vector3d(0.0, side * lacking, 0.0);
+  return offset;
+}
+
+Eigen::Vector3d GaitMachine::astray(int side) const {
+  Eigen::Vector3d off =
+      sdk::view(state_.footholds[side].pose.position) - sdk::view(goals_[side].step.pose.position);
+  off.z() = 0.0;
+  return off;
+}
+
+bool GaitMachine::comes_back() const {
+  if (!returns_ || queue_.size() > 0 || drive_.active() || returned_ >= kMostReturning ||
+      state_.mode != pending_mode_ || state_.mode == GAITD_MODE_STAND) {
+    return false;
+  }
+  const double arrived = kArrived * model_.nominal_foot_separation;
+  return goals_[GAITD_LEFT].known && goals_[GAITD_RIGHT].known &&
+         std::max(astray(GAITD_LEFT).norm(), astray(GAITD_RIGHT).norm()) > arrived;
+}
+
+void GaitMachine::push_return(int side) {
+  GaitdFootstep step = goals_[side].step;
+  step.closing = 1;
+  complete(step);
+  queue_.push(step);
+  ++returned_;
+}
+
+void GaitMachine::begin_return(const GaitdRobotState& robot) {
+  const Eigen::Vector3d off = 0.5 * (astray(GAITD_LEFT) + astray(GAITD_RIGHT));
+  const int side = recovery_side(robot, -off.head<2>());
+  push_return(side);
+  path_offset_ = following(off, queue_[0], state_.footholds[other_side(side)].pose);
+  recovering_ = false;
+  returning_ = true;
+  begin_transfer(robot, GAITD_BOTH);
+}
+
+}  // namespace gaitd::walking
