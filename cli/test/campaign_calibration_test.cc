@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `calibrate:` of a campaign, with programs of the test in the place of gaitctl and gaitd.
-#include "cli/campaign_calibration.h"
+#include "cli/campaign/calibration.h"
 
 #include <gtest/gtest.h>
 

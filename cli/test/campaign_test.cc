@@ -12,9 +12,9 @@
 #include <sstream>
 #include <thread>
 
-#include "cli/campaign.h"
-#include "cli/campaign_results.h"
-#include "cli/campaign_summary.h"
+#include "cli/campaign/campaign.h"
+#include "cli/campaign/results.h"
+#include "cli/campaign/summary.h"
 #include "cli/gauntlet/gauntlet.h"
 #include "cli/test/cli_process.h"
 #include "cli/test/sample_log.h"

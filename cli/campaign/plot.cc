@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/campaign_plot.h"
+#include "cli/campaign/plot.h"
 
 #include <algorithm>
 #include <cmath>

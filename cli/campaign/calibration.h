@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/campaign.h"
-#include "cli/campaign_progress.h"
-#include "cli/campaign_results.h"
-#include "cli/campaign_runner.h"
+#include "cli/campaign/campaign.h"
+#include "cli/campaign/progress.h"
+#include "cli/campaign/results.h"
+#include "cli/campaign/runner.h"
 #include "cli/child_pool.h"
 #include "daemon/config/yaml_reader.h"
 

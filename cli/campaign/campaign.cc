@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/campaign.h"
+#include "cli/campaign/campaign.h"
 
 #include <algorithm>
 #include <array>
@@ -10,12 +10,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "cli/campaign_calibration.h"
-#include "cli/campaign_groups.h"
-#include "cli/campaign_plot.h"
-#include "cli/campaign_search.h"
-#include "cli/campaign_settings.h"
-#include "cli/campaign_sweep.h"
+#include "cli/campaign/calibration.h"
+#include "cli/campaign/groups.h"
+#include "cli/campaign/plot.h"
+#include "cli/campaign/search.h"
+#include "cli/campaign/settings.h"
+#include "cli/campaign/sweep.h"
 #include "cli/gauntlet/gauntlet.h"
 #include "cli/random_draw.h"
 #include "daemon/config/node.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/campaign_runner.h"
+#include "cli/campaign/runner.h"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,7 +14,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "cli/campaign_calibration.h"
+#include "cli/campaign/calibration.h"
 #include "cli/child_pool.h"
 #include "cli/gauntlet/gauntlet.h"
 #include "cli/stop_signals.h"

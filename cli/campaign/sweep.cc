@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/campaign_sweep.h"
+#include "cli/campaign/sweep.h"
 
 #include <algorithm>
 #include <set>

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/campaign.h"
-#include "cli/campaign_results.h"
-#include "cli/campaign_runner.h"
-#include "cli/campaign_search.h"
+#include "cli/campaign/campaign.h"
+#include "cli/campaign/results.h"
+#include "cli/campaign/runner.h"
+#include "cli/campaign/search.h"
 
 namespace gaitd::cli {
 

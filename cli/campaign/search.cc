@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/campaign_search.h"
+#include "cli/campaign/search.h"
 
 #include <algorithm>
 #include <bit>

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/campaign.h"
-#include "cli/campaign_results.h"
-#include "cli/campaign_search.h"
+#include "cli/campaign/campaign.h"
+#include "cli/campaign/results.h"
+#include "cli/campaign/search.h"
 #include "cli/child_pool.h"
 
 namespace gaitd::cli {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "cli/campaign.h"
+#include "cli/campaign/campaign.h"
 #include "daemon/config/yaml_reader.h"
 
 namespace gaitd::cli {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/campaign.h"
-#include "cli/campaign_search.h"
+#include "cli/campaign/campaign.h"
+#include "cli/campaign/search.h"
 #include "daemon/config/yaml_reader.h"
 
 namespace gaitd::cli {

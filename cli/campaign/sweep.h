@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/campaign.h"
+#include "cli/campaign/campaign.h"
 #include "daemon/config/yaml_reader.h"
 
 namespace gaitd::cli {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/campaign_settings.h"
+#include "cli/campaign/settings.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

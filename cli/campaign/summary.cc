@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/campaign_summary.h"
+#include "cli/campaign/summary.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <system_error>
 
-#include "cli/campaign_calibration.h"
-#include "cli/campaign_groups.h"
-#include "cli/campaign_runner.h"
-#include "cli/campaign_sweep.h"
+#include "cli/campaign/calibration.h"
+#include "cli/campaign/groups.h"
+#include "cli/campaign/runner.h"
+#include "cli/campaign/sweep.h"
 #include "cli/print.h"
 #include "cli/table.h"
 #include "daemon/verdict/number_text.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/campaign_groups.h"
+#include "cli/campaign/groups.h"
 
 #include <algorithm>
 #include <cstdio>
 
-#include "cli/campaign_summary.h"
+#include "cli/campaign/summary.h"
 #include "cli/print.h"
 #include "cli/table.h"
 

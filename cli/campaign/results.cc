@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/campaign_results.h"
+#include "cli/campaign/results.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/campaign_calibration.h"
+#include "cli/campaign/calibration.h"
 
 #include <sys/wait.h>
 
@@ -14,7 +14,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "cli/campaign_settings.h"
+#include "cli/campaign/settings.h"
 #include "cli/stop_signals.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/settings.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/campaign_progress.h"
+#include "cli/campaign/progress.h"
 
 #include <cstdio>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/campaign_command.h"
+#include "cli/campaign/campaign_command.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -13,15 +13,15 @@
 #include <system_error>
 #include <thread>
 
-#include "cli/campaign.h"
-#include "cli/campaign_calibration.h"
-#include "cli/campaign_plot.h"
-#include "cli/campaign_progress.h"
-#include "cli/campaign_results.h"
-#include "cli/campaign_runner.h"
-#include "cli/campaign_search.h"
-#include "cli/campaign_settings.h"
-#include "cli/campaign_summary.h"
+#include "cli/campaign/calibration.h"
+#include "cli/campaign/campaign.h"
+#include "cli/campaign/plot.h"
+#include "cli/campaign/progress.h"
+#include "cli/campaign/results.h"
+#include "cli/campaign/runner.h"
+#include "cli/campaign/search.h"
+#include "cli/campaign/settings.h"
+#include "cli/campaign/summary.h"
 #include "cli/failure.h"
 #include "cli/print.h"
 #include "cli/setting_option.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/campaign.h"
-#include "cli/campaign_results.h"
+#include "cli/campaign/campaign.h"
+#include "cli/campaign/results.h"
 #include "daemon/config/yaml_reader.h"
 
 namespace gaitd::cli {

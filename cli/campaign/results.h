@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/campaign.h"
+#include "cli/campaign/campaign.h"
 
 namespace gaitd::cli {
 
