@@ -106,9 +106,9 @@ void read_calibrate(daemon::MapReader* root, Campaign* campaign) {
   } else if (!*wanted) {
     return;
   }
-  campaign->motions = scenario_from(campaign->file, motions);
+  campaign->motions = motions;
   const daemon::Paths paths = daemon::Paths::detect();
-  if (!paths.scenario(campaign->motions)) {
+  if (!paths.scenario(scenario_from(campaign->file, motions))) {
     root->fail("calibrate", "motions that are the name of a scenario or the path of its file",
                "'" + motions + "'", daemon::suggestion(motions, paths.scenarios()));
   }
@@ -142,8 +142,9 @@ std::optional<Calibration> calibration_of(const Campaign& campaign,
 std::vector<std::string> calibrate_arguments(const Campaign& campaign,
                                              const Calibration& calibration,
                                              const fs::path& output) {
-  std::vector<std::string> arguments{"calibrate",      "--simulate", "--motions",
-                                     campaign.motions, "-o",         output.string()};
+  std::vector<std::string> arguments{"calibrate", "--simulate",
+                                     "--motions", scenario_from(campaign.file, campaign.motions),
+                                     "-o",        output.string()};
   for (const std::string& setting : calibration.settings) {
     arguments.insert(arguments.end(), {"--set", setting});
   }
@@ -151,8 +152,7 @@ std::vector<std::string> calibrate_arguments(const Campaign& campaign,
 }
 
 PoolEnd make_calibrations(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                          const RunnerOptions& options,
-                          const std::map<int, CampaignResult>& results,
+                          const RunnerOptions& options, const CampaignResults& results,
                           const std::function<void(const ProgressCounts&)>& progress,
                           CalibrationFailures* failures, std::string* error) {
   std::vector<Calibration> wanted;

@@ -41,8 +41,7 @@ std::vector<std::string> calibrate_arguments(const Campaign& campaign,
 /// Measures every robot that the runs without a result need and that has no file yet, each once.
 /// What could not be measured goes to `failures`: by file, why. Ends like play_runs().
 PoolEnd make_calibrations(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                          const RunnerOptions& options,
-                          const std::map<int, CampaignResult>& results,
+                          const RunnerOptions& options, const CampaignResults& results,
                           const std::function<void(const ProgressCounts&)>& progress,
                           CalibrationFailures* failures, std::string* error);
 

@@ -60,8 +60,9 @@ void read_scenarios(MapReader* root, Campaign* campaign) {
   int i = 0;
   for (const NodePtr& node : root->list("scenarios", 1, 1000)) {
     const std::string path = "scenarios[" + std::to_string(i++) + "]";
-    const std::string scenario = scenario_from(campaign->file, node->text);
-    if (node->kind != NodeKind::kScalar || !paths.scenario(scenario) ||
+    const std::string& scenario = node->text;
+    if (node->kind != NodeKind::kScalar ||
+        !paths.scenario(scenario_from(campaign->file, scenario)) ||
         campaign->drawn.contains(scenario)) {
       root->issues()->add(node->where, path, "the name of a scenario or the path of its file",
                           daemon::describe(*node),
@@ -183,12 +184,13 @@ std::string scenario_from(const std::string& campaign_file, const std::string& s
   return scenario;
 }
 
-std::optional<Campaign> load_campaign(const std::string& file, Issues* issues) {
+std::optional<Campaign> load_campaign(const std::string& file, Issues* issues,
+                                      const std::string& copy_of) {
   const std::size_t errors = issues->error_count();
   const NodePtr node = daemon::load_yaml_file(file, issues);
   if (node == nullptr) return std::nullopt;
   Campaign campaign;
-  campaign.file = file;
+  campaign.file = fs::absolute(copy_of.empty() ? file : copy_of).lexically_normal().string();
   std::ifstream in(file);
   campaign.text.assign(std::istreambuf_iterator<char>(in), {});
   MapReader root(node, "", issues);

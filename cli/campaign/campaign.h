@@ -46,10 +46,10 @@ struct CampaignPlot {
 
 /// One file of schema gaitd.campaign/1, checked; see docs/campaigns.md.
 struct Campaign {
-  std::string file;
+  std::string file;  ///< absolute; what it names by path is meant from its folder
   std::string text;  ///< of the file
   std::string name;
-  std::vector<std::string> scenarios;     ///< names, paths of files, or kinds of the gauntlet
+  std::vector<std::string> scenarios;     ///< as written: names, paths, kinds of the gauntlet
   std::set<std::string> drawn;            ///< those that are kinds of the gauntlet
   std::vector<CampaignSetting> settings;  ///< every combination is tried
   bool searches = false;  ///< the last setting ascends, and is bisected instead of tried in full
@@ -78,10 +78,13 @@ struct CampaignRun {
   std::vector<std::string> drawn;   ///< of the draws, in their order
 };
 
-/// Nothing when there is any error; all of them go to `issues`.
-std::optional<Campaign> load_campaign(const std::string& file, daemon::Issues* issues);
+/// Nothing when there is any error; all of them go to `issues`. A copy of the file is read with
+/// what the file itself was.
+std::optional<Campaign> load_campaign(const std::string& file, daemon::Issues* issues,
+                                      const std::string& copy_of = "");
 
-/// The scenario that a campaign names: a path is meant from its folder, where there is such a file.
+/// What a campaign names by `scenario`: a path is meant from its folder, where there is such a
+/// file.
 std::string scenario_from(const std::string& campaign_file, const std::string& scenario);
 
 /// KEY=VALUE of everything that this value of a setting stands for.

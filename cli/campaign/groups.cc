@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "cli/campaign/summary.h"
+#include "cli/campaign/labels.h"
+#include "cli/campaign/statistics.h"
 #include "cli/print.h"
 #include "cli/table.h"
 
@@ -117,7 +118,7 @@ void read_groups(MapReader* root, Campaign* campaign) {
 }
 
 json groups_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                 const std::map<int, CampaignResult>& results) {
+                 const CampaignResults& results) {
   json groups = json::array();
   for (const std::vector<std::string>& keys : campaign.groups) {
     std::map<std::vector<std::string>, Count> counts;
@@ -139,6 +140,9 @@ json groups_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
     for (const auto& [values, count] : ordered) {
       json row = count_json(count);
       row["values"] = values;
+      for (std::size_t i = 0; i < keys.size(); ++i) {
+        row["labels"].push_back(value_label(campaign, keys[i], values[i]));
+      }
       rows.push_back(row);
     }
     groups.push_back({{"by", keys}, {"rows", rows}});
@@ -147,7 +151,7 @@ json groups_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
 }
 
 json targets_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                  const std::map<int, CampaignResult>& results) {
+                  const CampaignResults& results) {
   json targets = json::array();
   for (const CampaignTarget& target : campaign.targets) {
     Count count;
@@ -180,7 +184,7 @@ std::string groups_text(const json& groups, std::size_t columns) {
     header.insert(header.end(), {"SUCCESS", "RATE", "95 % INTERVAL", "FALLS", "REFUSED"});
     std::vector<std::vector<std::string>> rows;
     for (const json& row : group["rows"]) {
-      std::vector<std::string> cells = row["values"];
+      std::vector<std::string> cells = row["labels"];
       cells.insert(cells.end(), {share_text(row), percent_text(row["success_rate"]),
                                  interval_text(row), row["falls"].dump(), row["refusals"].dump()});
       rows.push_back(std::move(cells));

@@ -20,12 +20,12 @@ void read_groups(daemon::MapReader* root, Campaign* campaign);
 
 /// Success rate with its interval for each combination of values of each group.
 nlohmann::json groups_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                           const std::map<int, CampaignResult>& results);
+                           const CampaignResults& results);
 
 /// How often the runs of each target succeeded, and whether that is enough; those without any run
 /// are left out.
 nlohmann::json targets_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                            const std::map<int, CampaignResult>& results);
+                            const CampaignResults& results);
 
 /// Both as they stand in the summary; tables are at most `columns` wide, 0: no limit.
 std::string groups_text(const nlohmann::json& groups, std::size_t columns);

@@ -6,6 +6,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <utility>
+
+#include "cli/campaign/labels.h"
 
 namespace gaitd::cli {
 namespace {
@@ -52,8 +55,13 @@ double ring_step(double value) {
   return 5.0 * power;
 }
 
+struct Radius {
+  double length = 0.0;
+  bool at_least = false;
+};
+
 struct Curve {
-  std::map<double, double> points;  // radius by angle, rad
+  std::map<double, Radius> points;  // by angle, rad
 };
 
 std::string grid(double x, double y, double largest, double step) {
@@ -75,10 +83,13 @@ std::string grid(double x, double y, double largest, double step) {
 std::string drawing(const Curve& curve, double x, double y, double largest, const char* colour) {
   std::string points, dots;
   for (const auto& [angle, value] : curve.points) {
-    const double r = kRadius * value / largest;
+    const double r = kRadius * value.length / largest;
     const double px = x - r * std::sin(angle), py = y - r * std::cos(angle);
     points += format("%.1f,%.1f ", px, py);
-    dots += format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.5\" fill=\"%s\"/>\n", px, py, colour);
+    dots += format(
+        "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%s\" fill=\"%s\" stroke=\"%s\" "
+        "stroke-width=\"1.6\"/>\n",
+        px, py, value.at_least ? "4" : "2", value.at_least ? "#fff" : colour, colour);
   }
   return "<polygon points=\"" + points +
          format("\" fill=\"%s\" fill-opacity=\"0.12\" stroke=\"%s\" stroke-width=\"1.6\"/>\n",
@@ -117,15 +128,36 @@ void read_plot(daemon::MapReader map, Campaign* campaign) {
     }
   }
   plot.scale = map.number("scale", {1e-9, 1e9, ""}).value_or(1.0);
-  plot.label = map.text("label").value_or("");
+  plot.label = map.text("label").value_or(campaign->searches ? "" : "success rate");
   map.finish();
-  if (!campaign->searches) {
-    map.fail("", "a 'search' whose result is drawn", "none", "add 'search' or remove 'plot'");
-  }
   campaign->plot = std::move(plot);
 }
 
-std::string polar_plot(const Campaign& campaign, const std::vector<SearchResult>& results,
+std::vector<PlotPoint> plot_points(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                                   const CampaignResults& results, RunOrder* order) {
+  std::vector<PlotPoint> points;
+  if (campaign.searches) {
+    for (const SearchResult& found : order->found()) {
+      if (!found.finished) continue;
+      points.push_back({found.scenario, found.values, found.held.value_or(0.0), found.at_least});
+    }
+    return points;
+  }
+  std::map<int, std::pair<int, int>> counts;  // successes and runs by cell
+  for (const auto& [number, result] : results) {
+    auto& [successes, count] = counts[runs[static_cast<std::size_t>(number) - 1].cell];
+    successes += result.success ? 1 : 0;
+    ++count;
+  }
+  for (const auto& [cell, count] : counts) {
+    const CampaignRun& run = runs[static_cast<std::size_t>(cell)];  // of the first seed
+    points.push_back(
+        {run.scenario, run.values, static_cast<double>(count.first) / count.second, false});
+  }
+  return points;
+}
+
+std::string polar_plot(const Campaign& campaign, const std::vector<PlotPoint>& points,
                        const std::string& scenario) {
   const CampaignPlot& plot = *campaign.plot;
   const std::size_t angle = index_of(campaign, plot.angle);
@@ -136,20 +168,21 @@ std::string polar_plot(const Campaign& campaign, const std::vector<SearchResult>
   const std::vector<std::string> panels = values(plot.panels), curves = values(plot.curves);
   std::vector<std::vector<Curve>> data(panels.size(), std::vector<Curve>(curves.size()));
   double largest = 0.0;
-  for (const SearchResult& result : results) {
-    if (result.scenario != scenario || !result.finished) continue;
+  bool open_ended = false;
+  for (const PlotPoint& result : points) {
+    if (result.scenario != scenario) continue;
     const auto place = [&](const std::string& key, const std::vector<std::string>& of) {
       if (key.empty()) return std::size_t{0};
       const std::string& value = result.values[index_of(campaign, key)];
       return static_cast<std::size_t>(std::find(of.begin(), of.end(), value) - of.begin());
     };
-    const double radius = plot.scale * result.held.value_or(0.0);
+    const Radius radius{plot.scale * result.value, result.at_least};
     Curve& curve = data[place(plot.panels, panels)][place(plot.curves, curves)];
-    // Of settings that are not drawn the least of all their values.
     const auto [point, fresh] =
         curve.points.emplace(std::atof(result.values[angle].c_str()), radius);
-    if (!fresh) point->second = std::min(point->second, radius);
-    largest = std::max(largest, radius);
+    if (!fresh && radius.length < point->second.length) point->second = radius;
+    largest = std::max(largest, radius.length);
+    open_ended = open_ended || radius.at_least;
   }
   const double step = ring_step(std::max(largest, 1e-9));
   largest = step * std::ceil(std::max(largest, 1e-9) / step - 1e-9);
@@ -171,10 +204,11 @@ std::string polar_plot(const Campaign& campaign, const std::vector<SearchResult>
   }
   double x = 20.0;
   for (std::size_t k = 0; k < curves.size(); ++k) {
-    out += label(x, height - 12.0, "start", curves[k], kColours[k % std::size(kColours)]);
-    x += 8.0 * static_cast<double>(curves[k].size()) + 24.0;
+    const std::string name = curves[k].empty() ? "" : value_label(campaign, plot.curves, curves[k]);
+    out += label(x, height - 12.0, "start", name, kColours[k % std::size(kColours)]);
+    x += 8.0 * static_cast<double>(name.size()) + 24.0;
   }
-  out += label(width - 20.0, height - 12.0, "end", plot.label);
+  out += label(width - 20.0, height - 12.0, "end", plot.label + (open_ended ? "; ○ at least" : ""));
   return out + "</svg>\n";
 }
 

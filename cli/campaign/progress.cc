@@ -15,11 +15,13 @@ std::string duration_text(double seconds) {
 
 }  // namespace
 
-void ProgressBar::show(const ProgressCounts& counts) {
+void ProgressBar::show(const ProgressCounts& counts, const std::string& more) {
   const auto [done, total, failed, finished] = counts;
-  if (!terminal_ && (finished == shown_ || (done * 20 / total == last_step_ && done < total))) {
+  if (!terminal_ && more == more_ &&
+      (finished == shown_ || (done * 20 / total == last_step_ && done < total))) {
     return;
   }
+  more_ = more;
   last_step_ = done * 20 / total;
   shown_ = finished;
   constexpr std::size_t kWidth = 30;
@@ -29,9 +31,10 @@ void ProgressBar::show(const ProgressCounts& counts) {
   const std::string left =
       finished > 0 ? duration_text(passed / finished * static_cast<double>(total - done)) + " left"
                    : "";
-  std::fprintf(stderr, "%s%s[%s%s] %zu/%zu, %d failed, %s%s", terminal_ ? "\r" : "", what_.c_str(),
-               std::string(filled, '#').c_str(), std::string(kWidth - filled, '.').c_str(), done,
-               total, failed, left.c_str(), terminal_ ? "\033[K" : "\n");
+  std::fprintf(stderr, "%s%s[%s%s] %zu/%zu, %d failed, %s%s%s%s", terminal_ ? "\r" : "",
+               what_.c_str(), std::string(filled, '#').c_str(),
+               std::string(kWidth - filled, '.').c_str(), done, total, failed, more.c_str(),
+               more.empty() ? "" : ", ", left.c_str(), terminal_ ? "\033[K" : "\n");
   std::fflush(stderr);
 }
 

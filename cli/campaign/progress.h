@@ -22,7 +22,8 @@ class ProgressBar {
   /// `what` stands before the bar.
   explicit ProgressBar(std::string what) : what_(std::move(what)) {}
 
-  void show(const ProgressCounts& counts);
+  /// `more` stands behind the counts.
+  void show(const ProgressCounts& counts, const std::string& more = "");
   void end() const;
 
  private:
@@ -30,6 +31,7 @@ class ProgressBar {
   bool terminal_ = isatty(STDERR_FILENO) != 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   int shown_ = 0;
+  std::string more_;
   std::size_t last_step_ = 0;
 };
 

@@ -13,7 +13,9 @@
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
+#include <utility>
 
 namespace gaitd::cli {
 namespace {
@@ -60,6 +62,13 @@ std::string number_text(double value) {
   return text;
 }
 
+double badness(const CampaignResult& result) {
+  const auto& names = campaign_figures();
+  const auto icp = std::find(names.begin(), names.end(), "icp_error_max") - names.begin();
+  const double error = result.figures[static_cast<std::size_t>(icp)];
+  return (result.success ? 0.0 : 1e6) + (std::isnan(error) ? 1e3 : std::min(error, 1e3));
+}
+
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
@@ -102,7 +111,8 @@ CampaignResult read_result(const Campaign& campaign, int number, const std::stri
   const json& figures = verdict["figures"];
   for (std::size_t i = 0; i < campaign_figures().size(); ++i) {
     const json value = figures.value(campaign_figures()[i], json());
-    if (value.is_number()) result.figures[i] = value.get<double>();
+    // As results.csv gives it back: a summary is the same whoever writes it.
+    if (value.is_number()) result.figures[i] = std::atof(number_text(value.get<double>()).c_str());
   }
   for (const json& judgement : verdict["expectations"]) {
     if (judgement.value("pass", false)) continue;
@@ -117,66 +127,43 @@ CampaignResult read_result(const Campaign& campaign, int number, const std::stri
   return result;
 }
 
-double badness(const CampaignResult& result) {
-  const auto& names = campaign_figures();
-  const auto icp = std::find(names.begin(), names.end(), "icp_error_max") - names.begin();
-  const double error = result.figures[static_cast<std::size_t>(icp)];
-  return (result.success ? 0.0 : 1e6) + (std::isnan(error) ? 1e3 : std::min(error, 1e3));
+int count_failed(const CampaignResults& results) {
+  return static_cast<int>(std::count_if(results.begin(), results.end(),
+                                        [](const auto& entry) { return !entry.second.success; }));
 }
 
-std::string ResultFile::header() const {
-  std::vector<std::string> fields{"run", "scenario", "seed"};
-  for (const CampaignSetting& setting : campaign_.settings) fields.push_back(setting.key);
-  for (const CampaignDraw& draw : campaign_.draws) fields.push_back(draw.key);
-  fields.insert(fields.end(), {"success", "fell", "refused", "failed", "problem"});
-  fields.insert(fields.end(), campaign_figures().begin(), campaign_figures().end());
+std::vector<const CampaignResult*> worst_first(const CampaignResults& results) {
+  std::vector<std::pair<double, const CampaignResult*>> ranked;
+  for (const auto& [number, result] : results) ranked.emplace_back(-badness(result), &result);
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<const CampaignResult*> worst;
+  for (const auto& [badness, result] : ranked) worst.push_back(result);
+  return worst;
+}
+
+std::string ResultFormat::header() const {
+  const std::vector<std::string>& figures = campaign_figures();
+  const std::vector<std::string> before{"run", "scenario", "seed"};
+  const std::vector<std::string> outcome{"success", "fell", "refused", "failed", "problem"};
+  std::set<std::string> taken(before.begin(), before.end());
+  taken.insert(outcome.begin(), outcome.end());
+  taken.insert(figures.begin(), figures.end());
+  // A key that is called like a column of every campaign says where it comes from: no name twice.
+  const auto column = [&](const std::string& section, const std::string& key) {
+    return taken.contains(key) ? section + "." + key : key;
+  };
+  std::vector<std::string> fields = before;
+  for (const CampaignSetting& setting : campaign_.settings) {
+    fields.push_back(column("set", setting.key));
+  }
+  for (const CampaignDraw& draw : campaign_.draws) fields.push_back(column("draw", draw.key));
+  fields.insert(fields.end(), outcome.begin(), outcome.end());
+  fields.insert(fields.end(), figures.begin(), figures.end());
   return joined(fields);
 }
 
-bool ResultFile::open(const fs::path& path, std::string* error) {
-  path_ = path;
-  const std::size_t figures = campaign_figures().size();
-  std::ifstream in(path, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(in), {});
-  std::string good = header();
-  if (text.starts_with(good)) {
-    const std::size_t columns = split(good).size();
-    std::istringstream lines(text.substr(good.size(), text.rfind('\n') + 1 - good.size()));
-    for (std::string line; std::getline(lines, line);) {
-      const std::vector<std::string> fields = split(line);
-      const int number = std::atoi(fields[0].c_str());
-      if (fields.size() != columns || number < 1 || number > static_cast<int>(runs_.size())) {
-        continue;
-      }
-      const std::size_t first = columns - figures - 5;
-      CampaignResult result{number,
-                            fields[first] == "1",
-                            fields[first + 1] == "1",
-                            fields[first + 2] == "1",
-                            fields[first + 3],
-                            fields[first + 4],
-                            {}};
-      for (std::size_t i = columns - figures; i < columns; ++i) {
-        result.figures.push_back(fields[i].empty() ? kNaN : std::atof(fields[i].c_str()));
-      }
-      // What could not be judged is tried again.
-      if (result.problem.empty() && results_.emplace(number, result).second) good += line + "\n";
-    }
-  } else if (!text.empty() && text.find('\n') != std::string::npos) {
-    *error = path.string() + ": not the results of this campaign; give another folder with -o";
-    return false;
-  }
-  const fs::path fresh = path.string() + ".new";
-  std::ofstream out(fresh, std::ios::binary | std::ios::trunc);
-  out << good << std::flush;
-  std::error_code code;
-  if (out) fs::rename(fresh, path, code);
-  if (out && !code) return true;
-  *error = path.string() + ": cannot write: " + std::strerror(errno);
-  return false;
-}
-
-bool ResultFile::append(const CampaignResult& result, std::string* error) {
+std::string ResultFormat::row(const CampaignResult& result) const {
   const CampaignRun& run = runs_[static_cast<std::size_t>(result.number) - 1];
   std::vector<std::string> fields{std::to_string(run.number), run.scenario,
                                   std::to_string(run.seed)};
@@ -185,7 +172,74 @@ bool ResultFile::append(const CampaignResult& result, std::string* error) {
   fields.insert(fields.end(), {result.success ? "1" : "0", result.fell ? "1" : "0",
                                result.refused ? "1" : "0", result.failed, result.problem});
   for (const double figure : result.figures) fields.push_back(number_text(figure));
-  const std::string line = joined(fields);
+  return joined(fields);
+}
+
+std::optional<CampaignResult> ResultFormat::parse(const std::string& line) const {
+  const std::vector<std::string> fields = split(line);
+  const std::size_t figures = campaign_figures().size();
+  const std::size_t first = 3 + campaign_.settings.size() + campaign_.draws.size();
+  const int number = std::atoi(fields[0].c_str());
+  if (fields.size() != first + 5 + figures || number < 1 ||
+      number > static_cast<int>(runs_.size())) {
+    return std::nullopt;
+  }
+  CampaignResult result{number,
+                        fields[first] == "1",
+                        fields[first + 1] == "1",
+                        fields[first + 2] == "1",
+                        fields[first + 3],
+                        fields[first + 4],
+                        {}};
+  for (std::size_t i = first + 5; i < fields.size(); ++i) {
+    result.figures.push_back(fields[i].empty() ? kNaN : std::atof(fields[i].c_str()));
+  }
+  return result;
+}
+
+std::optional<CampaignResults> read_results(const fs::path& path, const ResultFormat& format,
+                                            std::string* error) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const std::string header = format.header();
+  CampaignResults results;
+  if (!text.starts_with(header)) {
+    if (text.find('\n') == std::string::npos) return results;  // not even a header was written
+    *error = path.string() + ": not the results of this campaign; give another folder with -o";
+    return std::nullopt;
+  }
+  std::istringstream lines(text.substr(header.size(), text.rfind('\n') + 1 - header.size()));
+  for (std::string line; std::getline(lines, line);) {
+    if (auto result = format.parse(line)) results.emplace(result->number, std::move(*result));
+  }
+  return results;
+}
+
+bool write_results(const fs::path& path, const ResultFormat& format, const CampaignResults& results,
+                   std::string* error) {
+  const fs::path fresh = path.string() + ".new";
+  std::ofstream out(fresh, std::ios::binary | std::ios::trunc);
+  out << format.header();
+  for (const auto& [number, result] : results) out << format.row(result);
+  out << std::flush;
+  std::error_code code;
+  if (out) fs::rename(fresh, path, code);
+  if (out && !code) return true;
+  *error = path.string() + ": cannot write: " + std::strerror(errno);
+  return false;
+}
+
+bool ResultFile::open(const fs::path& path, std::string* error) {
+  path_ = path;
+  auto before = read_results(path, format_, error);
+  if (!before) return false;
+  results_ = std::move(*before);
+  std::erase_if(results_, [](const auto& entry) { return !entry.second.problem.empty(); });
+  return write_results(path, format_, results_, error);
+}
+
+bool ResultFile::append(const CampaignResult& result, std::string* error) {
+  const std::string line = format_.row(result);
   results_[result.number] = result;
   const int file = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   const bool written =
@@ -201,6 +255,11 @@ fs::path campaign_log(const fs::path& folder, int number) {
   char name[32];
   std::snprintf(name, sizeof(name), "%06d.mcap", number);
   return folder / "logs" / name;
+}
+
+bool has_log(const fs::path& folder, int number) {
+  std::error_code ignored;
+  return fs::exists(campaign_log(folder, number), ignored);
 }
 
 }  // namespace gaitd::cli

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,32 +32,62 @@ CampaignResult read_result(const Campaign& campaign, int number, const std::stri
 /// Of a run that was not even played, and why.
 CampaignResult unjudged_result(int number, const std::string& problem);
 
-/// How bad a run was: those that failed first, then by the largest error of the ICP.
-double badness(const CampaignResult& result);
+/// How results.csv is written: a header, and a row for each run.
+class ResultFormat {
+ public:
+  ResultFormat(const Campaign& campaign, const std::vector<CampaignRun>& runs)
+      : campaign_(campaign), runs_(runs) {}
 
-/// results.csv of a campaign: one row per finished run, in the order in which they finished.
+  std::string header() const;
+  std::string row(const CampaignResult& result) const;
+  /// Nothing if the line is no whole row of one of the runs.
+  std::optional<CampaignResult> parse(const std::string& line) const;
+
+ private:
+  const Campaign& campaign_;
+  const std::vector<CampaignRun>& runs_;
+};
+
+using CampaignResults = std::map<int, CampaignResult>;  ///< by the number of the run
+
+int count_failed(const CampaignResults& results);
+
+/// Those that failed first, then by the largest error of the ICP, then by number.
+std::vector<const CampaignResult*> worst_first(const CampaignResults& results);
+
+/// The rows of such a file, of a run the first one. Nothing with a reason in `error` if it holds
+/// those of another campaign; a file that is not there has no rows.
+std::optional<CampaignResults> read_results(const std::filesystem::path& path,
+                                            const ResultFormat& format, std::string* error);
+
+/// All of them in the order of the runs, whatever the order in which they ended: the same results
+/// are the same bytes. The file is replaced whole or not at all.
+bool write_results(const std::filesystem::path& path, const ResultFormat& format,
+                   const CampaignResults& results, std::string* error);
+
+/// results.csv of a campaign that is being played: a row is added as each run ends.
 class ResultFile {
  public:
   ResultFile(const Campaign& campaign, const std::vector<CampaignRun>& runs)
-      : campaign_(campaign), runs_(runs) {}
+      : format_(campaign, runs) {}
 
-  /// Reads the rows of an earlier start, if there are any, drops a last row that was cut off, and
-  /// opens the file for more. Problems with a reason in `error`.
+  /// Reads the rows of an earlier start, if there are any, drops a last row that was cut off and
+  /// those of runs that could not be judged, which are played again, and opens the file for more.
   bool open(const std::filesystem::path& path, std::string* error);
   bool append(const CampaignResult& result, std::string* error);
+  /// Puts the rows in the order of the runs.
+  bool sort(std::string* error) const { return write_results(path_, format_, results_, error); }
 
-  const std::map<int, CampaignResult>& results() const { return results_; }  ///< by number
+  const CampaignResults& results() const { return results_; }
 
  private:
-  std::string header() const;
-
-  const Campaign& campaign_;
-  const std::vector<CampaignRun>& runs_;
+  ResultFormat format_;
   std::filesystem::path path_;
-  std::map<int, CampaignResult> results_;
+  CampaignResults results_;
 };
 
-/// The log of a run in the folder of its campaign.
+/// The log of a run in the folder of its campaign, and whether it was kept.
 std::filesystem::path campaign_log(const std::filesystem::path& folder, int number);
+bool has_log(const std::filesystem::path& folder, int number);
 
 }  // namespace gaitd::cli

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <system_error>
 
@@ -24,10 +24,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The logs of the runs in the folder of the campaign.
+// The logs of the runs: while they are written where there is room, then those of the worst in the
+// folder of the campaign.
 class Logs {
  public:
-  Logs(const fs::path& folder, int keep) : folder_(folder), keep_(keep) {
+  Logs(const fs::path& folder, const fs::path& scratch, int keep) : folder_(folder), keep_(keep) {
     // What a killed campaign left; its last children may still be writing there.
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(logs(), ignored)) {
@@ -35,7 +36,7 @@ class Logs {
         fs::remove_all(entry.path(), ignored);
       }
     }
-    running_ = logs() / (kRunning + std::to_string(getpid()));
+    running_ = (scratch.empty() ? logs() : scratch) / (kRunning + std::to_string(getpid()));
     fs::create_directories(running_, ignored);
   }
 
@@ -49,30 +50,20 @@ class Logs {
     return running_ / log(number, extension).filename();
   }
 
-  // Of a run that has ended.
-  void keep(int number) const {
+  // Those of the worst runs stay, or come from where they were written; all others go.
+  void keep_worst(const CampaignResults& results) {
+    int kept = 0;
     std::error_code ignored;
-    for (const char* extension : {".mcap", ".txt"}) {
-      fs::rename(running(number, extension), log(number, extension), ignored);
-    }
-  }
-
-  // Deletes all logs but those of the worst runs.
-  void keep_worst(const std::map<int, CampaignResult>& results) {
-    std::vector<std::pair<double, int>> logs;
-    std::error_code ignored;
-    for (const auto& [number, result] : results) {
+    for (const CampaignResult* result : worst_first(results)) {
+      const int number = result->number;
       if (deleted_.contains(number)) continue;
-      if (fs::exists(campaign_log(folder_, number), ignored)) {
-        logs.emplace_back(-badness(result), number);
-      } else {
-        deleted_[number] = true;
+      const bool fresh = fs::exists(running(number, ".mcap"), ignored);
+      if ((fresh || has_log(folder_, number)) && kept++ < keep_) {
+        if (fresh) keep(number);
+        continue;
       }
-    }
-    std::sort(logs.begin(), logs.end());
-    for (std::size_t i = static_cast<std::size_t>(keep_); i < logs.size(); ++i) {
-      forget(logs[i].second);
-      deleted_[logs[i].second] = true;
+      forget(number);
+      deleted_.insert(number);
     }
   }
 
@@ -83,15 +74,28 @@ class Logs {
   fs::path log(int number, const char* extension) const {
     return campaign_log(folder_, number).replace_extension(extension);
   }
+  void keep(int number) const {
+    for (const char* extension : {".mcap", ".txt"}) {
+      const fs::path from = running(number, extension), to = log(number, extension);
+      std::error_code other_disk, ignored;
+      fs::rename(from, to, other_disk);
+      if (!other_disk) continue;
+      fs::copy_file(from, to, fs::copy_options::overwrite_existing, ignored);
+      fs::remove(from, ignored);
+    }
+  }
   void forget(int number) const {
     std::error_code ignored;
-    for (const char* extension : {".mcap", ".txt"}) fs::remove(log(number, extension), ignored);
+    for (const char* extension : {".mcap", ".txt"}) {
+      fs::remove(log(number, extension), ignored);
+      fs::remove(running(number, extension), ignored);
+    }
   }
 
   const fs::path folder_;
   const int keep_;
   fs::path running_;
-  std::map<int, bool> deleted_;
+  std::set<int> deleted_;
 };
 
 std::vector<std::string> arguments_of(const Campaign& campaign, const CampaignRun& run,
@@ -135,34 +139,33 @@ CampaignResult result_of(const Campaign& campaign, int number, int status, const
 }  // namespace
 
 std::string scenario_of(const Campaign& campaign, const CampaignRun& run, const fs::path& folder) {
-  if (!campaign.drawn.contains(run.scenario)) return run.scenario;
+  if (!campaign.drawn.contains(run.scenario)) return scenario_from(campaign.file, run.scenario);
   return (folder / "scenarios" / (run.scenario + "-" + std::to_string(run.seed) + ".yaml"))
       .string();
 }
 
-bool write_drawn(const Campaign& campaign, const fs::path& folder, std::string* error) {
+bool write_drawn(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                 const fs::path& folder, std::string* error) {
   std::error_code ignored;
   if (!campaign.drawn.empty()) fs::create_directories(folder / "scenarios", ignored);
-  for (const std::string& kind : campaign.drawn) {
-    for (const std::uint64_t seed : campaign.seeds) {
-      CampaignRun run;
-      run.scenario = kind;
-      run.seed = seed;
-      const std::string path = scenario_of(campaign, run, folder);
-      const std::string text = gauntlet_scenario(kind, seed);
-      std::ifstream in(path, std::ios::binary);
-      const std::string there(std::istreambuf_iterator<char>(in), {});
-      if (there == text) continue;
-      if (!text.starts_with(there)) {
-        *error = path + ": another gaitd has drawn it otherwise; give another folder with -o";
-        return false;
-      }
-      std::ofstream out(path, std::ios::binary | std::ios::trunc);
-      out << text << std::flush;
-      if (out) continue;
-      *error = path + ": cannot write: " + std::strerror(errno);
+  std::set<std::string> seen;
+  for (const CampaignRun& run : runs) {
+    if (!campaign.drawn.contains(run.scenario)) continue;
+    const std::string path = scenario_of(campaign, run, folder);
+    if (!seen.insert(path).second) continue;
+    const std::string text = gauntlet_scenario(run.scenario, run.seed);
+    std::ifstream in(path, std::ios::binary);
+    const std::string there(std::istreambuf_iterator<char>(in), {});
+    if (there == text) continue;
+    if (!text.starts_with(there)) {
+      *error = path + ": another gaitd has drawn it otherwise; give another folder with -o";
       return false;
     }
+    std::ofstream out(path, std::ios::binary | std::ios::trunc);
+    out << text << std::flush;
+    if (out) continue;
+    *error = path + ": cannot write: " + std::strerror(errno);
+    return false;
   }
   return true;
 }
@@ -190,7 +193,7 @@ PoolEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs
                   RunOrder* order, ResultFile* results, const std::function<void(int)>& progress,
                   std::string* error) {
   const StopSignals signals;
-  Logs logs(options.folder, campaign.keep_logs);
+  Logs logs(options.folder, options.scratch, campaign.keep_logs);
   ChildPool pool(options.jobs);
   logs.keep_worst(results->results());
   int finished = 0;
@@ -216,7 +219,6 @@ PoolEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs
   const auto finish = [&](const ChildPool::End& end, std::string* why) {
     const CampaignResult result =
         result_of(campaign, end.number, end.status, logs.running(end.number, ".json"));
-    logs.keep(end.number);
     return append(result, why);
   };
   return work_off(&pool, {start, finish, [&] { progress(finished); }}, error);

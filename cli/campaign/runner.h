@@ -15,11 +15,12 @@
 namespace gaitd::cli {
 
 struct RunnerOptions {
-  std::filesystem::path gaitctl;      ///< plays each run, in a process of its own
-  std::filesystem::path folder;       ///< of the campaign
-  std::vector<std::string> settings;  ///< KEY=VALUE, over those of the campaign
-  int jobs = 1;                       ///< processes at once
-  bool trust = false;                 ///< load libraries that scenarios name by path
+  std::filesystem::path gaitctl;       ///< plays each run, in a process of its own
+  std::filesystem::path folder;        ///< of the campaign
+  std::vector<std::string> settings;   ///< KEY=VALUE, over those of the campaign
+  int jobs = 1;                        ///< processes at once
+  bool trust = false;                  ///< load libraries that scenarios name by path
+  std::filesystem::path scratch = {};  ///< where logs are written first; empty: in the folder
 };
 
 /// What gaitctl run is given: the name of a scenario, its file, or for a kind of the gauntlet the
@@ -38,9 +39,10 @@ std::vector<std::string> settings_of(const Campaign& campaign, const CampaignRun
 std::vector<std::string> played_settings(const Campaign& campaign, const CampaignRun& run,
                                          const RunnerOptions& options);
 
-/// Writes the drawn scenarios of all runs into the folder of the campaign. Results of other ones
+/// Writes the drawn scenarios of the runs into the folder of the campaign. Results of other ones
 /// must not get mixed with theirs, so those that are there have to be the same.
-bool write_drawn(const Campaign& campaign, const std::filesystem::path& folder, std::string* error);
+bool write_drawn(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                 const std::filesystem::path& folder, std::string* error);
 
 /// Plays the runs that the order asks for, several at once, and appends what came of them; a run
 /// whose calibration has failed is not played, and has failed too. SIGINT and SIGTERM end it; runs

@@ -35,18 +35,31 @@ void read_search(daemon::MapReader map, Campaign* campaign) {
 }
 
 RunOrder::RunOrder(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                   const std::map<int, CampaignResult>& results)
+                   const CampaignResults& results, const Shard& shard)
     : campaign_(campaign), runs_(runs), results_(results) {
   const std::size_t levels = campaign.searches ? campaign.settings.back().values.size() : 1;
+  levels_ = static_cast<int>(levels);
   std::size_t combinations = 1;  // without the searched setting, which expand() changes last
   for (const CampaignSetting& setting : campaign.settings) combinations *= setting.values.size();
   combinations /= levels;
   stride_ = static_cast<int>(combinations);
   for (std::size_t i = 0; i < runs.size(); i += combinations * levels) {
     for (std::size_t k = 0; k < combinations; ++k) {
-      lanes_.push_back({static_cast<int>(i + k) + 1, -1, static_cast<int>(levels), false});
+      lanes_.push_back({static_cast<int>(i + k) + 1, -1, levels_, false});
     }
   }
+  mine_ = shard_range(shard, lanes_.size());
+  first_open_ = mine_.first;
+}
+
+std::vector<CampaignRun> RunOrder::runs() const {
+  std::vector<CampaignRun> mine;
+  for (std::size_t i = mine_.first; i < mine_.end; ++i) {
+    for (int level = 0; level < levels_; ++level) {
+      mine.push_back(runs_[static_cast<std::size_t>(lanes_[i].first + stride_ * level) - 1]);
+    }
+  }
+  return mine;
 }
 
 int RunOrder::middle(const Lane& lane) const {
@@ -65,7 +78,7 @@ bool RunOrder::open(Lane* lane) {
 }
 
 std::optional<int> RunOrder::next() {
-  for (std::size_t i = first_open_; i < lanes_.size(); ++i) {
+  for (std::size_t i = first_open_; i < mine_.end; ++i) {
     const bool is_open = open(&lanes_[i]);
     if (!is_open && i == first_open_) ++first_open_;
     if (is_open && started_.insert(middle(lanes_[i])).second) return middle(lanes_[i]);
@@ -73,9 +86,9 @@ std::optional<int> RunOrder::next() {
   return std::nullopt;
 }
 
-std::size_t RunOrder::remaining() {
+std::size_t RunOrder::remaining_of(const ShardRange& range) {
   std::size_t count = 0;
-  for (std::size_t i = first_open_; i < lanes_.size(); ++i) {
+  for (std::size_t i = range.first; i < range.end; ++i) {
     if (!open(&lanes_[i])) continue;
     count += std::bit_width(static_cast<unsigned>(lanes_[i].failed - lanes_[i].held - 1));
   }
@@ -98,6 +111,7 @@ std::vector<SearchResult> RunOrder::found() {
   for (std::size_t k = 0; k < cells; ++k) {
     if (held[k] < 0 || !results[k].finished) continue;
     results[k].held = std::atof(levels[static_cast<std::size_t>(held[k])].c_str());
+    results[k].at_least = held[k] + 1 == static_cast<int>(levels.size());
   }
   return results;
 }

@@ -8,7 +8,10 @@
 
 #include "cli/campaign/calibration.h"
 #include "cli/campaign/groups.h"
+#include "cli/campaign/labels.h"
+#include "cli/campaign/replay_text.h"
 #include "cli/campaign/runner.h"
+#include "cli/campaign/statistics.h"
 #include "cli/campaign/sweep.h"
 #include "cli/print.h"
 #include "cli/table.h"
@@ -28,10 +31,15 @@ std::string describe_run(const Campaign& campaign, const CampaignRun& run) {
   return text;
 }
 
-json settings_json(const Campaign& campaign, const std::vector<std::string>& values) {
-  json settings = json::object();
-  for (std::size_t i = 0; i < values.size(); ++i) settings[campaign.settings[i].key] = values[i];
-  return settings;
+// With names for people beside the values.
+void add_settings(const Campaign& campaign, const std::vector<std::string>& values, json* cell) {
+  json& settings = (*cell)["set"] = json::object();
+  json& labels = (*cell)["labels"] = json::object();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string& key = campaign.settings[i].key;
+    settings[key] = values[i];
+    labels[key] = value_label(campaign, key, values[i]);
+  }
 }
 
 std::string settings_text(const json& settings) {
@@ -46,43 +54,9 @@ std::string held_text(const json& cell) {
   if (!cell["finished"].get<bool>()) return "not finished";
   if (cell["held"].is_null()) return "none";
   char text[32];
-  std::snprintf(text, sizeof(text), "%g", cell["held"].get<double>());
+  std::snprintf(text, sizeof(text), "%s%g", cell["at_least"].get<bool>() ? "≥ " : "",
+                cell["held"].get<double>());
   return text;
-}
-
-// For a shell.
-std::string quoted(const std::string& word) {
-  if (word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
-                             "_-./=:,@%+") == std::string::npos) {
-    return word;
-  }
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
-std::string calibrate_text(const Campaign& campaign, const Calibration& calibration) {
-  std::string text = "gaitctl";
-  for (const std::string& argument : calibrate_arguments(campaign, calibration, calibration.file)) {
-    text += " " + quoted(argument);
-  }
-  return text;
-}
-
-// The command that plays a run again, or the one that fails before it can be played.
-std::string replay_text(const Campaign& campaign, const CampaignRun& run,
-                        const RunnerOptions& options) {
-  const auto calibration =
-      calibration_of(campaign, settings_of(campaign, run, options), options.folder);
-  std::error_code ignored;
-  if (calibration && !fs::exists(calibration->file, ignored)) {
-    return calibrate_text(campaign, *calibration);
-  }
-  std::string text = "gaitctl run " + quoted(scenario_of(campaign, run, options.folder));
-  for (const std::string& setting : played_settings(campaign, run, options)) {
-    text += " --set " + quoted(setting);
-  }
-  return text + (options.trust ? " --trust" : "");
 }
 
 // Cells of a search. False if one is not finished.
@@ -90,31 +64,21 @@ bool add_found(const Campaign& campaign, RunOrder* order, json* cells) {
   bool finished = true;
   for (const SearchResult& found : order->found()) {
     finished = finished && found.finished;
-    cells->push_back({{"scenario", found.scenario},
-                      {"set", settings_json(campaign, found.values)},
-                      {"finished", found.finished},
-                      {"held", found.held ? json(*found.held) : json()}});
+    json cell = {{"scenario", found.scenario},
+                 {"finished", found.finished},
+                 {"held", found.held ? json(*found.held) : json()},
+                 {"at_least", found.at_least}};
+    add_settings(campaign, found.values, &cell);
+    cells->push_back(std::move(cell));
   }
   return finished;
 }
 
 }  // namespace
 
-SuccessInterval wilson_interval(int successes, int runs) {
-  if (runs <= 0) return {};
-  constexpr double kZ = 1.959964;  // 95 %, both sides
-  const double n = runs;
-  const double share = successes / n;
-  const double middle = share + kZ * kZ / (2.0 * n);
-  const double half = kZ * std::sqrt(share * (1.0 - share) / n + kZ * kZ / (4.0 * n * n));
-  const double scale = 1.0 + kZ * kZ / n;
-  return {std::max(0.0, (middle - half) / scale), std::min(1.0, (middle + half) / scale)};
-}
-
 json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                  const std::map<int, CampaignResult>& results, RunOrder* order,
-                  const RunnerOptions& options) {
-  const fs::path& folder = options.folder;
+                  const CampaignResults& results, RunOrder* order, const RunnerOptions& options,
+                  const fs::path& shown) {
   json cells = json::array();
   int total = 0;
   bool pass = order->remaining() == 0;
@@ -135,34 +99,27 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
     const SuccessInterval interval = wilson_interval(count.first, count.second);
     const double rate = static_cast<double>(count.first) / count.second;
     pass = pass && rate >= campaign.success_min;
-    cells.push_back({{"scenario", run.scenario},
-                     {"set", settings_json(campaign, run.values)},
-                     {"runs", count.second},
-                     {"successes", count.first},
-                     {"falls", falls[cell]},
-                     {"refusals", refusals[cell]},
-                     {"success_rate", rate},
-                     {"low", interval.low},
-                     {"high", interval.high}});
+    json entry = {{"scenario", run.scenario},   {"runs", count.second},
+                  {"successes", count.first},   {"falls", falls[cell]},
+                  {"refusals", refusals[cell]}, {"success_rate", rate},
+                  {"low", interval.low},        {"high", interval.high}};
+    add_settings(campaign, run.values, &entry);
+    cells.push_back(std::move(entry));
   }
-  std::vector<const CampaignResult*> worst;
-  for (const auto& [number, result] : results) worst.push_back(&result);
-  std::stable_sort(worst.begin(), worst.end(),
-                   [](const auto* a, const auto* b) { return badness(*a) > badness(*b); });
+  std::vector<const CampaignResult*> worst = worst_first(results);
   worst.resize(std::min(worst.size(), kWorstRuns));
   json worst_runs = json::array();
   for (const CampaignResult* result : worst) {
     const CampaignRun& run = runs[static_cast<std::size_t>(result->number) - 1];
-    const fs::path log = campaign_log(folder, result->number);
-    std::error_code ignored;
+    const bool logged = has_log(options.folder, result->number);
     json entry = {{"run", result->number},
                   {"what", describe_run(campaign, run)},
                   {"success", result->success},
                   {"fell", result->fell},
                   {"failed", result->failed},
                   {"problem", result->problem},
-                  {"log", fs::exists(log, ignored) ? json(log.string()) : json()},
-                  {"replay", replay_text(campaign, run, options)}};
+                  {"log", logged ? json(campaign_log(shown, result->number).string()) : json()},
+                  {"replay", replay_text(campaign, run, options, shown)}};
     for (std::size_t i = 0; i < campaign_figures().size(); ++i) {
       const double figure = result->figures[i];
       entry["figures"][campaign_figures()[i]] = std::isnan(figure) ? json() : json(figure);
@@ -182,14 +139,15 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
           {"groups", groups_json(campaign, runs, results)},
           {"targets", targets},
           {"worst", worst_runs},
-          {"results", (folder / "results.csv").string()}};
+          {"folder", shown.string()},
+          {"results", (shown / "results.csv").string()}};
 }
 
 std::string summary_text(const json& summary, std::size_t columns) {
   const bool searches = !summary["searched"].is_null();
   std::vector<std::vector<std::string>> rows;
   for (const json& cell : summary["cells"]) {
-    const std::string settings = settings_text(cell["set"]);
+    const std::string settings = settings_text(cell["labels"]);
     // Of the many cells of a sweep only those that fail.
     if (cell["set"].contains(kSweptSetting) && cell["success_rate"] >= summary["success_min"]) {
       continue;
@@ -227,7 +185,9 @@ std::string summary_text(const json& summary, std::size_t columns) {
         "\n" + (run["log"].is_null() ? "" : "        " + run["log"].get<std::string>() + "\n");
   }
   if (!summary["worst"].empty()) {
-    text += "\nthe worst again: " + summary["worst"][0]["replay"].get<std::string>() + "\n";
+    const bool from_here = summary["folder"].get<std::string>().empty();
+    text += "\nthe worst again" + std::string(from_here ? ", from this folder" : "") + ": " +
+            summary["worst"][0]["replay"].get<std::string>() + "\n";
   }
   text += "\nresults: " + summary["results"].get<std::string>() + "\n";
   text += summary["pass"].get<bool>() ? "campaign: passed\n" : "campaign: FAILED\n";

@@ -14,18 +14,13 @@
 
 namespace gaitd::cli {
 
-/// Interval that holds the true share of successes with 95 %, after Wilson.
-struct SuccessInterval {
-  double low = 0.0, high = 1.0;
-};
-SuccessInterval wilson_interval(int successes, int runs);
-
 /// Success rates by cell and by group, or what a search found, the worst runs with their logs and
 /// the commands that play them again, and whether the campaign is passed; a search is if it found
-/// something for every combination.
+/// something for every combination. Files in the folder are named from `shown`: the folder, or
+/// empty for a text that stands in it.
 nlohmann::json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                            const std::map<int, CampaignResult>& results, RunOrder* order,
-                            const RunnerOptions& options);
+                            const CampaignResults& results, RunOrder* order,
+                            const RunnerOptions& options, const std::filesystem::path& shown);
 /// Tables are at most `columns` wide; 0: no limit.
 std::string summary_text(const nlohmann::json& summary, std::size_t columns);
 
