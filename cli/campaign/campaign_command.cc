@@ -11,6 +11,7 @@
 #include "cli/campaign/local_engine.h"
 #include "cli/campaign/merge.h"
 #include "cli/campaign/outcome.h"
+#include "cli/campaign/page_command.h"
 #include "cli/campaign/plan.h"
 #include "cli/campaign/runner.h"
 #include "cli/campaign/slurm_engine.h"
@@ -194,6 +195,7 @@ void add_campaign_command(CLI::App* app, Context* context) {
   command->add_flag("--resume", arguments->resume,
                     "Go on where it was, and only that: an error where nothing was started");
   add_merge_command(command, context);
+  add_page_command(command, context);
   command->require_subcommand(0, 1);
   command->callback([context, command, arguments] {
     if (!command->get_subcommands().empty()) return;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <random>
 
 #include "cli/random_draw.h"
 
@@ -57,14 +58,15 @@ MeanInterval bootstrap_mean(const std::vector<double>& values, std::string_view 
   constexpr std::size_t kDraws = 20000000, kFewest = 200, kMost = 2000;
   const std::size_t n = values.size();
   const std::size_t resamples = std::clamp(kDraws / n, kFewest, kMost);
+  std::mt19937_64 draws(static_cast<std::uint64_t>(uniform_draw(0, name, 0) * 0x1p53));
   std::vector<double> means(resamples);
-  for (std::size_t r = 0; r < resamples; ++r) {
+  for (double& mean : means) {
     double sum = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-      const double place = uniform_draw(r, name, i) * static_cast<double>(n);
+      const double place = static_cast<double>(draws() >> 11) * 0x1p-53 * static_cast<double>(n);
       sum += values[std::min(n - 1, static_cast<std::size_t>(place))];
     }
-    means[r] = sum / static_cast<double>(n);
+    mean = sum / static_cast<double>(n);
   }
   std::sort(means.begin(), means.end());
   const auto percentile = [&](double share) {

@@ -7,6 +7,7 @@
 
 #include "cli/campaign/campaign.h"
 #include "cli/campaign/labels.h"
+#include "cli/campaign/pairs.h"
 #include "cli/campaign/plan.h"
 #include "cli/campaign/results.h"
 #include "cli/campaign/search.h"
@@ -166,6 +167,39 @@ TEST_F(ShardTest, PluginFilesAreCalledByTheirNames) {
   EXPECT_EQ(value_label(campaign, "toe_off.variant", "never"), "never");
   EXPECT_EQ(value_label(campaign, "toe_off.variant", "/a/b/mine.so"), "mine");
   EXPECT_EQ(value_label(campaign, "two", "/a/v2/x.so"), "v2/x");
+}
+
+TEST_F(ShardTest, ComparesVariantsOnTheSameSeeds) {
+  campaign("scenarios: [good.yaml]\nset: {a: [x, y], b: [p, q]}\nseeds: 10\n");
+  std::string error;
+  const auto plan = plan_of_file({file("c.yaml"), {}, false, {}}, &error);
+  ASSERT_TRUE(plan) << error;
+  CampaignResults results;
+  for (const CampaignRun& run : plan->runs) {
+    CampaignResult& result = results[run.number];
+    result = unjudged_result(run.number, "");
+    const bool second = run.values[0] == "y";
+    result.fell = second && run.seed <= 4;  // with p and q: eight of twenty pairs
+    result.success = !result.fell;
+    result.figures[3] = static_cast<double>(run.seed) + (second ? 0.5 : 0.0);
+  }
+  const json all = comparisons_json(*plan, results);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0]["key"], "a");
+  EXPECT_EQ(all[0]["pairs"], 20);
+  const json& falls = all[0]["shares"][0];
+  EXPECT_EQ(falls["only_first"], 0);
+  EXPECT_EQ(falls["only_second"], 8);
+  EXPECT_NEAR(falls["p"].get<double>(), 2.0 / 256.0, 1e-12);
+  EXPECT_EQ(falls["more"], 0);
+  // However much seeds differ among each other, the pairs do not.
+  const json& figure = all[0]["figures"][0];
+  EXPECT_EQ(figure["pairs"], 12);
+  EXPECT_NEAR(figure["low"].get<double>(), 0.5, 1e-12);
+  EXPECT_NEAR(figure["high"].get<double>(), 0.5, 1e-12);
+  // Nothing differs by the other setting.
+  EXPECT_EQ(all[1]["shares"][0]["p"], 1.0);
+  EXPECT_EQ(all[1]["shares"][0]["more"], json());
 }
 
 }  // namespace
