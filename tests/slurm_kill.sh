@@ -39,7 +39,7 @@ at_work() {
   local task rows
   task=$(squeue --noheader --states=R --format='%N %K' | awk -v node="$1" '$1 == node { print $2 }')
   [[ -n $task ]] || return 1
-  rows=$(wc -l <"$2/shards/$(printf %04d "$task")/results.csv") 2>/dev/null || return 1
+  rows=$({ wc -l <"$2/shards/$(printf %04d "$task")/results.csv"; } 2>/dev/null) || return 1
   ((rows > 2 && rows < 20))
 }
 

@@ -81,8 +81,8 @@ json quantiles(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   json out = json::array();
   for (const double share : {0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0}) {
-    out.push_back(
-        values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)]);
+    out.push_back(values[static_cast<std::size_t>(
+        std::lround(share * static_cast<double>(values.size() - 1)))]);
   }
   return out;
 }

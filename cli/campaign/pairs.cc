@@ -93,10 +93,10 @@ json comparisons_json(const CampaignPlan& plan, const CampaignResults& results) 
   if (plan.campaign.searches) return comparisons;
   int combinations = 1, stride = 1;
   for (const CampaignSetting& setting : plan.campaign.settings) {
-    combinations *= static_cast<int>(setting.values.size());
+    combinations *= std::max(1, static_cast<int>(setting.values.size()));
   }
   for (const CampaignSetting& setting : plan.campaign.settings) {
-    const int count = static_cast<int>(setting.values.size());
+    const int count = std::max(1, static_cast<int>(setting.values.size()));
     for (int a = 0; a < count && setting.values.size() <= kMostValues; ++a) {
       for (int b = a + 1; b < count; ++b) {
         const std::vector<Pair> pairs = pairs_of(results, combinations, stride, count, a, b);

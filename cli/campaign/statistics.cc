@@ -70,7 +70,7 @@ MeanInterval bootstrap_mean(const std::vector<double>& values, std::string_view 
   }
   std::sort(means.begin(), means.end());
   const auto percentile = [&](double share) {
-    return means[static_cast<std::size_t>(share * static_cast<double>(resamples - 1) + 0.5)];
+    return means[static_cast<std::size_t>(std::lround(share * static_cast<double>(resamples - 1)))];
   };
   return {mean_of(values), percentile(0.025), percentile(0.975)};
 }

@@ -5,6 +5,8 @@ import {make} from '../shared/dom.js';
 import {showRuns} from './run_panel.js';
 import {number, pressable} from './svg.js';
 
+const kShown = 3;  // comparisons of one setting that stand open
+
 const cell = (words, className = '') => make('td', {textContent: words, className});
 const chance = (p) => p < 0.001 ? '< 0.001' : p.toFixed(3);
 
@@ -48,6 +50,8 @@ function comparison(one) {
 
 export function comparisons() {
   if (!data.comparisons.length) return [];
+  const byKey = new Map();
+  for (const one of data.comparisons) byKey.set(one.key, [...(byKey.get(one.key) ?? []), one]);
   const tests = data.comparisons.reduce((sum, {shares, figures}) => sum + shares.length + figures.length, 0);
   return [make('p', {className: 'quiet', textContent:
             'Each pair is two runs that differ in this setting alone: scenario, seed, draws and all else are the same. ' +
@@ -55,5 +59,7 @@ export function comparisons() {
             'fell, with intervals by bootstrap. What is not decided at 5 % says how many more pairs would decide it, ' +
             'with a power of 80 %, if the difference is what was seen. ' +
             `Of ${tests} comparisons ${Math.max(1, Math.round(0.05 * tests))} would seem decided by chance.`}),
-          ...data.comparisons.map(comparison)];
+          ...[...byKey].flatMap(([key, those]) => those.length <= kShown ? those.map(comparison) :
+              [make('details', {}, make('summary', {textContent: `${those.length} comparisons of ${key}`}),
+                    ...those.map(comparison))])];
 }

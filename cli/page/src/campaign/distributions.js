@@ -6,6 +6,9 @@ import {make} from '../shared/dom.js';
 import {showRun} from './run_panel.js';
 import {draw, hint, number, picture, scale, text, ticks} from './svg.js';
 
+// Of the colours of lines those that nobody takes for the red of what failed.
+const kCalm = [0, 2, 4, 7, 9, 10, 8, 13];
+
 const kWidth = 860, kLeft = 190, kLine = 46;
 
 // The same run stands at the same height each time; dots would hide each other on a line.
@@ -27,7 +30,7 @@ function plot(axis, f) {
     const k = axis.place < 0 ? 0 : run.places[axis.place];
     const dot = draw('circle', {cx: x(value), cy: kLine * (k + 0.5) + spread(run.run) * 26, r: 3, 'data-run': run.run,
                                 class: run.success ? 'run' : 'run bad'});
-    if (run.success) dot.style.fill = lineColor(k);
+    if (run.success) dot.style.fill = lineColor(kCalm[k % kCalm.length]);
     dots.append(hint(dot, `run ${run.run}: ${number(value)}${run.fell ? ', fell' : ''}`));
   }
   dots.addEventListener('click', ({target}) => target.dataset.run && showRun(Number(target.dataset.run)));
