@@ -25,7 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-
 struct Arguments {
   std::vector<std::string> scenarios;
   std::vector<std::string> settings;

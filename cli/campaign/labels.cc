@@ -33,7 +33,7 @@ std::string value_label(const Campaign& campaign, const std::string& key,
   if (setting == campaign.settings.end()) return tail(value, 1);
   const int most = static_cast<int>(std::count(value.begin(), value.end(), '/')) + 1;
   for (int parts = 1; parts <= most; ++parts) {
-    const std::string name = tail(value, parts);
+    std::string name = tail(value, parts);
     const bool unique =
         std::none_of(setting->values.begin(), setting->values.end(), [&](const std::string& other) {
           return other != value &&

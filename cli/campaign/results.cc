@@ -138,6 +138,7 @@ std::vector<const CampaignResult*> worst_first(const CampaignResults& results) {
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<const CampaignResult*> worst;
+  worst.reserve(ranked.size());
   for (const auto& [badness, result] : ranked) worst.push_back(result);
   return worst;
 }
