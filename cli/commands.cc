@@ -2,7 +2,7 @@
 #include "cli/commands.h"
 
 #include "cli/calibrate/calibrate_command.h"
-#include "cli/campaign_command.h"
+#include "cli/campaign/campaign_command.h"
 #include "cli/compare_command.h"
 #include "cli/completion_command.h"
 #include "cli/daemon_commands.h"

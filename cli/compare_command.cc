@@ -48,19 +48,27 @@ std::vector<std::string> settings_of(const std::string& overlay, std::string* er
   return assignments;
 }
 
-std::string percent(double a, double b) {
-  if (!std::isfinite(a) || !std::isfinite(b) || a == 0.0) return a == b ? "=" : "";
-  const double change = 100.0 * (b - a) / std::abs(a);
-  char text[32];
-  std::snprintf(text, sizeof(text), "%+.1f %%", change);
-  return a == b ? "=" : text;
-}
-
 std::string cell(double value, const std::string& unit) {
   if (!std::isfinite(value)) return "-";
   char text[40];
   std::snprintf(text, sizeof(text), "%.4g", value);
   return unit.empty() ? text : std::string(text) + " " + unit;
+}
+
+// Of a unit: what is less is nearly nothing, and so would be the sense of a percentage of it.
+double least(const std::string& unit) {
+  if (unit == "us") return 1.0;
+  if (unit == "N m") return 0.1;
+  return 1e-3;  // m, rad, s and what has no unit
+}
+
+std::string change(double a, double b, const std::string& unit) {
+  if (!std::isfinite(a) || !std::isfinite(b)) return "";
+  if (a == b) return "=";
+  if (std::abs(a) < least(unit)) return (b > a ? "+" : "") + cell(b - a, unit);
+  char text[32];
+  std::snprintf(text, sizeof(text), "%+.1f %%", 100.0 * (b - a) / std::abs(a));
+  return text;
 }
 
 using Runs = std::array<RunReport, 2>;
@@ -72,7 +80,7 @@ std::string text_of(const Arguments& arguments, const Runs& runs) {
   for (const daemon::Figure& figure : runs[0].verdict->figures) {
     const double other = runs[1].verdict->figure(figure.name);
     rows.push_back({figure.name, cell(figure.value, figure.unit), cell(other, figure.unit),
-                    percent(figure.value, other)});
+                    change(figure.value, other, figure.unit)});
   }
   for (const daemon::Judgement& judgement : runs[0].verdict->judgements) {
     const auto& others = runs[1].verdict->judgements;

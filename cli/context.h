@@ -13,7 +13,8 @@ inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;  // the daemon refused, or the run failed
 inline constexpr int kUsage = 2;
 inline constexpr int kNoDaemon = 3;
-inline constexpr int kDamaged = 4;  // done, but the log that was read is damaged
+inline constexpr int kDamaged = 4;        // done, but the log that was read is damaged
+inline constexpr int kInterrupted = 130;  // as a shell reports a program that SIGINT ended
 
 /// What the command line said, shared by all commands. Parsing only chooses the action; main() runs
 /// it afterwards.

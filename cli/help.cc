@@ -56,6 +56,8 @@ const std::map<std::string, const char*>& examples() {
       {"abort", "gaitctl abort"},
       {"run", "gaitctl run flat-0.35 turn --set seed=2 --log logs/"},
       {"campaign", "gaitctl campaign push-map.yaml -o pushes --jobs 4"},
+      {"campaign merge", "gaitctl campaign merge shard-1 shard-2 -o merged"},
+      {"campaign report", "gaitctl campaign report pushes -o pushes.html"},
       {"compare", "gaitctl compare push-bent-forward -- a.yaml b.yaml"},
       {"sim push", "gaitctl sim push --link utorso --force 0,200,0 --duration 0.1"},
       {"sim reset", "gaitctl sim reset"},

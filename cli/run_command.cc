@@ -25,8 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kInterrupted = 130;  // as a shell reports a program that SIGINT ended
-
 struct Arguments {
   std::vector<std::string> scenarios;
   std::vector<std::string> settings;

@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export PATH=$PWD/build/release/bin:$PATH
 campaigns=(gate gauntlet terrain estimators model-errors walks footsteps parameters
   drive drive-parameters drive-pushed)
-names=("${campaigns[@]}" mutations sanitizers soak)
+names=("${campaigns[@]}" mutations sanitizers slurm soak)
 chosen=("$@")
 ((${#chosen[@]})) || chosen=("${names[@]}")
 for name in "${chosen[@]}"; do
@@ -39,6 +39,7 @@ for name in "${chosen[@]}"; do
   case $name in
     mutations) tests/mutations.sh >"$out/output.txt" 2>&1 || result=$? ;;
     sanitizers) tests/sanitizers.sh >"$out/output.txt" 2>&1 || result=$? ;;
+    slurm) tests/slurm_kill.sh >"$out/output.txt" 2>&1 || result=$? ;;
     soak) tests/soak.sh 0.75 >"$out/output.txt" 2>&1 || result=$? ;;
     *) gaitctl campaign "sim/campaigns/$name.yaml" -o "$out/$commit" || result=$? ;;
   esac

@@ -61,8 +61,8 @@ plot: {angle: disturbances.0.direction, scale: 0.1, label: impulse (N s)}
 MAP
 expect 0 gaitctl campaign map.yaml -o map
 (($(wc -l <map/results.csv) == 5)) || fail "expected 4 runs: $(cat map/results.csv)"
-largest() { awk -v angle="direction=$1 " '$1 == "push-bent-forward" && index($0, angle) { print $2 }' map/summary.txt; }
-(($(largest 0) == 1300 && $(largest 1.5708) == 800)) || fail "summary: $(cat map/summary.txt)"
+largest() { awk -v angle="direction=$1 " '$1 == "push-bent-forward" && index($0, angle) { print ($2 == "≥" ? $2 $3 : $2) }' map/summary.txt; }
+[[ $(largest 0) == ≥1300 && $(largest 1.5708) == 800 ]] || fail "summary: $(cat map/summary.txt)"
 grep -q '<polygon points="160.0,[0-9.]* [0-9.]*,190.0 "' map/push-bent-forward.svg ||
   fail "picture: $(cat map/push-bent-forward.svg)"
 
@@ -110,7 +110,7 @@ calibrations=(measured/calibrations/*)
   fail "calibrations: ${calibrations[*]}"
 grep -q 'zero:' "${calibrations[1]}" || fail "measured: $(cat "${calibrations[1]}")"
 (($(grep -c 'hydraulic,1,' measured/results.csv) == 2)) || fail "results: $(cat measured/results.csv)"
-replays=$(grep -c "\"replay\": .*calibration=$PWD/${calibrations[1]}" measured/summary.json)
+replays=$(grep -c "\"replay\": .*calibration=${calibrations[1]#measured/}" measured/summary.json)
 ((replays == 2)) || fail "replays: $(grep '"replay"' measured/summary.json)"
 touch -d 2020-01-01 "${calibrations[1]}"
 rm measured/results.csv

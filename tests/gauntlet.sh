@@ -24,9 +24,9 @@ done
 grep -q '^  ok .*mode=walk-straight 4/4' out/summary.txt || fail "targets: $(cat out/summary.txt)"
 
 # The worst again, to the bit: the same largest error of the capture point.
-replay=$(sed -n 's/^the worst again: //p' out/summary.txt)
-[[ $replay == "gaitctl run $scratch/out/scenarios/"* ]] || fail "no command: $(cat out/summary.txt)"
-eval "${replay/gaitctl/gaitctl --json}" >again.json
+replay=$(sed -n 's/^the worst again, from this folder: //p' out/summary.txt)
+[[ $replay == "gaitctl run scenarios/"* ]] || fail "no command: $(cat out/summary.txt)"
+(cd out && eval "${replay/gaitctl/gaitctl --json}") >again.json
 error=$(sed -n 's/.*"icp_error_max": \([0-9.]*\).*/\1/p' again.json | head -1)
 grep -q ",$(printf '%.6g' "$error")," out/results.csv || fail "$error is not in $(cat out/results.csv)"
 

@@ -8,7 +8,7 @@ function(run what)
   execute_process(COMMAND ${CMAKE_COMMAND} -E env CI=true ${NPM} --prefix ${WORK} ${ARGN}
                   RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
   if(NOT result EQUAL 0)
-    message(WARNING "the pages of gaitctl were not built, gaitctl report and gaitctl view will not work: "
+    message(WARNING "the pages of gaitctl were not built, gaitctl report, view and campaign report will not work: "
                     "${what} failed. Build again when the npm registry can be reached.\n${text}")
     set(failed TRUE PARENT_SCOPE)
   endif()

@@ -126,7 +126,8 @@ std::string as_it_is(const std::string& text) {
 void add_commands(const CLI::App& app, const std::string& before, std::string* out) {
   for (const CLI::App* command : visible_commands(app)) {
     const std::string name = before + command->get_name();
-    if (visible_commands(*command).empty()) {
+    // Also one that does something by itself.
+    if (visible_commands(*command).empty() || command->get_require_subcommand_min() == 0) {
       *out += ".SS " + bold(name) + synopsis_of(*command) + "\n";
       *out += escaped(command->get_description()) + ".\n" + options_of(*command);
       if (!command->get_footer().empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {$, enable, say} from './dom.js';
+import {$, enable, say} from '../shared/dom.js';
 import {told} from './toast.js';
 
 const number = (id) => Number($(id).value);

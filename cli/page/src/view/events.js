@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {$, say} from './dom.js';
+import {$, say} from '../shared/dom.js';
 import {isTwin, sentence, subject} from './event_list.js';
 
 const kMost = 200;

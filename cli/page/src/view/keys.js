@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {$, isText, make} from './dom.js';
+import {$, isText, make} from '../shared/dom.js';
 
 const kShown = [
   ['Esc', 'E-STOP, from anywhere on the page'], ['Space', 'stop: finish the step and stand'],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {$, enable, make, say} from './dom.js';
+import {$, enable, make, say} from '../shared/dom.js';
 
 const kSwap = 60;  // s: a swap is watched for a while before it is answered
 const time = (value) => typeof value === 'number' ? value.toFixed(0) : '–';

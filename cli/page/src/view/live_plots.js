@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {panels, timePlot} from '../shared/plots.js';
-import {make} from './dom.js';
+import {make} from '../shared/dom.js';
 import {roundRange} from './round_range.js';
 
 const kHeight = 165;

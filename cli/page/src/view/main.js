@@ -4,7 +4,7 @@ import './view.css';
 import {addLegend} from '../shared/legend.js';
 import {addCommands} from './commands.js';
 import {Connection} from './connection.js';
-import {$, say} from './dom.js';
+import {$, say} from '../shared/dom.js';
 import {Drive} from './drive.js';
 import {DriveKeys} from './drive_keys.js';
 import {EStop} from './estop.js';

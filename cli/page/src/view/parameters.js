@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {$, make, say} from './dom.js';
+import {$, make, say} from '../shared/dom.js';
 import {grouped, isChanged, shown, stepOf} from './parameter_list.js';
 import {tell} from './toast.js';
 

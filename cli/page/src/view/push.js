@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import * as THREE from 'three';
 import {PushArrow} from '../shared/push_arrow.js';
-import {say} from './dom.js';
+import {say} from '../shared/dom.js';
 import {refused} from './refused.js';
 import {springForce} from './spring.js';
 

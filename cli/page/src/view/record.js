@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {$, enable, say} from './dom.js';
+import {$, enable, say} from '../shared/dom.js';
 import {tell} from './toast.js';
 
 // A recording that the server makes of what gaitd tells, and the report of it.

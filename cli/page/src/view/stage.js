@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Scene} from '../shared/scene.js';
-import {$} from './dom.js';
+import {$} from '../shared/dom.js';
 import {Live} from './live.js';
 import {LivePlots} from './live_plots.js';
 import {Push} from './push.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {$, make, say} from './dom.js';
+import {$, make, say} from '../shared/dom.js';
 
 const number = (value, digits) => typeof value === 'number' ? value.toFixed(digits) : '–';
 const kMega = 1e6;

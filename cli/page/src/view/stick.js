@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {make} from './dom.js';
+import {make} from '../shared/dom.js';
 
 const kDead = 0.08;  // share of the way that counts as none
 

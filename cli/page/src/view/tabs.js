@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {$} from './dom.js';
+import {$} from '../shared/dom.js';
 
 // One of the panels at a time. `opened(name)`: of the panel that is seen now.
 export function addTabs(opened) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {$, make} from './dom.js';
+import {$, make} from '../shared/dom.js';
 import {refused} from './refused.js';
 
 const kMost = 4, kGood = 4000, kBad = 12000;  // ms that they stay

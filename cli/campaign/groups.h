@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/campaign/campaign.h"
+#include "cli/campaign/results.h"
+#include "daemon/config/yaml_reader.h"
+
+namespace gaitd::cli {
+
+/// Reads `success_min`: a rate for each combination, or rates for runs with certain settings.
+void read_success_min(daemon::MapReader* root, Campaign* campaign);
+
+/// Reads `groups`: lists of settings, and `scenario`, by which the summary counts.
+void read_groups(daemon::MapReader* root, Campaign* campaign);
+
+/// Success rate with its interval for each combination of values of each group.
+nlohmann::json groups_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                           const CampaignResults& results);
+
+/// How often the runs of each target succeeded, and whether that is enough; those without any run
+/// are left out.
+nlohmann::json targets_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                            const CampaignResults& results);
+
+/// Both as they stand in the summary; tables are at most `columns` wide, 0: no limit.
+std::string groups_text(const nlohmann::json& groups, std::size_t columns);
+std::string targets_text(const nlohmann::json& targets);
+
+/// A share as a percentage.
+std::string percent_text(double share);
+
+}  // namespace gaitd::cli

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/campaign/plan.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+
+#include "cli/campaign/settings.h"
+#include "cli/print.h"
+#include "daemon/config/daemon_config.h"
+#include "daemon/config/library_paths.h"
+
+namespace gaitd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* kCopy = "campaign.yaml";
+constexpr const char* kOrigin = "origin.json";
+constexpr const char* kShardLine = "# --shard ";
+
+std::string read_file(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// KEY=VALUE of everything that a run may get from the file.
+std::vector<std::string> all_assignments(const Campaign& campaign) {
+  std::vector<std::string> all;
+  for (const CampaignSetting& setting : campaign.settings) {
+    for (const std::string& value : setting.values) {
+      for (std::string& one : assignments(campaign, setting.key, value)) {
+        all.push_back(std::move(one));
+      }
+    }
+  }
+  for (const CampaignDraw& draw : campaign.draws) {
+    for (const std::string& value : draw.choices) all.push_back(draw.key + "=" + value);
+  }
+  return all;
+}
+
+// Why the campaign may not be played; empty if it may. Its settings reach gaitd as --set, where
+// nobody could tell whose word they are.
+std::string what_no_file_may_say(const Campaign& campaign, bool trust) {
+  for (const std::string& assignment : all_assignments(campaign)) {
+    daemon::Settings settings;
+    daemon::Issues unreadable;  // gaitd will say so
+    settings.set_assignment(assignment, &unreadable);
+    for (const daemon::Settings::Entry& entry : daemon::library_paths(settings)) {
+      if (trust) continue;
+      return entry.key + "=" + entry.value->text +
+             ": a file may not name code to run; name an installed variant, give the path with "
+             "--set, or say --trust if you know the library";
+    }
+    for (const daemon::Settings::Entry& entry : settings.effective()) {
+      if (!daemon::is_own_key(entry.key)) continue;
+      return entry.key +
+             ": a file may not say where gaitd writes, listens and finds plugins; remove it there, "
+             "or give it with --set";
+    }
+  }
+  return "";
+}
+
+std::optional<CampaignPlan> make_plan(const CampaignOrigin& origin, const std::string& file,
+                                      std::string* error) {
+  daemon::Issues issues;
+  std::optional<Campaign> campaign = load_campaign(file, &issues, origin.file);
+  if (!campaign) {
+    *error = issues.error_text();
+    return std::nullopt;
+  }
+  if (const std::string why = what_no_file_may_say(*campaign, origin.trust); !why.empty()) {
+    *error = file + ": " + why;
+    return std::nullopt;
+  }
+  CampaignPlan plan{origin, std::move(*campaign), "", {}, {}};
+  for (const std::string& setting : origin.settings) {
+    error->clear();
+    if (!narrow(&plan.campaign, setting, error)) plan.settings.push_back(setting);
+    if (!error->empty()) return std::nullopt;
+  }
+  plan.runs = expand(plan.campaign);
+  plan.text = plan.campaign.text;
+  return plan;
+}
+
+// Of one shard: it is another folder than those of the others.
+std::string text_of(const CampaignPlan& plan) {
+  const Shard& shard = plan.origin.shard;
+  return plan.text + (shard.whole() ? "" : kShardLine + shard_text(shard) + "\n");
+}
+
+}  // namespace
+
+std::optional<CampaignPlan> plan_of_file(const CampaignOrigin& origin, std::string* error) {
+  std::optional<CampaignPlan> plan = make_plan(origin, origin.file, error);
+  if (!plan) return plan;
+  // What --set says makes another campaign of it.
+  for (const std::string& setting : origin.settings) plan->text += "# --set " + setting + "\n";
+  return plan;
+}
+
+std::optional<CampaignPlan> plan_of_folder(const fs::path& folder, std::string* error) {
+  const json document = json::parse(read_file(folder / kOrigin), nullptr, false);
+  const auto shard = document.is_object() ? parse_shard(document.value("shard", "")) : std::nullopt;
+  if (!shard || !document.contains("file") || !document.contains("set")) {
+    *error = folder.string() + ": not the folder of a campaign";
+    return std::nullopt;
+  }
+  const CampaignOrigin origin{document.value("file", ""),
+                              document["set"].get<std::vector<std::string>>(),
+                              document.value("trust", false), *shard};
+  std::optional<CampaignPlan> plan = make_plan(origin, (folder / kCopy).string(), error);
+  if (!plan) return plan;
+  const std::string own = kShardLine + shard_text(*shard) + "\n";
+  if (!shard->whole() && plan->text.ends_with(own)) {
+    plan->text.resize(plan->text.size() - own.size());
+  }
+  return plan;
+}
+
+CampaignFolder::~CampaignFolder() {
+  if (lock_ >= 0) close(lock_);
+}
+
+bool CampaignFolder::take(const fs::path& folder, const CampaignPlan& plan, std::string* error) {
+  std::error_code code;
+  fs::create_directories(folder / "logs", code);
+  if (code) {
+    *error = "cannot make the folder " + folder.string() + ": " + code.message() +
+             "; give another one with -o";
+    return false;
+  }
+  lock_ = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (lock_ < 0 || flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    *error = folder.string() + ": another campaign is running in this folder";
+    return false;
+  }
+  const std::string text = text_of(plan);
+  if (!holds_campaign(folder)) {
+    std::ofstream(folder / kCopy, std::ios::binary) << text;
+  } else if (read_file(folder / kCopy) != text) {
+    *error = folder.string() + ": holds results of another campaign, or of this one before its " +
+             "file, --set or --shard was changed; give another folder with -o, or delete this one";
+    return false;
+  }
+  std::ofstream(folder / kOrigin) << json_text({{"file", plan.origin.file},
+                                                {"set", plan.origin.settings},
+                                                {"trust", plan.origin.trust},
+                                                {"shard", shard_text(plan.origin.shard)}});
+  return true;
+}
+
+bool holds_campaign(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::exists(folder / kCopy, ignored);
+}
+
+}  // namespace gaitd::cli

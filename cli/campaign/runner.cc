@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/campaign/runner.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <system_error>
+
+#include "cli/campaign/calibration.h"
+#include "cli/child_pool.h"
+#include "cli/gauntlet/gauntlet.h"
+#include "cli/stop_signals.h"
+
+namespace gaitd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The logs of the runs: while they are written where there is room, then those of the worst in the
+// folder of the campaign.
+class Logs {
+ public:
+  Logs(const fs::path& folder, const fs::path& scratch, int keep) : folder_(folder), keep_(keep) {
+    // What a killed campaign left; its last children may still be writing there.
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(logs(), ignored)) {
+      if (entry.path().filename().string().starts_with(kRunning)) {
+        fs::remove_all(entry.path(), ignored);
+      }
+    }
+    running_ = (scratch.empty() ? logs() : scratch) / (kRunning + std::to_string(getpid()));
+    fs::create_directories(running_, ignored);
+  }
+
+  ~Logs() {
+    std::error_code ignored;
+    fs::remove_all(running_, ignored);
+  }
+
+  // While they are being written.
+  fs::path running(int number, const char* extension) const {
+    return running_ / log(number, extension).filename();
+  }
+
+  // Those of the worst runs stay, or come from where they were written; all others go.
+  void keep_worst(const CampaignResults& results) {
+    int kept = 0;
+    std::error_code ignored;
+    for (const CampaignResult* result : worst_first(results)) {
+      const int number = result->number;
+      if (deleted_.contains(number)) continue;
+      const bool fresh = fs::exists(running(number, ".mcap"), ignored);
+      if ((fresh || has_log(folder_, number)) && kept++ < keep_) {
+        if (fresh) keep(number);
+        continue;
+      }
+      forget(number);
+      deleted_.insert(number);
+    }
+  }
+
+ private:
+  static constexpr const char* kRunning = "running-";
+
+  fs::path logs() const { return campaign_log(folder_, 0).parent_path(); }
+  fs::path log(int number, const char* extension) const {
+    return campaign_log(folder_, number).replace_extension(extension);
+  }
+  void keep(int number) const {
+    for (const char* extension : {".mcap", ".txt"}) {
+      const fs::path from = running(number, extension), to = log(number, extension);
+      std::error_code other_disk, ignored;
+      fs::rename(from, to, other_disk);
+      if (!other_disk) continue;
+      fs::copy_file(from, to, fs::copy_options::overwrite_existing, ignored);
+      fs::remove(from, ignored);
+    }
+  }
+  void forget(int number) const {
+    std::error_code ignored;
+    for (const char* extension : {".mcap", ".txt"}) {
+      fs::remove(log(number, extension), ignored);
+      fs::remove(running(number, extension), ignored);
+    }
+  }
+
+  const fs::path folder_;
+  const int keep_;
+  fs::path running_;
+  std::set<int> deleted_;
+};
+
+std::vector<std::string> arguments_of(const Campaign& campaign, const CampaignRun& run,
+                                      const RunnerOptions& options, const fs::path& log) {
+  std::vector<std::string> arguments{options.gaitctl.string(),
+                                     "--json",
+                                     "run",
+                                     scenario_of(campaign, run, options.folder),
+                                     "--log",
+                                     log.string()};
+  if (options.trust) arguments.emplace_back("--trust");
+  for (const std::string& setting : played_settings(campaign, run, options)) {
+    arguments.insert(arguments.end(), {"--set", setting});
+  }
+  return arguments;
+}
+
+// Why the robot of this run could not be measured; null if nothing is wrong.
+const std::string* failure_of(const Campaign& campaign, const CampaignRun& run,
+                              const RunnerOptions& options, const CalibrationFailures& failures) {
+  if (failures.empty()) return nullptr;
+  const auto calibration =
+      calibration_of(campaign, settings_of(campaign, run, options), options.folder);
+  const auto failure = calibration ? failures.find(calibration->file.string()) : failures.end();
+  return failure == failures.end() ? nullptr : &failure->second;
+}
+
+CampaignResult result_of(const Campaign& campaign, int number, int status, const fs::path& output) {
+  std::ifstream in(output);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  CampaignResult result = read_result(campaign, number, text);
+  if (WIFSIGNALED(status)) {
+    result.success = false;
+    result.problem = "gaitctl run was killed by signal " + std::to_string(WTERMSIG(status));
+  }
+  std::error_code ignored;
+  fs::remove(output, ignored);
+  return result;
+}
+
+}  // namespace
+
+std::string scenario_of(const Campaign& campaign, const CampaignRun& run, const fs::path& folder) {
+  if (!campaign.drawn.contains(run.scenario)) return scenario_from(campaign.file, run.scenario);
+  return (folder / "scenarios" / (run.scenario + "-" + std::to_string(run.seed) + ".yaml"))
+      .string();
+}
+
+bool write_drawn(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                 const fs::path& folder, std::string* error) {
+  std::error_code ignored;
+  if (!campaign.drawn.empty()) fs::create_directories(folder / "scenarios", ignored);
+  std::set<std::string> seen;
+  for (const CampaignRun& run : runs) {
+    if (!campaign.drawn.contains(run.scenario)) continue;
+    const std::string path = scenario_of(campaign, run, folder);
+    if (!seen.insert(path).second) continue;
+    const std::string text = gauntlet_scenario(run.scenario, run.seed);
+    std::ifstream in(path, std::ios::binary);
+    const std::string there(std::istreambuf_iterator<char>(in), {});
+    if (there == text) continue;
+    if (!text.starts_with(there)) {
+      *error = path + ": another gaitd has drawn it otherwise; give another folder with -o";
+      return false;
+    }
+    std::ofstream out(path, std::ios::binary | std::ios::trunc);
+    out << text << std::flush;
+    if (out) continue;
+    *error = path + ": cannot write: " + std::strerror(errno);
+    return false;
+  }
+  return true;
+}
+
+std::vector<std::string> settings_of(const Campaign& campaign, const CampaignRun& run,
+                                     const RunnerOptions& options) {
+  std::vector<std::string> settings = assignments(campaign, run);
+  settings.insert(settings.end(), options.settings.begin(), options.settings.end());
+  return settings;
+}
+
+std::vector<std::string> played_settings(const Campaign& campaign, const CampaignRun& run,
+                                         const RunnerOptions& options) {
+  std::vector<std::string> settings = settings_of(campaign, run, options);
+  if (const auto calibration = calibration_of(campaign, settings, options.folder)) {
+    constexpr std::string_view kKey = "calibration=";
+    std::erase_if(settings, [&](const std::string& s) { return s.starts_with(kKey); });
+    settings.push_back(std::string(kKey) + calibration->file.string());
+  }
+  return settings;
+}
+
+PoolEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs,
+                  const RunnerOptions& options, const CalibrationFailures& failures,
+                  RunOrder* order, ResultFile* results, const std::function<void(int)>& progress,
+                  std::string* error) {
+  const StopSignals signals;
+  Logs logs(options.folder, options.scratch, campaign.keep_logs);
+  ChildPool pool(options.jobs);
+  logs.keep_worst(results->results());
+  int finished = 0;
+  const auto append = [&](const CampaignResult& result, std::string* why) {
+    if (!results->append(result, why)) return false;
+    logs.keep_worst(results->results());
+    ++finished;
+    return true;
+  };
+  const auto start = [&](std::string* why) {
+    const std::optional<int> next = order->next();
+    if (!next) return false;
+    const CampaignRun& run = runs[static_cast<std::size_t>(*next) - 1];
+    if (const std::string* failure = failure_of(campaign, run, options, failures)) {
+      if (!append(unjudged_result(run.number, *failure), why)) return false;
+      progress(finished);
+      return true;
+    }
+    return pool.start(run.number,
+                      arguments_of(campaign, run, options, logs.running(run.number, ".mcap")),
+                      logs.running(run.number, ".json").string(), "/dev/null", why);
+  };
+  const auto finish = [&](const ChildPool::End& end, std::string* why) {
+    const CampaignResult result =
+        result_of(campaign, end.number, end.status, logs.running(end.number, ".json"));
+    return append(result, why);
+  };
+  return work_off(&pool, {start, finish, [&] { progress(finished); }}, error);
+}
+
+}  // namespace gaitd::cli

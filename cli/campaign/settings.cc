@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/campaign/settings.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace gaitd::cli {
+namespace {
+
+using daemon::MapReader;
+using daemon::Node;
+using daemon::NodeKind;
+using daemon::NodePtr;
+
+CampaignSetting read_bundles(MapReader map, const std::string& key, Campaign* campaign) {
+  CampaignSetting setting{key, {}};
+  for (const Node::Entry& value : map.entries()) {
+    std::vector<std::string>& assignments = campaign->bundles[key][value.key];
+    for (const Node::Entry& entry : map.map(value.key).entries()) {
+      assignments.push_back(entry.key + "=" + setting_text(*entry.value));
+    }
+    setting.values.push_back(value.key);
+  }
+  return setting;
+}
+
+}  // namespace
+
+std::string setting_text(const Node& node) {
+  return node.kind == NodeKind::kScalar && !node.quoted ? node.text : daemon::to_json(node).dump();
+}
+
+void read_settings(MapReader map, Campaign* campaign) {
+  for (const Node::Entry& entry : map.entries()) {
+    CampaignSetting setting{entry.key, {}};
+    if (entry.value->kind == NodeKind::kList) {
+      for (const NodePtr& item : entry.value->items) setting.values.push_back(setting_text(*item));
+    } else if (entry.value->kind == NodeKind::kMap) {
+      setting = read_bundles(map.map(entry.key), entry.key, campaign);
+    }
+    if (setting.values.empty()) {
+      map.fail(entry.key, "a list of values, or names with the keys that each sets",
+               daemon::describe(*entry.value), "write [a, b]; one value is a list too");
+      continue;
+    }
+    campaign->settings.push_back(std::move(setting));
+  }
+}
+
+bool narrow(Campaign* campaign, const std::string& assignment, std::string* error) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos) return false;
+  const std::string key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
+  // What is drawn is not asked for again: --set comes later, and wins.
+  std::erase_if(campaign->draws, [&](const CampaignDraw& draw) { return draw.key == key; });
+  const bool searches = campaign->searches && campaign->settings.back().key == key;
+  const auto setting =
+      std::find_if(campaign->settings.begin(), campaign->settings.end(),
+                   [&](const CampaignSetting& candidate) { return candidate.key == key; });
+  if (setting == campaign->settings.end() || searches) return false;
+  const auto bundle = campaign->bundles.find(key);
+  if (bundle != campaign->bundles.end() && !bundle->second.contains(value)) {
+    *error = "--set " + assignment + ": expected one of the campaign's values of '" + key + "':";
+    for (const std::string& known : setting->values) *error += " " + known;
+    return false;
+  }
+  setting->values = {value};
+  return true;
+}
+
+}  // namespace gaitd::cli
