@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -42,26 +43,26 @@ std::size_t block_rows(std::uint64_t rows, std::uint64_t block) {
 
 std::size_t block_count(std::uint64_t rows) { return (rows + kBlockRows - 1) / kBlockRows; }
 
-// Byte planes: the bytes of signs and exponents stand together, where they repeat themselves.
+// Byte planes: the bytes of signs and exponents stand together, where they repeat themselves. Plane
+// by plane, as the compiler makes vectors of that.
 void shuffle(std::span<const double> values, char* out) {
   const std::size_t count = values.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &values[i], sizeof(bits));
-    for (std::size_t plane = 0; plane < 8; ++plane)
-      out[plane * count + i] = static_cast<char>(bits >> 8 * plane);
+  for (unsigned plane = 0; plane < 8; ++plane, out += count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      out[i] = static_cast<char>(std::bit_cast<std::uint64_t>(values[i]) >> 8 * plane);
+    }
   }
 }
 
 void unshuffle(const char* in, std::span<double> values) {
   const std::size_t count = values.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint64_t bits = 0;
-    for (std::size_t plane = 0; plane < 8; ++plane) {
-      bits |= std::uint64_t{static_cast<unsigned char>(in[plane * count + i])} << 8 * plane;
+  std::array<std::uint64_t, kBlockRows> bits{};
+  for (unsigned plane = 0; plane < 8; ++plane, in += count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      bits[i] |= std::uint64_t{static_cast<unsigned char>(in[i])} << 8 * plane;
     }
-    std::memcpy(&values[i], &bits, sizeof(bits));
   }
+  std::memcpy(values.data(), bits.data(), count * sizeof(double));
 }
 
 bool decompress_exactly(std::string_view input, std::size_t size, std::string* output) {

@@ -95,7 +95,8 @@ class Commands(unittest.TestCase):
     def test_a_push_moves_it(self):
         events = robot.events(timeout=0.3)
         robot.push("utorso", (60.0, 0.0, 0.0), 0.1)
-        self.assertIn("push", [event.kind for event in events])
+        [pushed] = [event.text for event in events if event.kind == "command"]
+        self.assertEqual((pushed["command"], pushed["force"], pushed["duration"]), ("sim.push", [60, 0, 0], 0.1))
 
     def test_each_thread_has_its_own(self):
         states = []
@@ -127,6 +128,7 @@ class Connections(unittest.TestCase):
         path = scratch("ends.mcap")
         with gaitd.simulate(log=path, clock="lockstep") as short:
             other = gaitd.connect(short.socket)
+            self.addCleanup(other.close)
             events = short.events()
             folder = os.path.dirname(short.socket)
         with self.assertRaises(gaitd.NoDaemon):
