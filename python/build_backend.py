@@ -15,7 +15,6 @@ import zipfile
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parent.parent
-FOLDERS = "interfaces;dynamics;qp;walking;daemon;cli;python"
 
 
 def _version():
@@ -28,8 +27,8 @@ def _build(prefix):
     build = Path(os.environ.get("GAITD_BUILD") or SOURCE / "build/python")
     if not os.environ.get("GAITD_BUILD"):
         subprocess.check_call(
-            [cmake, "-S", SOURCE, "-B", build, "-DCMAKE_BUILD_TYPE=Release", f"-DGAITD_COMPONENTS={FOLDERS}",
-             "-DGAITD_BUILD_TESTS=OFF", "-DGAITD_BUILD_BENCHMARKS=OFF", f"-DPython3_EXECUTABLE={sys.executable}"]
+            [cmake, "-S", SOURCE, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DGAITD_BUILD_TESTS=OFF",
+             "-DGAITD_BUILD_BENCHMARKS=OFF", f"-DPython3_EXECUTABLE={sys.executable}"]
         )  # fmt: skip
     subprocess.check_call([cmake, "--build", build, "--target", "gaitd_python", "--parallel", str(os.cpu_count())])
     subprocess.check_call([cmake, "--install", build, "--component", "python", "--prefix", prefix])

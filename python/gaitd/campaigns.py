@@ -27,12 +27,13 @@ def campaign(
     """Plays a campaign on all processors and gives a row per run: ``gaitctl campaign``.
 
     campaign: the path of a file, or a campaign as a dict (docs/campaigns.md), which is written to
-    ``<folder>.campaign.yaml``. folder: for results, summary and logs; by default ``<name>-results`` here. Called again with the same campaign and folder it goes on where it was, and
-    what is done is not played again. set: any keys, for every run, or to leave only that value of a key of the campaign.
-    jobs: runs at once. trust: load libraries that the campaign names by path.
+    ``<folder>.campaign.yaml``. folder: for results, summary and logs; by default ``<name>-results`` here. Called again
+    with the same campaign and folder it goes on where it was, and what is done is not played again. set: any keys, for
+    every run, or to leave only that value of a key of the campaign. jobs: runs at once. trust: load libraries that the
+    campaign names by path.
 
-    The columns are those of ``results.csv``: scenario, seed, settings and draws, success, fell, figures ... Settings that
-    are words are plain (``icp_qp``), lists and objects their JSON.
+    The columns are those of ``results.csv``: scenario, seed, settings and draws, success, fell, figures ... Settings
+    that are words are plain (``icp_qp``), lists and objects their JSON.
     ``frame.attrs["summary"]`` is ``summary.json``: success rates with their intervals, and whether the campaign passed.
     Runs that fail are rows with success 0; nothing is raised. Raises :class:`ProgramError` where gaitctl refuses the
     campaign or is interrupted.

@@ -134,8 +134,8 @@ class Robot:
         """Walks at a velocity: forward and lateral in m/s (positive to the left), turn in rad/s.
 
         Without seconds it goes on in the background until the :class:`Drive` ends, also with a ``with`` block; with
-        seconds this returns after that time, s of this machine's clock, and the robot comes to a stand. If this program ends or
-        hangs, the robot comes to a stand by itself (drive.timeout, 0.5 s).
+        seconds this returns after that time, s of this machine's clock, and the robot comes to a stand. If this program
+        ends or hangs, the robot comes to a stand by itself (drive.timeout, 0.5 s).
         """
         drive = Drive(self.socket, forward, lateral, turn)
         self._taken = max(self._taken, drive.tick)
@@ -198,7 +198,10 @@ class Robot:
     def push(
         self, link: str, force: Tuple[float, float, float], duration: float, point: Optional[Sequence[float]] = None
     ) -> Dict[str, Any]:
-        """Pushes a link of a simulated robot: force in N (world axes), duration in s, point in m (frame of the link)."""
+        """Pushes a link of a simulated robot.
+
+        force: N, world axes. duration: s. point: m, in the frame of the link; by default its origin.
+        """
         where = {} if point is None else {"point": list(point)}
         return dict(self.call("sim.push", link=link, force=list(force), duration=duration, **where))
 
@@ -222,7 +225,10 @@ class Robot:
         return dict(self.call("param.set", name=name, value=value))
 
     def swap(self, layer: str, to: str) -> Dict[str, Any]:
-        """Exchanges a layer while it walks, by an installed variant or the path of a library; returns when it is over."""
+        """Exchanges a layer while it walks, and returns when that is over.
+
+        to: an installed variant, or the path of a library.
+        """
         return dict(self.call("plugin.swap", timeout=30.0, layer=layer, to=to))
 
     def rollback(self, layer: str) -> Dict[str, Any]:

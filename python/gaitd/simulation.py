@@ -97,7 +97,8 @@ class Simulation(Robot):
             super().close()
         said = self._end()
         if self._process.returncode != 0 and said is not None:
-            raise ProgramError(f"gaitd ended with exit code {self._process.returncode}:\n{said}", self._process.returncode)
+            code = self._process.returncode
+            raise ProgramError(f"gaitd ended with exit code {code}:\n{said}", code)
 
     def _end(self) -> Optional[str]:
         """What it printed; None if it was ended before."""

@@ -37,7 +37,8 @@ class Scenarios(unittest.TestCase):
         np.testing.assert_array_equal(run.log["icp/x"], as_dict.log["icp/x"])
 
     def test_what_does_not_hold_is_no_exception(self):
-        run = gaitd.run({**support.WALK, "expect": {"no_fall": True, "final_pelvis": {"x": 2, "y": 0, "tolerance": 0.1}}}, log=scratch("failed.mcap"))
+        too_far = {"no_fall": True, "final_pelvis": {"x": 2, "y": 0, "tolerance": 0.1}}
+        run = gaitd.run({**support.WALK, "expect": too_far}, log=scratch("failed.mcap"))
         self.assertFalse(run.passed)
         self.assertEqual([one.name for one in run.verdict.failed()], ["final_pelvis"])
 
