@@ -1,6 +1,6 @@
 # Debian packages by CPack: gaitd (programs, plugins, robots, service), gaitd-dev (headers and
 # libraries for plugins and whole-body controllers), gaitd-mujoco (the backend mujoco), gaitd-ros2 (the
-# bridge to ROS 2) and gaitd-unitree (the backend unitree_dds).
+# bridge to ROS 2), gaitd-unitree (the backend unitree_dds) and python3-gaitd (the Python package).
 configure_file(cmake/package/gaitd.pc.in gaitd.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/gaitd.pc DESTINATION lib/pkgconfig COMPONENT dev)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/examples/plugin
@@ -39,6 +39,14 @@ if(TARGET plugin_backend_unitree_dds)
           COMPONENT unitree_system EXCLUDE_FROM_ALL)
 endif()
 
+# ---- python3-gaitd
+if(TARGET gaitd_python)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/copyright DESTINATION /usr/share/doc/python3-gaitd
+          COMPONENT python_system EXCLUDE_FROM_ALL)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/notebooks DESTINATION /usr/share/doc/python3-gaitd/examples
+          COMPONENT python_system EXCLUDE_FROM_ALL FILES_MATCHING PATTERN "*.ipynb")
+endif()
+
 # cpack packs what is built, it does not build the tests first.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY TRUE)
 set(CPACK_GENERATOR DEB)
@@ -58,6 +66,9 @@ endif()
 if(TARGET plugin_backend_unitree_dds)
   list(APPEND CPACK_COMPONENTS_ALL unitree unitree_system)
 endif()
+if(TARGET gaitd_python)
+  list(APPEND CPACK_COMPONENTS_ALL python python_system)
+endif()
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_COMPONENT_GAITD_GROUP gaitd)
 set(CPACK_COMPONENT_SYSTEM_GROUP gaitd)
@@ -67,6 +78,8 @@ set(CPACK_COMPONENT_ROS2_GROUP gaitd-ros2)
 set(CPACK_COMPONENT_ROS2_SYSTEM_GROUP gaitd-ros2)
 set(CPACK_COMPONENT_UNITREE_GROUP gaitd-unitree)
 set(CPACK_COMPONENT_UNITREE_SYSTEM_GROUP gaitd-unitree)
+set(CPACK_COMPONENT_PYTHON_GROUP python3-gaitd)
+set(CPACK_COMPONENT_PYTHON_SYSTEM_GROUP python3-gaitd)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
@@ -100,4 +113,16 @@ set(CPACK_DEBIAN_GAITD-UNITREE_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_GAITD-UNITREE_DESCRIPTION "Unitree's humanoids as a backend of gaitd, over CycloneDDS")
 set(CPACK_DEBIAN_GAITD-UNITREE_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_GAITD-UNITREE_PACKAGE_DEPENDS "gaitd (= ${PROJECT_VERSION}-1)")
+set(CPACK_DEBIAN_PYTHON3-GAITD_PACKAGE_NAME python3-gaitd)
+set(CPACK_DEBIAN_PYTHON3-GAITD_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON3-GAITD_DESCRIPTION "gaitd from Python: robots, scenarios, campaigns and logs")
+set(CPACK_DEBIAN_PYTHON3-GAITD_PACKAGE_SHLIBDEPS ON)
+# The binding is of one version of Python: what Debian calls python3 must be that one.
+set(CPACK_DEBIAN_PYTHON3-GAITD_PACKAGE_DEPENDS "gaitd (= ${PROJECT_VERSION}-1), python3-numpy")
+if(TARGET gaitd_python)
+  math(EXPR next_python "${Python3_VERSION_MINOR} + 1")
+  string(PREPEND CPACK_DEBIAN_PYTHON3-GAITD_PACKAGE_DEPENDS
+         "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_python}), ")
+endif()
+set(CPACK_DEBIAN_PYTHON3-GAITD_PACKAGE_RECOMMENDS "python3-pandas, python3-matplotlib")
 include(CPack)

@@ -9,11 +9,14 @@ die() {
   exit 1
 }
 
-# missing_packages demo|tests
+# missing_packages demo|notebooks|tests
 missing_packages() {
-  local package
+  local package rest=0 chapter=
   while read -r package; do
-    [[ $1 == demo && $package == '# all the rest'* ]] && break
+    [[ $package == '# all the rest'* ]] && rest=1
+    [[ $package == \#* ]] && chapter=$package
+    [[ $1 == demo ]] && ((rest)) && break
+    [[ $1 == notebooks ]] && ((rest)) && [[ $chapter != '# the Python package and its notebooks' ]] && continue
     [[ -z $package || $package == \#* ]] && continue
     # node.org's nodejs brings its own npm, and Debian's does not go beside it.
     [[ $package == npm ]] && command -v npm >/dev/null && continue
@@ -22,7 +25,7 @@ missing_packages() {
   done <"$PACKAGE_LIST"
 }
 
-# install_packages demo|tests
+# install_packages demo|notebooks|tests
 install_packages() {
   local as_root=()
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
@@ -45,14 +48,15 @@ install_packages() {
     die "apt-get could not install ${missing[*]}; gaitd is built and tested on Debian 12"
 }
 
-# set_up_and_build demo|tests: the demo needs neither tests nor what only they need. Both share one build
-# tree: what is there already stays, whoever comes first.
+# set_up_and_build demo|notebooks|tests: the demo needs neither tests nor what only they need, the notebooks the
+# Python package besides. All share one build tree: what is there already stays, whoever comes first.
 set_up_and_build() {
   install_packages "$1"
   local options=(-UGAITD_COMPONENTS -UGAITD_BUILD_TESTS -UGAITD_BUILD_BENCHMARKS) targets=()
-  if [[ $1 == demo ]]; then
+  if [[ $1 != tests ]]; then
     targets=(--target programs)
-    [[ -f $BUILD/CMakeCache.txt ]] && options=() || options=(-DGAITD_BUILD_TESTS=OFF -DGAITD_BUILD_BENCHMARKS=OFF)
+    [[ $1 == notebooks ]] && targets+=(gaitd_python)
+    [[ -f $BUILD/CMakeCache.txt ]] && options=(-UGAITD_COMPONENTS) || options=(-DGAITD_BUILD_TESTS=OFF -DGAITD_BUILD_BENCHMARKS=OFF)
   fi
   say "Configuring $BUILD"
   cmake --preset release "${options[@]}" ||

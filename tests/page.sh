@@ -3,6 +3,7 @@
 # differences:
 #   ./run-demo     as ./run-demo --no-build --no-page: the build is done, and nobody looks
 #   ./run-tests    only looked for: it is what runs this test
+#   python/run-notebooks  with --no-build
 #   gaitd ...      in the background, until the end or the next one
 # `gaitctl report` is left out where its page could not be built for want of npm.
 clone=$scratch/clone
@@ -24,6 +25,7 @@ run_block() {
   case "$line" in
     ./run-tests) [[ -x run-tests ]] || fail "run-tests cannot be executed" ;;
     ./run-demo) expect 0 ./run-demo --no-build --no-page ;;
+    python/run-notebooks) expect 0 python/run-notebooks --no-build ;;
     'gaitd '*--check-config) eval "expect 0 $line" ;;
     gaitd*)
       read -ra words <<<"$line"

@@ -20,23 +20,6 @@ std::string dump(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-struct TimeRange {
-  double start = 0.0;
-  double end = 0.0;
-};
-
-TimeRange time_range(const LogReader& log) {
-  TimeRange range;
-  bool first = true;
-  for (const double time : log.column("time")) {
-    if (!std::isfinite(time)) continue;
-    range.start = first ? time : std::min(range.start, time);
-    range.end = first ? time : std::max(range.end, time);
-    first = false;
-  }
-  return range;
-}
-
 Json describe_signals(const LogReader& log) {
   Json signals = Json::array();
   for (const SignalDescription& signal : log.signals()) {
@@ -112,7 +95,7 @@ nlohmann::json log_damage_json(const LogReader& log) {
 }
 
 std::string log_info_json(const LogReader& log) {
-  const TimeRange range = time_range(log);
+  const auto [start, end] = log.time_range();
   Json json;
   json["file"] = log.path();
   json["written_by"] = log.library();
@@ -120,9 +103,9 @@ std::string log_info_json(const LogReader& log) {
   json["finished"] = log.finished();
   if (!log.finished()) json["break"] = log.break_reason();
   json["ticks"] = log.tick_count();
-  json["start_time"] = range.start;
-  json["end_time"] = range.end;
-  json["duration"] = range.end - range.start;
+  json["start_time"] = start;
+  json["end_time"] = end;
+  json["duration"] = end - start;
   json["dropouts"] = log.dropouts();
   json["event_dropouts"] = log.event_dropouts();
   json["damaged"] = log.damaged();
@@ -147,13 +130,12 @@ std::string log_info_json(const LogReader& log) {
 }
 
 std::string log_info_text(const LogReader& log) {
-  const TimeRange range = time_range(log);
+  const auto [start, end] = log.time_range();
   std::string text = log.path() + "\n";
   text += "  written by  " + log.library() + "\n";
   text += format("  size        %.3f MB\n", static_cast<double>(log.file_size()) * 1e-6);
   text += log.finished() ? "  state       finished\n" : "  state       unfinished\n";
-  text += format("  duration    %.3f s (%.3f to %.3f)\n", range.end - range.start, range.start,
-                 range.end);
+  text += format("  duration    %.3f s (%.3f to %.3f)\n", end - start, start, end);
   text += format("  ticks       %llu, %llu dropped\n",
                  static_cast<unsigned long long>(log.tick_count()),
                  static_cast<unsigned long long>(log.dropouts()));

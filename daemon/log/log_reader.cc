@@ -43,6 +43,8 @@ struct LogReader::Impl {
   std::string path;
   McapReader file;
   SignalTable table;
+  int tick_signal = -1;
+  int time_signal = -1;
   std::unique_ptr<SignalCodec> codec;
   LogMetadata metadata;
   LogMetadata end_metadata;
@@ -54,11 +56,14 @@ struct LogReader::Impl {
   std::uint64_t dropouts = 0;
   std::uint64_t event_dropouts = 0;
   LogDamage damage;
+  std::optional<std::pair<double, double>> times;  // s, first and last
+  RowSink* sink = nullptr;                         // while it is opened
   mutable std::atomic<bool> changed{false};
 
   bool open(std::string* error);
   bool read_table(const McapChannel& channel, std::string* error);
   void read_messages(const McapChannel& signals, TickGaps* gaps);
+  void take_tick(const Place& place, std::string_view message, TickGaps* gaps);
   void count_dropouts();
   void find_damage(const McapChannel& signals, TickGaps* gaps);
   void find_missing(const char* topic, const char* what, std::uint64_t found);
@@ -101,14 +106,15 @@ bool LogReader::Impl::read_table(const McapChannel& channel, std::string* error)
     return false;
   }
   codec = std::make_unique<SignalCodec>(table);
+  tick_signal = find_signal(table, "tick");
+  time_signal = find_signal(table, "time");
+  if (sink != nullptr) sink->begin(table, *codec);
   return true;
 }
 
 void LogReader::Impl::read_messages(const McapChannel& signals, TickGaps* gaps) {
   const McapChannel* sensors_channel = file.find_channel(kSensorsTopic);
   const McapChannel* events_channel = file.find_channel(kEventsTopic);
-  const int tick = find_signal(table, "tick");
-  const int time = find_signal(table, "time");
   RecordsCodec records;
   GaitdSensors scratch;
   std::string chunk;
@@ -142,13 +148,7 @@ void LogReader::Impl::read_messages(const McapChannel& signals, TickGaps* gaps) 
       bool valid = true;
       if (message.channel == signals.id) {
         valid = codec->matches(message.data);
-        if (valid) ticks.push_back(place);
-        if (valid && tick >= 0) {
-          const double number = codec->value(message.data, static_cast<std::size_t>(tick));
-          gaps->row(
-              std::abs(number) < kMaxTick ? static_cast<std::int64_t>(number) : 0,
-              time >= 0 ? codec->value(message.data, static_cast<std::size_t>(time)) : number);
-        }
+        if (valid) take_tick(place, message.data, gaps);
       } else if (sensors_channel != nullptr && message.channel == sensors_channel->id) {
         valid = records.parse_sensors(message.data, &scratch);
         if (valid) sensors.push_back(place);
@@ -170,6 +170,23 @@ void LogReader::Impl::read_messages(const McapChannel& signals, TickGaps* gaps) 
   pass_damage(file.file_size());
   std::stable_sort(events.begin(), events.end(),
                    [](const Event& a, const Event& b) { return a.tick < b.tick; });
+}
+
+void LogReader::Impl::take_tick(const Place& place, std::string_view message, TickGaps* gaps) {
+  ticks.push_back(place);
+  if (sink != nullptr) sink->row(message);
+  const auto value = [&](int signal) {
+    return codec->value(message, static_cast<std::size_t>(signal));
+  };
+  if (time_signal >= 0 && std::isfinite(value(time_signal))) {
+    const double time = value(time_signal);
+    if (!times) times = {time, time};
+    times = {std::min(times->first, time), std::max(times->second, time)};
+  }
+  if (tick_signal < 0) return;
+  const double number = value(tick_signal);
+  gaps->row(std::abs(number) < kMaxTick ? static_cast<std::int64_t>(number) : 0,
+            time_signal >= 0 ? value(time_signal) : number);
 }
 
 void LogReader::Impl::count_dropouts() {
@@ -252,9 +269,11 @@ std::string_view LogReader::Impl::data(const Place& place, std::size_t* loaded,
 LogReader::LogReader() : impl_(std::make_unique<Impl>()) {}
 LogReader::~LogReader() = default;
 
-std::unique_ptr<LogReader> LogReader::open(const std::string& path, std::string* error) {
+std::unique_ptr<LogReader> LogReader::open(const std::string& path, std::string* error,
+                                           RowSink* sink) {
   std::unique_ptr<LogReader> reader(new LogReader);
   reader->impl_->path = path;
+  reader->impl_->sink = sink;
   if (!reader->impl_->open(error)) return nullptr;
   return reader;
 }
@@ -272,6 +291,9 @@ const LogMetadata& LogReader::metadata() const { return impl_->metadata; }
 const LogMetadata& LogReader::end_metadata() const { return impl_->end_metadata; }
 const SignalTable& LogReader::signals() const { return impl_->table; }
 std::uint64_t LogReader::tick_count() const { return impl_->ticks.size(); }
+std::pair<double, double> LogReader::time_range() const {
+  return impl_->times.value_or(std::pair(0.0, 0.0));
+}
 std::uint64_t LogReader::sensors_count() const { return impl_->sensors.size(); }
 std::uint64_t LogReader::dropouts() const { return impl_->dropouts; }
 std::uint64_t LogReader::event_dropouts() const { return impl_->event_dropouts; }

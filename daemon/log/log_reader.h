@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "daemon/log/event.h"
@@ -17,13 +18,26 @@
 
 namespace gaitd::daemon {
 
+class SignalCodec;
+
 // Reads a log file, finished or cut off anywhere: what stands before the break is there. Opening
 // reads the file once and checks every checksum; values are read again from the file when asked
 // for. Any bytes whatever are either read or refused.
 class LogReader {
  public:
+  // Takes the ticks while the log is opened, for those who need all of them anyway.
+  class RowSink {
+   public:
+    virtual ~RowSink() = default;
+    // Before the first row.
+    virtual void begin(const SignalTable& table, const SignalCodec& codec) = 0;
+    // A message that matches the codec; the bytes are gone afterwards.
+    virtual void row(std::string_view message) = 0;
+  };
+
   // Null with `error` (file, what was found, what was expected) if it is not a log of gaitd.
-  static std::unique_ptr<LogReader> open(const std::string& path, std::string* error);
+  static std::unique_ptr<LogReader> open(const std::string& path, std::string* error,
+                                         RowSink* sink = nullptr);
   ~LogReader();
 
   const std::string& path() const;
@@ -51,6 +65,8 @@ class LogReader {
 
   const SignalTable& signals() const;
   std::uint64_t tick_count() const;
+  // The least and the greatest finite value of the signal "time", s; zeros if there is none.
+  std::pair<double, double> time_range() const;
   std::uint64_t sensors_count() const;
   std::uint64_t dropouts() const;  // ticks that were not logged, as far as the file tells
   std::uint64_t event_dropouts() const;

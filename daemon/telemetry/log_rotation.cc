@@ -5,6 +5,8 @@
 #include <system_error>
 #include <utility>
 
+#include "daemon/log/column_log.h"
+
 namespace gaitd::daemon {
 
 using Clock = std::chrono::steady_clock;
@@ -92,6 +94,7 @@ void RotatingLog::delete_oldest() {
   while (limits_.keep > 0 && files_.size() > static_cast<std::size_t>(limits_.keep)) {
     std::error_code ignored;  // gone already, or not ours to delete: the log goes on
     fs::remove(files_.front(), ignored);
+    fs::remove(columns_beside(files_.front()), ignored);
     files_.pop_front();
   }
 }

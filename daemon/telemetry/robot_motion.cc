@@ -31,8 +31,7 @@ RobotMotion::RobotMotion(const dynamics::UrdfResult& robot, const Eigen::Quatern
   }
 }
 
-std::unique_ptr<RobotMotion> RobotMotion::create(const std::map<std::string, std::string>& metadata,
-                                                 const SignalTable& table) {
+std::unique_ptr<RobotMotion> RobotMotion::load(const std::map<std::string, std::string>& metadata) {
   const auto urdf = metadata.find("robot_urdf");
   if (urdf == metadata.end()) return nullptr;
   dynamics::UrdfOptions options;
@@ -56,8 +55,13 @@ std::unique_ptr<RobotMotion> RobotMotion::create(const std::map<std::string, std
   }
   const dynamics::UrdfResult robot = dynamics::load_urdf_text(urdf->second, "the log", options);
   if (!robot.ok()) return nullptr;
-  std::unique_ptr<RobotMotion> motion(new RobotMotion(robot, options.R_LB, urdf->second));
-  return motion->find_signals(table) ? std::move(motion) : nullptr;
+  return std::unique_ptr<RobotMotion>(new RobotMotion(robot, options.R_LB, urdf->second));
+}
+
+std::unique_ptr<RobotMotion> RobotMotion::create(const std::map<std::string, std::string>& metadata,
+                                                 const SignalTable& table) {
+  auto motion = load(metadata);
+  return motion != nullptr && motion->find_signals(table) ? std::move(motion) : nullptr;
 }
 
 bool RobotMotion::find_signals(const SignalTable& table) {
@@ -84,18 +88,34 @@ void RobotMotion::read(std::span<const double> values) {
     velocity_[i] = values[joints_[i].velocity];
     torque_[i] = values[joints_[i].torque];
   }
-  const Eigen::Quaterniond R_WP = Eigen::AngleAxisd(values[pelvis_[5]], Eigen::Vector3d::UnitZ()) *
-                                  Eigen::AngleAxisd(values[pelvis_[4]], Eigen::Vector3d::UnitY()) *
-                                  Eigen::AngleAxisd(values[pelvis_[3]], Eigen::Vector3d::UnitX());
+  std::array<double, 6> pelvis;
+  std::ranges::transform(pelvis_, pelvis.begin(), [&](int signal) { return values[signal]; });
+  update(pelvis);
+}
+
+void RobotMotion::place(std::span<const double, 6> pelvis, std::span<const double> joints) {
+  for (int i = 0; i < model_.joint_count; ++i) position_[i] = joints[i];
+  update(pelvis);
+}
+
+void RobotMotion::update(std::span<const double, 6> pelvis) {
+  const Eigen::Quaterniond R_WP = Eigen::AngleAxisd(pelvis[5], Eigen::Vector3d::UnitZ()) *
+                                  Eigen::AngleAxisd(pelvis[4], Eigen::Vector3d::UnitY()) *
+                                  Eigen::AngleAxisd(pelvis[3], Eigen::Vector3d::UnitX());
   // Only poses are asked for, so no velocity is needed.
-  kinematics_.update({values[pelvis_[0]], values[pelvis_[1]], values[pelvis_[2]]}, R_WP,
-                     dynamics::Vector6d::Zero(), position_, velocity_);
+  kinematics_.update({pelvis[0], pelvis[1], pelvis[2]}, R_WP, dynamics::Vector6d::Zero(), position_,
+                     velocity_);
 }
 
 Eigen::Isometry3d RobotMotion::X_parent(int body) const {
   const int parent = model_.bodies[body].parent;
   if (parent < 0) return X_WP();
   return (parent == 0 ? X_WP() : kinematics_.X_WB(parent)).inverse() * kinematics_.X_WB(body);
+}
+
+Eigen::Isometry3d RobotMotion::X_link(const dynamics::UrdfLink& link) const {
+  const Eigen::Isometry3d X_WB = link.body == 0 ? X_WP() : kinematics_.X_WB(link.body);
+  return X_WB * Eigen::Translation3d(link.p_BL) * link.R_BL;
 }
 
 }  // namespace gaitd::daemon

@@ -24,6 +24,9 @@ class RobotMotion {
   // lacks the pose of the pelvis or a joint.
   static std::unique_ptr<RobotMotion> create(const std::map<std::string, std::string>& metadata,
                                              const SignalTable& table);
+  // The robot without signals: place() tells where it is, read() cannot. Null where there is none
+  // in `metadata`.
+  static std::unique_ptr<RobotMotion> load(const std::map<std::string, std::string>& metadata);
 
   const GaitdModel& model() const { return model_; }
   const std::string& urdf() const { return urdf_; }
@@ -32,12 +35,17 @@ class RobotMotion {
 
   // One tick, values in table order.
   void read(std::span<const double> values);
+  // As the signals have it: the pelvis as x, y, z, roll, pitch, yaw (m, rad), every joint in the
+  // order of the model.
+  void place(std::span<const double, 6> pelvis, std::span<const double> joints);
 
   // ---- Of the tick that was read last.
   // Pose of the link of the pelvis in the world.
   Eigen::Isometry3d X_WP() const { return kinematics_.X_WB(0) * R_LB_.inverse(); }
   // Pose of the link of a body in that of its parent, of the pelvis in the world.
   Eigen::Isometry3d X_parent(int body) const;
+  // Pose of one of links() in the world.
+  Eigen::Isometry3d X_link(const dynamics::UrdfLink& link) const;
   const Eigen::VectorXd& position() const { return position_; }  // rad or m, by joint
   const Eigen::VectorXd& velocity() const { return velocity_; }  // rad/s or m/s
   const Eigen::VectorXd& torque() const { return torque_; }      // N m or N, measured
@@ -45,6 +53,7 @@ class RobotMotion {
  private:
   RobotMotion(const dynamics::UrdfResult& robot, const Eigen::Quaterniond& R_LB, std::string urdf);
   bool find_signals(const SignalTable& table);
+  void update(std::span<const double, 6> pelvis);
 
   struct JointSignals {
     int position = -1, velocity = -1, torque = -1;

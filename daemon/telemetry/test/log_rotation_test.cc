@@ -7,7 +7,9 @@
 #include <sys/resource.h>
 
 #include <filesystem>
+#include <fstream>
 
+#include "daemon/log/column_log.h"
 #include "daemon/log/log_reader.h"
 #include "daemon/telemetry/recent_maximum.h"
 #include "daemon/telemetry/test/fixture.h"
@@ -71,7 +73,8 @@ TEST_F(Rotation, EveryTickIsInOneOfTheFilesAndEachFileIsComplete) {
   EXPECT_EQ(log_.file(), file("walk-" + std::to_string(log_.part()) + ".mcap"));
 }
 
-TEST_F(Rotation, KeepsTheNewestFiles) {
+TEST_F(Rotation, KeepsTheNewestFilesAndNoColumnsOfOthers) {
+  std::ofstream(columns_beside(file("walk.mcap"))) << "of whoever read it";
   write({.max_bytes = 20000, .keep = 2}, 1000);
   ASSERT_GT(log_.part(), 3);
   std::size_t files = 0;

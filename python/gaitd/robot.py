@@ -1,0 +1,250 @@
+"""A robot that a gaitd controls: commands, waiting, events."""
+
+from __future__ import annotations
+
+import time
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+
+from .drive import Drive
+from .errors import Fault, WaitTimeout
+from .log import Event
+from .model import Model
+from .rpc import Connection
+
+__all__ = ["Robot", "connect"]
+
+_LOOK_PERIOD = 0.01  # s
+
+
+def connect(socket: str = "", *, role: str = "command") -> "Robot":
+    """The robot of a running gaitd.
+
+    socket: the path of its socket of commands; by default where ``gaitctl`` looks for it. role: ``"command"``, or
+    ``"observe"`` for a socket that may only look. Raises :class:`NoDaemon`.
+    """
+    return Robot(socket, role=role)
+
+
+class Robot:
+    """A connection to gaitd. Commands return when gaitd has taken them; ``wait`` waits for the robot.
+
+    >>> with gaitd.connect() as robot:
+    ...     robot.walk(6, length=0.3)
+    ...     robot.wait("standing", timeout=30)
+
+    Every command gives what gaitd answers, a dict with ``tick`` (of the tick that took it) and ``note`` (what is worth
+    knowing about the effect, or None), and raises :class:`Refused` where gaitd refuses it, :class:`NoDaemon` where
+    gaitd is gone. Use a Robot in one thread only; each thread may have its own.
+    """
+
+    def __init__(self, socket: str = "", *, role: str = "command"):
+        self._connection = Connection(socket, role)
+        self._given = socket
+        self._role = role
+        self._taken = -1  # tick of the last command
+
+    def __enter__(self) -> "Robot":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<gaitd.Robot on {self.socket}>"
+
+    def close(self) -> None:
+        """Ends the connection. The robot goes on with what it was told."""
+        self._connection.close()
+
+    @property
+    def socket(self) -> str:
+        """Path of the socket that is connected."""
+        return self._connection.path
+
+    def call(self, method: str, timeout: float = 10.0, **params: Any) -> Any:
+        """Any method of docs/protocol.md with its params: ``robot.call("plugin.swap", layer="toe_off", to="never")``.
+
+        timeout: s for the answer.
+        """
+        result = self._connection.call(method, params or None, timeout)
+        if isinstance(result, dict) and result.get("accepted") and isinstance(result.get("tick"), int):
+            self._taken = max(self._taken, result["tick"])
+        return result
+
+    # ---- What it does.
+
+    def status(self) -> Dict[str, Any]:
+        """What the robot does at the newest tick, as in docs/protocol.md."""
+        return dict(self.call("status"))
+
+    def model(self) -> Model:
+        """Its links and joints."""
+        described = self.call("robot.describe")
+        return Model({"robot_urdf": described["urdf"], **(described["log"] or {})})
+
+    def wait(self, state: Union[str, Sequence[str]] = "standing", timeout: float = 60.0) -> Dict[str, Any]:
+        """Waits until the robot is in the state, or one of them, after what was commanded last; gives its status.
+
+        ``"standing"`` is reached when no footsteps are ahead, or they are paused. States are those of ``status``:
+        disarmed, readying, standing, walking, stopping, testing, fault. timeout: s of this machine's clock.
+
+        Raises :class:`Fault` when a fault comes instead, :class:`WaitTimeout` when the time is over.
+        """
+        wanted = (state,) if isinstance(state, str) else tuple(state)
+        known = ("disarmed", "readying", "standing", "walking", "stopping", "testing", "fault")
+        if unknown := [one for one in wanted if one not in known]:
+            raise ValueError(f"state {unknown[0]!r}: expected one of {', '.join(known)}")
+        deadline = time.monotonic() + timeout
+        while True:
+            status = self.status()
+            # The tick that took the command shows its effect only at the end.
+            if status["tick"] is not None and status["tick"] > self._taken:
+                ready = status["state"] != "standing" or not status["footsteps_ahead"] or status["paused"]
+                if status["state"] in wanted and ready:
+                    return status
+                if status["state"] == "fault":
+                    raise Fault(status["faults"], " or ".join(wanted))
+            if time.monotonic() > deadline:
+                raise WaitTimeout(f"the robot is {status['state']} after {timeout:g} s, not {' or '.join(wanted)}")
+            time.sleep(_LOOK_PERIOD)
+
+    def events(self, timeout: Optional[float] = None) -> Iterator[Event]:
+        """Commands, states, faults, swaps, parameters, as they happen, over a connection of its own.
+
+        It is connected when this returns: what happens from here on is in it. The iterator ends when nothing happened
+        for timeout (s); None: it waits. Raises :class:`NoDaemon` when gaitd ends.
+        """
+        connection = Connection(self.socket, "observe")
+        connection.call("telemetry.subscribe", {"signals": ["tick"], "rate": 5, "events": True})
+        return _events(connection, timeout)
+
+    # ---- Commands.
+
+    def walk(self, steps: int, length: float = 0.0, **how: Any) -> Dict[str, Any]:
+        """Appends footsteps that advance, and one that closes beside the last.
+
+        steps: how many. length: m ahead per step. how: lateral (m, positive to the left), width (m between the soles),
+        turn (rad per step, positive to the left), swing and transfer (s), first ("left" or "right").
+        """
+        return dict(self.call("walk", steps=steps, length=length, **how))
+
+    def drive(
+        self, forward: float = 0.0, lateral: float = 0.0, turn: float = 0.0, *, seconds: Optional[float] = None
+    ) -> Drive:
+        """Walks at a velocity: forward and lateral in m/s (positive to the left), turn in rad/s.
+
+        Without seconds it goes on in the background until the :class:`Drive` ends, also with a ``with`` block; with
+        seconds this returns after that time, s of this machine's clock, and the robot comes to a stand. If this program
+        ends or hangs, the robot comes to a stand by itself (drive.timeout, 0.5 s).
+        """
+        drive = Drive(self.socket, forward, lateral, turn)
+        self._taken = max(self._taken, drive.tick)
+        if seconds is not None:
+            with drive:
+                drive.sleep(seconds)
+            self._taken = max(self._taken, drive.tick)
+        return drive
+
+    def footsteps(self, footsteps: Sequence[Mapping[str, Any]], *, replace: bool = False) -> Dict[str, Any]:
+        """Appends footsteps, dicts with side, x, y (m, world) and more as in docs/protocol.md.
+
+        replace: in place of those that have not begun.
+        """
+        return dict(self.call("footsteps", footsteps=[dict(step) for step in footsteps], replace=replace))
+
+    def mode(self, mode: str) -> Dict[str, Any]:
+        """``"walk-straight"``, ``"walk-bent"`` or ``"stand"``; while walking from the next step on."""
+        return dict(self.call("mode", mode=mode))
+
+    def pose(self, *, duration: float = 1.5, **pelvis: float) -> Dict[str, Any]:
+        """Holds the pelvis of a standing robot elsewhere: x, y, z (m), roll, pitch, yaw (rad); nothing: back.
+
+        duration: s of the way there.
+        """
+        return dict(self.call("pose", pelvis=pelvis, duration=duration))
+
+    def arm(self) -> Dict[str, Any]:
+        """Enables the drives and stands up; ``wait("standing")`` waits for it."""
+        return dict(self.call("arm"))
+
+    def disarm(self) -> Dict[str, Any]:
+        """Takes the joints out of control; they are damped."""
+        return dict(self.call("disarm"))
+
+    def estop(self) -> Dict[str, Any]:
+        """Latches the fault estop: the joints are damped until ``reset``, then ``arm``."""
+        return dict(self.call("estop"))
+
+    def reset(self) -> Dict[str, Any]:
+        """Clears a latched fault; the robot is disarmed then."""
+        return dict(self.call("reset"))
+
+    def stop(self) -> Dict[str, Any]:
+        """Finishes the present step, closes the feet and stands."""
+        return dict(self.call("stop"))
+
+    def abort(self) -> Dict[str, Any]:
+        """Drops the footsteps ahead, puts the foot down where it is going and stands."""
+        return dict(self.call("abort"))
+
+    def pause(self) -> Dict[str, Any]:
+        """Stands after the present step and keeps the footsteps ahead until ``resume``."""
+        return dict(self.call("pause"))
+
+    def resume(self) -> Dict[str, Any]:
+        """Goes on after a pause."""
+        return dict(self.call("resume"))
+
+    def push(
+        self, link: str, force: Tuple[float, float, float], duration: float, point: Optional[Sequence[float]] = None
+    ) -> Dict[str, Any]:
+        """Pushes a link of a simulated robot.
+
+        force: N, world axes. duration: s. point: m, in the frame of the link; by default its origin.
+        """
+        where = {} if point is None else {"point": list(point)}
+        return dict(self.call("sim.push", link=link, force=list(force), duration=duration, **where))
+
+    def sim_reset(self) -> Dict[str, Any]:
+        """Puts a simulated robot back to the start and arms it."""
+        return dict(self.call("sim.reset"))
+
+    # ---- Parameters and layers.
+
+    def params(self, match: str = "*") -> List[Dict[str, Any]]:
+        """Parameters whose names the glob matches, with value, unit, range, default and effect."""
+        return list(self.call("param.list", match=match)["parameters"])
+
+    def get(self, name: str) -> Union[float, int, bool]:
+        """The value of a parameter, in its unit."""
+        value: Union[float, int, bool] = self.call("param.get", name=name)["value"]
+        return value
+
+    def set(self, name: str, value: Union[float, int, bool]) -> Dict[str, Any]:
+        """Changes a parameter, while it walks too, until gaitd ends."""
+        return dict(self.call("param.set", name=name, value=value))
+
+    def swap(self, layer: str, to: str) -> Dict[str, Any]:
+        """Exchanges a layer while it walks, and returns when that is over.
+
+        to: an installed variant, or the path of a library.
+        """
+        return dict(self.call("plugin.swap", timeout=30.0, layer=layer, to=to))
+
+    def rollback(self, layer: str) -> Dict[str, Any]:
+        """Back to the layer before the last swap."""
+        return dict(self.call("plugin.rollback", layer=layer))
+
+
+def _events(connection: Connection, timeout: Optional[float]) -> Iterator[Event]:
+    try:
+        quiet_since = time.monotonic()
+        for message in connection.notifications(timeout):
+            if message["method"] == "telemetry.event":
+                params = message["params"]
+                yield Event(params["tick"], params["time"], params["kind"], params["text"])
+                quiet_since = time.monotonic()
+            elif timeout is not None and time.monotonic() - quiet_since > timeout:
+                return
+    finally:
+        connection.close()
