@@ -8,28 +8,41 @@
 namespace gaitd::walking {
 namespace {
 
-constexpr int kSamples = 8;        // of what is left of the swing
-constexpr double kSpeed = 0.09;    // sqrt(g h), with which a hip comes down
+constexpr double kComesDown = 0.5;  // of a swing: a foot that still rises asks for nothing
+constexpr int kSamples = 8;         // of what is left of the swing
+// sqrt(g h), with which a hip comes down: over level ground it need not be gentle.
+constexpr double kSpeed = 0.3;
+constexpr double kSpeedDown = 0.09;
 constexpr double kLead = 0.4;      // 1/omega, by which a leg is behind what it is told
+constexpr double kFall = 0.1;      // heights of the CoM, down to ground where that matters in full
+constexpr double kLate = 10.0;     // omega, after which a late foot is taken for one that falls
 constexpr double kSteepest = 0.5;  // longest leg: lower no foot makes it
 
 }  // namespace
 
 double highest_hip(const SwingTrajectory& swing, double now, double duration, const SwingLeg& leg) {
-  const double speed = kSpeed * leg.gravity / leg.omega;
-  const double lead = kLead / leg.omega;
+  // Who is late on level ground lands on a knee at its stop, and no harm is done; down a stair it
+  // is a fall. To be in time costs a straighter leg.
+  const double below = leg.ground - swing.evaluate(std::max(now, duration)).position.z();
+  const double fall = kFall * leg.gravity / (leg.omega * leg.omega);
+  const double late = kLate * leg.omega * (now - duration);
+  const double share = std::clamp(std::max(below / fall, late), 0.0, 1.0);
+  const double speed = (kSpeed + share * (kSpeedDown - kSpeed)) * leg.gravity / leg.omega;
+  const double lead = share * kLead / leg.omega;
+  const double longest = leg.longest + share * (leg.longest_down - leg.longest);
   // Nobody knows when a foot that is late comes down: as far ahead as the leg is behind.
   const double left = duration > now ? duration - now : lead;
+  const double first = std::max(kComesDown * duration - now, 0.0);
   double highest = std::numeric_limits<double>::max();
   for (int i = 0; i <= kSamples; ++i) {
-    const double ahead = left * i / kSamples;
+    const double ahead = first + (left - first) * i / kSamples;
     const SwingTrajectory::Sample foot = swing.evaluate(now + ahead);
     const Eigen::Vector3d ankle = foot.position + foot.orientation * leg.ankle_in_sole;
     const Eigen::Vector2d hip = leg.hip.head<2>() +
                                 leg.lever * (std::cosh(leg.omega * ahead) - 1.0) +
                                 leg.velocity * (std::sinh(leg.omega * ahead) / leg.omega);
-    const double vertical = leg.longest * leg.longest - (hip - ankle.head<2>()).squaredNorm();
-    const double least = kSteepest * leg.longest;
+    const double vertical = longest * longest - (hip - ankle.head<2>()).squaredNorm();
+    const double least = kSteepest * longest;
     const double height = ankle.z() + std::sqrt(std::max(vertical, least * least));
     highest = std::min(highest, height + speed * std::max(0.0, ahead - lead));
   }

@@ -37,6 +37,8 @@ class HipDescent : public ::testing::Test {
   SwingLeg leg{.hip = Eigen::Vector3d(0.0, 0.1, 0.9),
                .ankle_in_sole = Eigen::Vector3d(0.0, 0.1, 0.08),
                .longest = 0.8,
+               .longest_down = 0.8,
+               .ground = 0.0,
                .lever = Eigen::Vector2d::Zero(),
                .velocity = Eigen::Vector2d::Zero(),
                .omega = 3.0,

@@ -12,7 +12,9 @@ namespace gaitd::walking {
 struct SwingLeg {
   Eigen::Vector3d hip;            // m, W
   Eigen::Vector3d ankle_in_sole;  // m, sole frame, of a level foot
-  double longest;                 // m, hip to ankle
+  double longest;                 // m, hip to ankle, when it lands on level ground
+  double longest_down;            // m, the same on ground a good deal lower
+  double ground;                  // m, W: under the foot that stands
   Eigen::Vector2d lever;          // m, W: CoM from the foot that stands
   Eigen::Vector2d velocity;       // m/s, W, of the CoM
   double omega;                   // 1/s, of the pendulum
