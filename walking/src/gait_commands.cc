@@ -16,6 +16,8 @@ namespace {
 // more for walks that end with the other foot.
 constexpr int kDistinctSteps = 5;
 
+constexpr int kMostReturning = 10;  // steps: who is pushed all the time does not step for ever
+
 }  // namespace
 
 Refusal GaitMachine::check_room(int count) const {
@@ -138,8 +140,7 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
     return r;
   }
   queue_.truncate(kept);
-  returns_ = true;
-  returned_ = 0;
+  returns_left_ = kMostReturning;
   drive_.end();
   FootstepGenerator generator(walk, middle, first, width, parameters_);
   for (int i = 0; i < generator.count(); ++i) {
@@ -186,8 +187,7 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
   }
   if (Refusal r = check_capture(steps, count, kept, count); r.refused()) return r;
   queue_.truncate(kept);
-  returns_ = true;
-  returned_ = 0;
+  returns_left_ = kMostReturning;
   drive_.end();
   for (int i = 0; i < count; ++i) {
     GaitdFootstep step = steps[i];
@@ -229,7 +229,7 @@ GaitdFootstep GaitMachine::closing_step(const GaitdPose& stance, int side) const
 
 Refusal GaitMachine::stop() {
   drive_.end();
-  returns_ = false;
+  returns_left_ = 0;
   state_.paused = 0;
   const int kept = std::min(first_free(), queue_.size());
   GaitdPose stance;
@@ -274,7 +274,7 @@ int GaitMachine::begun() const {
 
 Refusal GaitMachine::abort() {
   drive_.end();
-  returns_ = false;
+  returns_left_ = 0;
   state_.paused = 0;
   queue_.truncate(begun());
   publish_footsteps();

@@ -9,8 +9,7 @@
 namespace gaitd::walking {
 namespace {
 
-constexpr double kArrived = 0.2;    // nominal distances of the feet: as good as where it was told
-constexpr int kMostReturning = 10;  // steps: who is pushed all the time does not step for ever
+constexpr double kArrived = 0.2;  // nominal distances of the feet: as good as where it was told
 
 }  // namespace
 
@@ -44,8 +43,8 @@ Eigen::Vector3d GaitMachine::astray(int side) const {
 }
 
 bool GaitMachine::comes_back() const {
-  if (!returns_ || queue_.size() > 0 || drive_.active() || returned_ >= kMostReturning ||
-      state_.mode != pending_mode_ || state_.mode == GAITD_MODE_STAND) {
+  if (returns_left_ <= 0 || queue_.size() > 0 || state_.mode != pending_mode_ ||
+      state_.mode == GAITD_MODE_STAND) {
     return false;
   }
   const double arrived = kArrived * model_.nominal_foot_separation;
@@ -58,7 +57,7 @@ void GaitMachine::push_return(int side) {
   step.closing = 1;
   complete(step);
   queue_.push(step);
-  ++returned_;
+  --returns_left_;
 }
 
 void GaitMachine::begin_return(const GaitdRobotState& robot) {

@@ -88,6 +88,21 @@ TEST(GaitReturn, WhoIsStoppedStaysWhereHeIs) {
   EXPECT_LT(w.swings, 6);
 }
 
+TEST(GaitReturn, ADriveLeadsNowhere) {
+  const auto swings_of_a_drive = [](int pushed) {
+    PushedWalk w(pushed, 0.0, 0.15);
+    w.run_for(0.1);
+    EXPECT_FALSE(w.machine.walk({.steps = 8, .length = 0.3, .first_side = GAITD_RIGHT}).refused());
+    EXPECT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 2));
+    EXPECT_FALSE(w.machine.drive({.velocity = {0.2, 0, 0}}).refused());  // which nobody renews
+    EXPECT_TRUE(w.run_until_stand());
+    return w.swings;
+  };
+  // Pushed in its last step, it takes the one that closes the feet at most.
+  const int last = swings_of_a_drive(99);
+  EXPECT_LE(swings_of_a_drive(last), last + 1);
+}
+
 TEST(GaitReturn, ANewWalkGoesOnFromTheOldWay) {
   PushedWalk w(4, 0.0, 0.4);
   w.run_for(0.1);

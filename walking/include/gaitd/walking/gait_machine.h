@@ -143,9 +143,8 @@ class GaitMachine {
     bool known;
   };
   std::array<Goal, GAITD_MAX_FEET> goals_{};  // last footstep of each foot since the robot stood
-  bool returns_ = false;                      // to the goals after the last footstep
-  bool returning_ = false;
-  int returned_ = 0;            // steps taken for it
+  int returns_left_ = 0;        // steps that may lead back to the goals after the last footstep
+  bool returning_ = false;      // such a step is under way
   double height_offset_ = 0.0;  // m, measured minus commanded height of the ground so far
   int pending_mode_ = GAITD_MODE_WALK_BENT;
   std::uint32_t next_id_ = 1;
