@@ -31,6 +31,20 @@ expect() {
   ((got == code)) || fail "'$*' ended with exit code $got, expected $code"
 }
 
+# short_scenario SECONDS: a robot that stands for so long with bent knees, for campaigns of many runs.
+short_scenario() {
+  cat <<SCENARIO
+schema: gaitd.scenario/1
+name: short
+robot: atlas
+duration: $1
+seed: 1
+mode: walk-bent
+sensors: {noise: nominal}
+expect: {no_fall: true}
+SCENARIO
+}
+
 # start_daemon ARGUMENTS...: gaitd in the background, ready when it answers.
 start_daemon() {
   printf '$ gaitd %s &\n' "$*"

@@ -10,16 +10,7 @@ fi
 trap 'stop_cluster; clean_up' EXIT
 cd "$scratch"
 
-cat >short.yaml <<'SCENARIO'
-schema: gaitd.scenario/1
-name: short
-robot: atlas
-duration: 1.0
-seed: 1
-mode: walk-bent
-sensors: {noise: nominal}
-expect: {no_fall: true}
-SCENARIO
+short_scenario 1.0 >short.yaml
 cat >campaign.yaml <<'CAMPAIGN'
 schema: gaitd.campaign/1
 name: trial

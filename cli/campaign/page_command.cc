@@ -9,7 +9,6 @@
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <system_error>
 
 #include "cli/campaign/page_data.h"
@@ -30,8 +29,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr std::string_view kPlaceholder = "\"GAITD_DATA\"";
 
 struct Arguments {
   std::string folder;
@@ -69,15 +66,6 @@ std::optional<json> log_json(int number, const fs::path& log_file, const fs::pat
   return entry;
 }
 
-// As it may stand inside a <script>.
-std::string script_text(const json& data) {
-  std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) {
-    text.replace(at, 2, "<\\/");
-  }
-  return text;
-}
-
 int run(const Context& context, const Arguments& arguments) {
   const auto failed = [&](const std::string& why) {
     return fail(context, kFailed, "campaign report", why);
@@ -93,13 +81,6 @@ int run(const Context& context, const Arguments& arguments) {
   const RunnerOptions options{{}, folder, plan->settings, 1, plan->origin.trust};
 
   std::optional<Waiting> waiting("drawing " + arguments.output);
-  auto [file, page] = installed_page("campaign");
-  const std::size_t place = page.find(kPlaceholder);
-  if (place == std::string::npos) {
-    return failed(file + ": expected the page of campaigns, got " +
-                  (page.empty() ? "no file" : "another file") +
-                  "; gaitd was built without it: install npm and build again");
-  }
   json data = page_data(*plan, *results, options);
   data["comparisons"] = comparisons_json(*plan, *results);
   data["logs"] = json::array();
@@ -110,8 +91,9 @@ int run(const Context& context, const Arguments& arguments) {
     if (!log) return failed(error);
     data["logs"].push_back(std::move(*log));
   }
-  page.replace(place, kPlaceholder.size(), script_text(data));
-  if (!write_file(arguments.output, page, &error)) return failed(error);
+  const std::string page =
+      page_with_data("campaign", "the page of campaigns", script_text(data), &error);
+  if (page.empty() || !write_file(arguments.output, page, &error)) return failed(error);
   waiting.reset();
   if (context.json) {
     std::cout << json_text(

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -35,7 +34,6 @@ constexpr char kShown[] =
     "time,com/?,com/height_target,truth/com/z,icp/*,cmp/desired/*,cop/*,pelvis/*,foot/*,footstep/*,"
     "leg/*,joint/*/position,joint/*/torque_desired,step_adjust/*,tick/*_us,gait/phase,"
     "toe_off/active";
-constexpr char kPlaceholder[] = "\"GAITD_DATA\"";
 
 std::string read_file(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -160,23 +158,11 @@ std::string report_data(const std::vector<std::unique_ptr<LogReader>>& logs) {
       data["others"].push_back(std::move(one));
     }
   }
-  std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return safe;
+  return script_text(data);
 }
 
 std::string report_page(const std::string& data, std::string* error) {
-  auto [file, page] = installed_page("report");
-  const std::size_t place = page.find(kPlaceholder);
-  if (place == std::string::npos) {
-    *error = file + ": expected the report page, got " +
-             (page.empty() ? "no file" : "another file") +
-             "; gaitd was built without it: install npm and build again";
-    return "";
-  }
-  return page.replace(place, std::strlen(kPlaceholder), data);
+  return page_with_data("report", "the report page", data, error);
 }
 
 }  // namespace gaitd::cli
