@@ -13,9 +13,6 @@ namespace {
 // Of a step, how far the hip is behind the foot that lands: a half and what the CoM still has to go
 // in the transfer that follows.
 constexpr double kLandingShare = 0.6;
-// Part of a swing in which the CoM comes down for a lower foothold. Neither a jerk nor too late:
-// 0.5 and 0.8 hold the same stairs.
-constexpr double kLoweredAt = 0.65;
 
 // m, by how much the hip is lower than when standing for a leg to span `share` of the way between
 // two footholds; negative where it could be higher.
@@ -70,8 +67,6 @@ double com_height_target(const GaitdGaitState& gait, const LegReach& reach) {
     ground = stance.position[2];
     // Low enough for the step that is coming, never waiting for it.
     lower = std::max((1.0 - share) * lower, drop(stance, gait.adjusted[0].pose, reach));
-    lower = std::max(lower, std::min(1.0, share / kLoweredAt) *
-                                landing_drop(stance, gait.adjusted[0].pose, reach));
   }
   return ground + reach.standing_height - lower;
 }

@@ -19,12 +19,12 @@ void LegConfiguration::set_leg(const GaitdModel& model, int side, double hip_ahe
   separation_ = model.nominal_foot_separation;
 }
 
-StepReach LegConfiguration::reach(int side, const GaitdGaitState& gait,
-                                  const LegParameters& p) const {
+double LegConfiguration::straightest(int side, const GaitdGaitState& gait,
+                                     const LegParameters& p) const {
   const double straight = p[Legs::kStraightKnee];
   const bool stands = gait.phase != GAITD_PHASE_STAND && gait.transfer_final == 0 &&
                       gait.footstep_count > 0 && gait.next_side != side;
-  if (!stands) return {straight, p[Legs::kCollapsedKnee]};
+  if (!stands) return straight;
   const GaitdPose& foothold = gait.footholds[side].pose;
   const double yaw = sdk::yaw_of(sdk::quaternion(foothold.orientation));
   const Eigen::Vector3d step = sdk::from_yaw(-yaw) * (sdk::view(gait.adjusted[0].pose.position) -
@@ -38,38 +38,20 @@ StepReach LegConfiguration::reach(int side, const GaitdGaitState& gait,
   const double progress = 0.5 - 0.5 * std::min(0.5, transfer / (swing + transfer));
   const double along = step.x() / std::max(horizontal, kShortestStep);
   const double hip = progress * horizontal + along * hip_ahead_;
-  StepReach r = step_reach(leg_, horizontal, -step.z(), hip, straight,
-                           p[Legs::kLargestDrop] * leg_.length(0.0));
-  r.collapsed_knee = std::max(p[Legs::kCollapsedKnee], p[Legs::kCollapseShare] * r.collapsed_knee);
-  if (gait.phase == GAITD_PHASE_SWING && gait.late_contact != 0) {
-    const double late = gait.time_in_phase - gait.phase_duration;
-    r.collapsed_knee =
-        std::max(r.collapsed_knee,
-                 std::min(r.collapsed_knee + p[Legs::kLateRate] * late, p[Legs::kLateKnee]));
-  }
-  return r;
-}
-
-// Deeper than usual takes longer, so that the knee is there at touchdown.
-double LegConfiguration::collapse_time(const LegParameters& p) const {
-  return std::max(p[Legs::kCollapseDuration],
-                  (reach_.collapsed_knee - p[Legs::kStraightKnee]) / p[Legs::kCollapseRate]);
+  return straightest_knee(leg_, horizontal, hip, straight,
+                          p[Legs::kLargestDrop] * leg_.length(0.0));
 }
 
 // The state that the gait asks for, given the one the leg is in.
-LegState LegConfiguration::next_state(bool straightened, int side, const GaitdGaitState& gait,
-                                      const LegParameters& p) const {
+LegState LegConfiguration::next_state(bool straightened, bool lowered, int side,
+                                      const GaitdGaitState& gait, const LegParameters& p) const {
   const double fraction =
       gait.phase_duration > 0.0 ? gait.time_in_phase / gait.phase_duration : 0.0;
   if (gait.phase == GAITD_PHASE_SWING) {
     if (gait.next_side == side) {
       return fraction < p[Legs::kExtendFraction] ? LegState::kBent : LegState::kExtend;
     }
-    const bool deep = reach_.collapsed_knee > p[Legs::kCollapsedKnee] + 0.05;
-    if (fraction >= p[Legs::kCollapseFraction] ||
-        (deep && gait.time_remaining <= collapse_time(p))) {
-      return LegState::kCollapsed;
-    }
+    if (fraction >= p[Legs::kCollapseFraction] || lowered) return LegState::kCollapsed;
   } else if (gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 &&
              gait.trailing_side == side) {
     return LegState::kCollapsed;
@@ -89,16 +71,18 @@ void LegConfiguration::enter(LegState state, double knee) {
   reference_.state = state;
   time_in_state_ = 0.0;
   knee_at_entry_ = knee;
-  if (state != LegState::kCollapsed) collapsed_knee_ = 0.0;
 }
 
 const LegConfiguration::Reference& LegConfiguration::update(double dt, int side, double knee,
+                                                            const ReferenceFilter& lowering,
                                                             const GaitdGaitState& gait,
                                                             const LegParameters& p) {
   time_in_state_ += dt;
-  reach_ = reach(side, gait, p);
-  const bool straightened = reference_.knee <= reach_.straight_knee + 1e-9;
-  const LegState wanted = next_state(straightened, side, gait, p);
+  const double straight = straightest(side, gait, p);
+  reference_.rate = reference_.acceleration = 0.0;
+  const bool straightened = reference_.knee <= straight + 1e-9;
+  const bool lowered = lowering.value() > p[Legs::kCollapsedKnee];
+  const LegState wanted = next_state(straightened, lowered, side, gait, p);
   if (wanted != reference_.state) enter(wanted, knee);
   if (gait.mode != mode_) {
     mode_ = gait.mode;
@@ -111,11 +95,15 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
     // The commanded height bends a leg that carries the robot; only the others need to be told.
     const bool leaving =
         gait.phase != GAITD_PHASE_STAND && gait.transfer_final == 0 && gait.next_side == side;
-    reference_ = {reference_.state, p[Legs::kBentKnee], p[Legs::kBentStiffness],
-                  p[Legs::kBentDamping], leaving ? p[Legs::kBentWeight] : 0.0};
+    reference_ = {reference_.state,
+                  p[Legs::kBentKnee],
+                  p[Legs::kBentStiffness],
+                  p[Legs::kBentDamping],
+                  leaving ? p[Legs::kBentWeight] : 0.0,
+                  0.0,
+                  0.0};
     return reference_;
   }
-  const double straight = reach_.straight_knee;
   const bool bent = reference_.state == LegState::kBent;
   const bool firm =
       reference_.state == LegState::kStraighten || reference_.state == LegState::kStraight;
@@ -134,12 +122,19 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
       break;
     }
     case LegState::kCollapsed: {
-      const double s = std::min(1.0, time_in_state_ / collapse_time(p));
-      // While trailing it keeps what it had at touchdown.
-      if (gait.phase == GAITD_PHASE_SWING) collapsed_knee_ = reach_.collapsed_knee;
-      const double goal = std::max(collapsed_knee_, p[Legs::kCollapsedKnee]);
+      if (gait.phase != GAITD_PHASE_SWING) {
+        // Hip and toe say how long a trailing leg is; a knee of its own would drag the toe.
+        reference_.knee = std::max(knee, p[Legs::kCollapsedKnee]);
+        break;
+      }
+      const double s = std::min(1.0, time_in_state_ / p[Legs::kCollapseDuration]);
       const double start = std::max(straight, knee_at_entry_);
-      reference_.knee = start + (goal - start) * s * s * (3.0 - 2.0 * s);
+      reference_.knee = start + (p[Legs::kCollapsedKnee] - start) * s * s * (3.0 - 2.0 * s);
+      if (lowering.value() > reference_.knee) {
+        reference_.knee = lowering.value();
+        reference_.rate = lowering.velocity();
+        reference_.acceleration = lowering.acceleration();
+      }
       break;
     }
     case LegState::kBent:

@@ -64,15 +64,12 @@ double LegGeometry::thigh(double length) const {
   return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
-StepReach step_reach(const LegGeometry& leg, double horizontal, double drop, double hip,
-                     double straight, double largest_drop) {
+double straightest_knee(const LegGeometry& leg, double horizontal, double hip, double straight,
+                        double largest_drop) {
   const double longest = leg.length(straight);
   const double ahead = std::min(std::abs(horizontal - hip), 0.9 * longest);
-  const double behind = std::min(std::abs(hip), 0.9 * longest);
   const double level = std::sqrt(longest * longest - ahead * ahead);  // hip above the ankle
-  const double at_touchdown = std::max(level - std::max(drop, 0.0), 0.3 * longest);
-  return {.straight_knee = std::max(straight, leg.knee(std::min(longest, level + largest_drop))),
-          .collapsed_knee = leg.knee(std::min(longest, std::hypot(at_touchdown, behind)))};
+  return std::max(straight, leg.knee(std::min(longest, level + largest_drop)));
 }
 
 }  // namespace gaitd::walking

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/hip_descent.h"
 #include "gaitd/walking/support.h"
 
 namespace gaitd::walking {
@@ -12,12 +13,18 @@ namespace {
 
 using sdk::view;
 
-constexpr double kHeightRate = 8.0;        // 1/s, of the reference filter of the CoM height
+// Over sqrt(g / h), of the reference filter of the CoM height: a faster one disturbs steps that
+// catch a light robot. Where the hip goes down with a foot it has to be fast enough for a foot that
+// finds no ground.
+constexpr double kHeightRate = 2.3;
+constexpr double kDescentRate = 5.4;
 constexpr double kTouchdownTime = 0.05;    // s, in which the touchdown damping fades
 constexpr double kHeelStrikeTime = 0.1;    // s after touchdown in which the drives damp
 constexpr double kClosingTouchdown = 0.5;  // of the touchdown velocity
 constexpr double kLevelRate = 1.0;         // 1/s, with which a walk levels the pelvis
 constexpr double kNever = 1e9;             // rad
+constexpr double kLandingKnee = 0.5;       // of the knee of walk-bent
+constexpr double kShortestLeg = 0.3;       // of its length
 constexpr double kToeEdge = 0.01;  // m, points this far behind the toe point are not on the edge
 constexpr double kYawRate = 6.0;   // 1/s, of the reference filter of the heading
 constexpr std::uint32_t kAngularRows = 0b000111;
@@ -63,7 +70,10 @@ double late_time(const GaitdGaitState& gait) {
 }  // namespace
 
 ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
-    : model_(model), weight_(model.total_mass * model.gravity), kinematics_(model) {
+    : model_(model),
+      weight_(model.total_mass * model.gravity),
+      omega_(std::sqrt(model.gravity / model.nominal_com_height)),
+      kinematics_(model) {
   kinematics_.update(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(), sdk::Vector6d::Zero(),
                      sdk::head(model_.nominal_position, model_.joint_count),
                      Eigen::VectorXd::Zero(model_.joint_count));
@@ -75,7 +85,12 @@ ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
   const GaitdFoot& foot = model_.feet[GAITD_LEFT];
   const Eigen::Vector3d sole = kinematics_.frame_position(foot.body, view(foot.sole.origin));
   const double hip_ahead = hip.x() - kinematics_.com().x() + sole.x() - ankle.x();
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) legs_[side].set_leg(model_, side, hip_ahead);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    legs_[side].set_leg(model_, side, hip_ahead);
+    const GaitdFoot& f = model_.feet[side];
+    ankle_in_sole_[side] =
+        this->ankle(side) - kinematics_.frame_position(f.body, view(f.sole.origin));
+  }
   posture_joint_.fill(false);
   for (int i = 0; i < model_.joint_count; ++i) posture_joint_[i] = true;
   for (const GaitdLeg& l : model_.legs) {
@@ -122,11 +137,12 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
     const bool toe = toe_off.active != 0 && toe_off.side == side;
     time_in_toe_off_[side] = toe ? time_in_toe_off_[side] + dt : 0.0;
   }
+  plan_swing(robot, gait, lift_off);
   update_rests(dt, robot, gait, toe_off);
   update_contacts(dt, gait, toe_off, out);
   update_momentum(dt, robot, gait, adjustment, out);
   update_upper_body(dt, robot, gait, out);
-  update_feet(dt, robot, gait, lift_off, toe_off, out);
+  update_feet(dt, robot, gait, toe_off, out);
   update_privileged(dt, robot, gait, out);
   update_impedance(gait, out);
 }
@@ -243,8 +259,21 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
       .nominal_separation = model_.nominal_foot_separation,
       .largest_drop = parameters_[Objective::kReachDrop] * model_.nominal_com_height};
   out.height_target = com_height_target(gait, reach) + pose_height_;
-  height_.update(dt, out.height_target, kHeightRate);
-  const double stiffness = parameters_[Objective::kHeightStiffness];
+  const bool straight = gait.mode == GAITD_MODE_WALK_STRAIGHT;
+  bool descends = false;
+  if (gait.phase == GAITD_PHASE_SWING && !straight) {
+    const double landing =
+        legs_[gait.next_side].geometry().length(kLandingKnee * leg_parameters_[Legs::kBentKnee]);
+    const double hip = highest_hip_of_swing(robot, gait, landing, reach.longest);
+    const double above = standing - leg_length_ - ankle_in_sole_[gait.next_side].z();
+    descends = hip + above < out.height_target;
+    if (descends) out.height_target = hip + above;
+  }
+  if (gait.mode != mode_) height_.reset(robot.com[2], robot.com_velocity[2]);
+  mode_ = gait.mode;
+  height_.update(dt, out.height_target, (descends ? kDescentRate : kHeightRate) * omega_);
+  // A controller that commands the height of straight legs as well is drawn to it softly.
+  const double stiffness = (straight ? 0.5 : 1.0) * parameters_[Objective::kHeightStiffness];
   const double limit = parameters_[Objective::kHeightAccelerationLimit] * model_.gravity;
   const double wanted = height_.acceleration() + stiffness * (height_.value() - robot.com[2]) +
                         damping(stiffness, parameters_[Objective::kHeightDampingRatio]) *
@@ -256,8 +285,6 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
   const double horizontal = parameters_[Objective::kMomentumWeight] / (mass * mass);
   const double vertical = parameters_[Objective::kMomentumHeightWeight] / (mass * mass);
   for (int i = 0; i < 6; ++i) out.momentum_weight[i] = i == 5 ? vertical : horizontal;
-  const bool straight = gait.mode == GAITD_MODE_WALK_STRAIGHT;
-  if (straight) height_.reset(robot.com[2], robot.com_velocity[2]);  // where a mode change finds it
   out.momentum_mask =
       (static_cast<std::uint32_t>(adjustment.angular_momentum_mask) & kAngularRows) |
       (straight ? 0b011000u : kLinearRows);
@@ -341,11 +368,11 @@ void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot
 }
 
 void ObjectiveBuilder::update_feet(double dt, const GaitdRobotState& robot,
-                                   const GaitdGaitState& gait, const GaitdPose& lift_off,
-                                   const GaitdToeOff& toe_off, GaitdObjectives& out) {
+                                   const GaitdGaitState& gait, const GaitdToeOff& toe_off,
+                                   GaitdObjectives& out) {
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     if (gait.footholds[side].contact == GAITD_CONTACT_NONE) {
-      add_swing_foot(side, robot, gait, lift_off, out);
+      add_swing_foot(side, robot, gait, out);
     } else if (on_toe(side)) {
       add_toe(side, robot, gait, toe_off, out);
     } else {
@@ -409,9 +436,10 @@ void ObjectiveBuilder::add_toe(int side, const GaitdRobotState& robot, const Gai
   view(turn.weight).setConstant(parameters_[Objective::kToeAngularWeight]);
 }
 
-void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
-                                      const GaitdGaitState& gait, const GaitdPose& lift_off,
-                                      GaitdObjectives& out) {
+void ObjectiveBuilder::plan_swing(const GaitdRobotState& robot, const GaitdGaitState& gait,
+                                  const GaitdPose& lift_off) {
+  if (gait.phase != GAITD_PHASE_SWING) return;
+  const int side = gait.next_side;
   const GaitdFootstep& goal = gait.adjusted[0];
   SwingParameters swing = swing_parameters_;
   if (goal.closing != 0) {
@@ -428,6 +456,10 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
     swing_.replan(gait.time_in_phase, goal, gait.phase_duration, swing);
     swing_revision_ = gait.plan_revision;
   }
+}
+
+void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
+                                      const GaitdGaitState& gait, GaitdObjectives& out) {
   const SwingTrajectory::Sample s = swing_.evaluate(gait.time_in_phase);
   const GaitdFoot& foot = model_.feet[side];
   const GaitdFootState& now = robot.feet[side];
@@ -451,21 +483,63 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
   view(task.weight).tail<3>().setConstant(heavier * parameters_[Objective::kSwingWeight]);
 }
 
+Eigen::Vector3d ObjectiveBuilder::hip(int side) const {
+  return kinematics_.p_WB(model_.joints[model_.legs[side].hip_pitch].child_body);
+}
+
+Eigen::Vector3d ObjectiveBuilder::ankle(int side) const {
+  return kinematics_.p_WB(model_.joints[model_.legs[side].ankle_pitch].child_body);
+}
+
+double ObjectiveBuilder::highest_hip_of_swing(const GaitdRobotState& robot,
+                                              const GaitdGaitState& gait, double longest,
+                                              double longest_down) const {
+  const GaitdPose& stance = gait.footholds[gait.support].pose;
+  return highest_hip(swing_, gait.time_in_phase, gait.phase_duration,
+                     {.hip = hip(gait.next_side),
+                      .ankle_in_sole = ankle_in_sole_[gait.next_side],
+                      .longest = longest,
+                      .longest_down = longest_down,
+                      .ground = stance.position[2],
+                      .lever = Eigen::Vector3d(view(robot.com) - view(stance.position)).head<2>(),
+                      .velocity = Eigen::Vector3d(view(robot.com_velocity)).head<2>(),
+                      .omega = gait.omega,
+                      .gravity = model_.gravity});
+}
+
+void ObjectiveBuilder::update_lowering(double dt, const GaitdRobotState& robot,
+                                       const GaitdGaitState& gait) {
+  const double straight = leg_parameters_[Legs::kStraightKnee];
+  if (gait.phase != GAITD_PHASE_SWING) {
+    lowering_.reset(straight);
+    return;
+  }
+  const LegGeometry& leg = legs_[gait.support].geometry();
+  const double longest = leg.length(straight);
+  const Eigen::Vector3d stance = ankle(gait.support);
+  const double high = highest_hip_of_swing(robot, gait, longest, longest) - stance.z();
+  const double behind = (hip(gait.support) - stance).head<2>().norm();
+  const double length = std::hypot(behind, std::max(high, kShortestLeg * longest));
+  lowering_.update(dt, leg.knee(std::min(longest, length)), kDescentRate * omega_);
+}
+
 void ObjectiveBuilder::update_privileged(double dt, const GaitdRobotState& robot,
                                          const GaitdGaitState& gait, GaitdObjectives& out) {
   for (int i = 0; i < GAITD_MAX_JOINTS; ++i) {
     out.privileged_acceleration[i] = 0.0;
     out.privileged_weight[i] = 0.0;
   }
+  update_lowering(dt, robot, gait);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdLeg& leg = model_.legs[side];
     const double knee = leg.knee_bend_sign * robot.joint_position[leg.knee];
     const double rate = leg.knee_bend_sign * robot.joint_velocity[leg.knee];
     const LegConfiguration::Reference& r =
-        legs_[side].update(dt, side, knee, gait, leg_parameters_);
+        legs_[side].update(dt, side, knee, lowering_, gait, leg_parameters_);
     // The leg acts as a unit: half the knee to hip and ankle each keeps the direction of the
     // line from hip to ankle (theory section 4).
-    const double bend = r.stiffness * (r.knee - knee) - r.damping * rate;
+    const double bend =
+        r.acceleration + r.stiffness * (r.knee - knee) + r.damping * (r.rate - rate);
     out.privileged_acceleration[leg.knee] = leg.knee_bend_sign * bend;
     out.privileged_acceleration[leg.hip_pitch] = 0.5 * leg.hip_pitch_bend_sign * bend;
     out.privileged_acceleration[leg.ankle_pitch] = 0.5 * leg.ankle_pitch_bend_sign * bend;

@@ -35,7 +35,7 @@ class LegsOfAWalk : public SyntheticWalk {
   }
   void update() {
     for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
-      const auto& r = legs[side].update(dt, side, knee[side], gait(), parameters());
+      const auto& r = legs[side].update(dt, side, knee[side], lowering, gait(), parameters());
       if (states[side].empty() || states[side].back() != r.state) states[side].push_back(r.state);
       if (check) check(side, r);
       const double step = 6.0 * dt;
@@ -44,6 +44,7 @@ class LegsOfAWalk : public SyntheticWalk {
   }
   LegConfiguration legs[2];
   double knee[2] = {0.5, 0.5};
+  ReferenceFilter lowering;
   std::vector<LegState> states[2];
   std::function<void(int, const LegConfiguration::Reference&)> check;
 };
@@ -121,6 +122,38 @@ TEST(LegConfiguration, CollapsesLateInTheOtherLegsSwingAndWhileTrailing) {
   EXPECT_GT(collapsed, 500);
 }
 
+TEST(LegConfiguration, BendsTheLegThatStandsForAFootThatComesDownLower) {
+  LegsOfAWalk w(GAITD_MODE_WALK_STRAIGHT);
+  ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3}).refused());
+  int lowered = 0, trailing = 0;
+  w.check = [&](int side, const LegConfiguration::Reference& r) {
+    const GaitdGaitState& g = w.gait();
+    const bool swing = g.phase == GAITD_PHASE_SWING;
+    const bool late = swing && g.time_in_phase > 0.5 * g.phase_duration;
+    // Set after one leg, before the other: what the leg that stands is told next.
+    if (side == GAITD_RIGHT) w.lowering.reset(late ? 0.9 : 0.2, late ? 0.7 : 0.0);
+    if (late && g.support == GAITD_LEFT && w.lowering.value() > 0.8) {
+      ++lowered;
+      ASSERT_EQ(r.state, side == GAITD_LEFT ? LegState::kCollapsed : LegState::kExtend);
+      if (side == GAITD_LEFT) {
+        ASSERT_EQ(r.knee, 0.9);
+        ASSERT_EQ(r.rate, 0.7);
+      }
+    }
+    // While it trails it is as long as hip and toe make it.
+    if (g.phase == GAITD_PHASE_TRANSFER && g.trailing_side == GAITD_LEFT && side == GAITD_LEFT &&
+        g.transfer_final == 0) {
+      ++trailing;
+      ASSERT_EQ(r.knee, std::max(w.knee[side], parameters()[Legs::kCollapsedKnee]));
+      ASSERT_EQ(r.rate, 0.0);
+    }
+  };
+  w.tick();
+  ASSERT_TRUE(w.run_until_stand());
+  EXPECT_GT(lowered, 100);
+  EXPECT_GT(trailing, 50);
+}
+
 TEST(LegConfiguration, StraighteningStartsAtTheMeasuredKneeAndKeepsItsRate) {
   SyntheticWalk w;
   LegConfiguration leg;
@@ -130,7 +163,7 @@ TEST(LegConfiguration, StraighteningStartsAtTheMeasuredKneeAndKeepsItsRate) {
   double knee = 0.9;
   double last = knee;
   for (int i = 0; i < 2000; ++i) {
-    const auto& r = leg.update(0.001, GAITD_LEFT, knee, g, parameters());
+    const auto& r = leg.update(0.001, GAITD_LEFT, knee, ReferenceFilter(), g, parameters());
     ASSERT_LE(r.knee, last + 1e-12);
     ASSERT_GE(r.knee, last - 1.001 * parameters()[Legs::kSettleRate] * 0.001);
     last = r.knee;
@@ -147,7 +180,7 @@ TEST(LegConfiguration, NeverRunsAwayFromALegThatDoesNotFollow) {
   GaitdGaitState g = w.gait();
   g.mode = GAITD_MODE_WALK_STRAIGHT;
   for (int i = 0; i < 5000; ++i) {
-    const auto& r = leg.update(0.001, GAITD_LEFT, 1.2, g, parameters());
+    const auto& r = leg.update(0.001, GAITD_LEFT, 1.2, ReferenceFilter(), g, parameters());
     ASSERT_EQ(r.state, LegState::kStraighten);
     ASSERT_GE(r.knee, 1.2 - parameters()[Legs::kMaxLead] - 1e-12);
   }

@@ -39,37 +39,20 @@ TEST(LegGeometry, LengthsOutOfReachGiveTheNearestKnee) {
   EXPECT_GT(geometry.knee(0.0), 2.5);
 }
 
-TEST(StepReach, ShortLevelStepsLeaveTheLegStraight) {
+TEST(StraightestKnee, OnlyLongStepsBendIt) {
   const LegGeometry leg(atlas(), GAITD_LEFT);
-  const StepReach r = step_reach(leg, 0.35, 0.0, 0.175, 0.2, 0.13);
-  EXPECT_NEAR(r.straight_knee, 0.2, 1e-6);
-  EXPECT_NEAR(r.collapsed_knee, 0.2, 0.02);
+  EXPECT_NEAR(straightest_knee(leg, 0.35, 0.175, 0.2, 0.13), 0.2, 1e-6);
+  EXPECT_GT(straightest_knee(leg, 1.0, 0.5, 0.2, 0.1), 0.4);
+  EXPECT_TRUE(std::isfinite(straightest_knee(leg, 5.0, 2.5, 0.2, 0.13)));
 }
 
-TEST(StepReach, LongStepsBendTheKneeAndDropsCollapseIt) {
+TEST(StraightestKnee, AHipThatComesLateHasToComeLower) {
   const LegGeometry leg(atlas(), GAITD_LEFT);
-  EXPECT_GT(step_reach(leg, 1.0, 0.0, 0.5, 0.2, 0.1).straight_knee, 0.4);
-  double last = 0.0;
-  for (double drop : {0.05, 0.1, 0.15, 0.2}) {
-    const StepReach r = step_reach(leg, 0.3, drop, 0.15, 0.2, 0.13);
-    EXPECT_NEAR(r.straight_knee, 0.2, 1e-6);
-    EXPECT_GT(r.collapsed_knee, last + 0.1);
-    last = r.collapsed_knee;
-  }
-  EXPECT_LT(last, 2.0);
-  EXPECT_TRUE(std::isfinite(step_reach(leg, 5.0, 3.0, 2.5, 0.2, 0.13).collapsed_knee));
-}
-
-TEST(StepReach, AHipThatComesLateHasToComeLower) {
-  const LegGeometry leg(atlas(), GAITD_LEFT);
-  const StepReach half_way = step_reach(leg, 0.7, 0.0, 0.35, 0.2, 0.2);
-  const StepReach late = step_reach(leg, 0.7, 0.0, 0.2, 0.2, 0.2);
-  EXPECT_NEAR(half_way.collapsed_knee, 0.2, 1e-6);
-  // The knee with which the leg that stands is as high as the other needs it.
+  const double late = straightest_knee(leg, 0.9, 0.3, 0.2, 0.1);
+  // Just as bent as lets the hip come down to where the landing leg reaches.
   const double longest = leg.length(0.2);
-  const double height = std::sqrt(longest * longest - 0.5 * 0.5);
-  EXPECT_NEAR(leg.length(late.collapsed_knee), std::hypot(height, 0.2), 1e-6);
-  EXPECT_GT(late.collapsed_knee, 0.6);
+  EXPECT_NEAR(leg.length(late), std::sqrt(longest * longest - 0.6 * 0.6) + 0.1, 1e-6);
+  EXPECT_LT(straightest_knee(leg, 0.9, 0.45, 0.2, 0.1), late);
 }
 
 }  // namespace

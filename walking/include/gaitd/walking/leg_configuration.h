@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gaitd/abi/types.h"
+#include "gaitd/walking/com_height.h"
 #include "gaitd/walking/leg_geometry.h"
 #include "gaitd/walking/parameters.h"
 
@@ -15,7 +16,7 @@ enum class LegState { kStraighten = 0, kStraight, kCollapsed, kBent, kExtend };
 //   straighten  touchdown of this leg: ramps from the measured knee to the straight angle
 //   straight    ramp done; as straight as the coming step allows
 //   collapsed   late in the other leg's swing and while trailing: slightly bent, more so when the
-//               step goes down or the touchdown is late
+//               other foot comes down lower or later
 //   bent        start of this leg's swing: picks the foot up
 //   extend      later in this leg's swing: straight, reaching for the ground
 // In walk-bent every state has the bent angle. Knee angles here are positive when bent.
@@ -27,31 +28,32 @@ class LegConfiguration {
     double stiffness;  // 1/s^2
     double damping;    // 1/s
     double weight;
+    double rate;          // rad/s, of that knee
+    double acceleration;  // rad/s^2
   };
 
   // `hip_ahead` (m): of the hip over the ankle when the CoM is above the sole.
   void set_leg(const GaitdModel& model, int side, double hip_ahead);
   void reset(double knee);
-  // `side` is this leg, `knee` its measured bend (rad). One call per tick of `dt` seconds.
-  const Reference& update(double dt, int side, double knee, const GaitdGaitState& gait,
-                          const LegParameters& parameters);
+  // `side` is this leg, `knee` its measured bend (rad). `lowering` (rad): the bend at which the hip
+  // is low enough for the other foot to come down. One call per tick of `dt` seconds.
+  const Reference& update(double dt, int side, double knee, const ReferenceFilter& lowering,
+                          const GaitdGaitState& gait, const LegParameters& parameters);
+  const LegGeometry& geometry() const { return leg_; }
   const Reference& reference() const { return reference_; }
 
  private:
   void enter(LegState state, double knee);
-  LegState next_state(bool straightened, int side, const GaitdGaitState& gait,
+  LegState next_state(bool straightened, bool lowered, int side, const GaitdGaitState& gait,
                       const LegParameters& p) const;
-  // What the next step asks of this leg while it stands.
-  StepReach reach(int side, const GaitdGaitState& gait, const LegParameters& p) const;
-  double collapse_time(const LegParameters& p) const;
-  Reference reference_{LegState::kBent, 0.0, 0.0, 0.0, 0.0};
+  // rad: as straight as the next step allows this leg to stand.
+  double straightest(int side, const GaitdGaitState& gait, const LegParameters& p) const;
+  Reference reference_{LegState::kBent, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   LegGeometry leg_;
   double hip_ahead_ = 0.0;   // m
   double separation_ = 0.0;  // m, of the feet in the nominal posture
-  StepReach reach_{};
   double time_in_state_ = 0.0;
   double knee_at_entry_ = 0.0;
-  double collapsed_knee_ = 0.0;
   int mode_ = GAITD_MODE_STAND;
 };
 

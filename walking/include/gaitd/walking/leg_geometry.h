@@ -23,17 +23,11 @@ class LegGeometry {
   double offset_ = 0.0;               // rad, bend of the line hip-knee-ankle at knee 0
 };
 
-// What the coming step asks of the leg that stands (theory section 4: as straight as it can be).
-struct StepReach {
-  double straight_knee;   // rad, least bend in mid-stance
-  double collapsed_knee;  // rad, bend at touchdown
-};
-
-// `horizontal` (m) is the step from the standing foot to the coming foothold, without what the feet
-// stand apart anyway; `drop` (m) by how much it is lower. At touchdown the hip is `hip` (m) from
-// the ankle that stands, along the step, and the landing leg has the knee `straight` (rad); the hip
-// comes down by at most `largest_drop` (m) from mid-stance to there, plus the drop itself.
-StepReach step_reach(const LegGeometry& leg, double horizontal, double drop, double hip,
-                     double straight, double largest_drop);
+// rad: least bend of a leg that stands, for a step of `horizontal` metres without what the feet
+// stand apart anyway. At touchdown the hip is `hip` (m) from the ankle that stands, along the step,
+// and the landing leg has the knee `straight` (rad); the hip comes down by at most `largest_drop`
+// (m) from mid-stance to there, besides what the ground goes down.
+double straightest_knee(const LegGeometry& leg, double horizontal, double hip, double straight,
+                        double largest_drop);
 
 }  // namespace gaitd::walking

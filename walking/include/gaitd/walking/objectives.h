@@ -62,14 +62,25 @@ class ObjectiveBuilder {
   void update_upper_body(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                          GaitdObjectives& out);
   void update_feet(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
-                   const GaitdPose& lift_off, const GaitdToeOff& toe_off, GaitdObjectives& out);
+                   const GaitdToeOff& toe_off, GaitdObjectives& out);
   void update_rests(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                     const GaitdToeOff& toe_off);
   void add_stance_foot(int side, const GaitdRobotState& robot, GaitdObjectives& out) const;
   void add_toe(int side, const GaitdRobotState& robot, const GaitdGaitState& gait,
                const GaitdToeOff& toe_off, GaitdObjectives& out) const;
   void add_swing_foot(int side, const GaitdRobotState& robot, const GaitdGaitState& gait,
-                      const GaitdPose& lift_off, GaitdObjectives& out);
+                      GaitdObjectives& out);
+  // The way of the foot in swing, from where it left the ground.
+  void plan_swing(const GaitdRobotState& robot, const GaitdGaitState& gait,
+                  const GaitdPose& lift_off);
+  // m, W, of the joints of hip and ankle pitch.
+  Eigen::Vector3d hip(int side) const;
+  Eigen::Vector3d ankle(int side) const;
+  // m, W: for the foot in swing to come down on a leg of `longest` metres, `longest_down` on lower
+  // ground.
+  double highest_hip_of_swing(const GaitdRobotState& robot, const GaitdGaitState& gait,
+                              double longest, double longest_down) const;
+  void update_lowering(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait);
   void update_privileged(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                          GaitdObjectives& out);
   void update_impedance(const GaitdGaitState& gait, GaitdObjectives& out) const;
@@ -85,6 +96,7 @@ class ObjectiveBuilder {
 
   const GaitdModel model_;
   double weight_;      // N
+  double omega_;       // 1/s, sqrt(g / h) of the nominal posture
   double leg_length_;  // m, hip to ankle in the nominal posture
   dynamics::Kinematics kinematics_;
   Eigen::Quaterniond chest_in_pelvis_;
@@ -100,6 +112,9 @@ class ObjectiveBuilder {
   int swing_step_ = -1;      // step index of the trajectory in swing_
   int swing_revision_ = -1;  // plan revision it was made for
   ReferenceFilter height_;
+  int mode_ = GAITD_MODE_STAND;  // of the gait, that height_ was begun in
+  ReferenceFilter lowering_;  // rad, bend of the leg that stands, for the other foot to come down
+  Eigen::Vector3d ankle_in_sole_[GAITD_MAX_FEET];  // m, above a level sole
   ReferenceFilter yaw_;
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // rad, held while standing, level in a walk
   double pose_height_ = 0.0;                        // m

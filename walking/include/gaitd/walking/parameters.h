@@ -156,15 +156,11 @@ enum class Legs {
   kMaxLead,
   kCollapseFraction,
   kCollapseDuration,
-  kCollapseShare,
-  kCollapseRate,
   kLargestDrop,
-  kLateKnee,
-  kLateRate,
   kExtendFraction,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 23> kLegParameters = {
+inline constexpr std::array<GaitdParameter, 19> kLegParameters = {
     real_parameter("bent_knee", "rad", 0, 2.5, 0.9, "privileged knee of both legs, walk-bent"),
     real_parameter("straight_knee", "rad", 0, 1, 0.2, "privileged knee of a straight leg"),
     real_parameter("collapsed_knee", "rad", 0, 2, 0.3, "privileged knee of a trailing leg"),
@@ -184,13 +180,8 @@ inline constexpr std::array<GaitdParameter, 23> kLegParameters = {
     real_parameter("collapse_fraction", "", 0, 1, 0.65,
                    "part of the other leg's swing after which the stance leg collapses"),
     real_parameter("collapse_duration", "s", 0.01, 5, 0.3, "of the ramp to the collapsed knee"),
-    real_parameter("collapse_share", "", 0, 1.5, 0.9,
-                   "of the bend with which a step down is reached by a straight leg"),
-    real_parameter("collapse_rate", "rad/s", 0.1, 20, 2.0, "of a knee that bends for it"),
     real_parameter("largest_drop", "leg lengths", 0, 1, 0.25,
                    "of the hip from mid-stance to touchdown; less for longer steps bends the knee"),
-    real_parameter("late_knee", "rad", 0, 2, 1.0, "stance knee while a touchdown is overdue"),
-    real_parameter("late_rate", "rad/s", 0, 50, 3, "with which it gets there"),
     real_parameter("extend_fraction", "", 0, 1, 0.5, "part of its swing after which a leg extends"),
 };
 
@@ -259,7 +250,7 @@ inline constexpr std::array<GaitdParameter, 52> kObjectiveParameters = {
                    "hip ahead of the trailing ankle at the end of a transfer, over the step"),
     real_parameter("reach_drop", "", 0, 0.5, 0.1,
                    "largest lowering for it, over the CoM height in the nominal posture"),
-    real_parameter("height_stiffness", "1/s^2", 0, 500, 40, "of the CoM height"),
+    real_parameter("height_stiffness", "1/s^2", 0, 500, 80, "of the CoM height"),
     real_parameter("height_damping_ratio", "", 0, 5, 1.0, "of the CoM height"),
     real_parameter("height_acceleration_limit", "g", 0.01, 1, 0.5, "of the CoM height"),
     real_parameter("momentum_weight", "", 50, 1e6, 1500,
