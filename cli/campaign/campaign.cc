@@ -113,24 +113,6 @@ void read_draws(MapReader map, Campaign* campaign) {
   }
 }
 
-void read_seeds(MapReader* root, Campaign* campaign) {
-  const NodePtr node = root->node("seeds");
-  if (node != nullptr && node->kind == NodeKind::kList) {
-    for (const NodePtr& item : node->items) {
-      const auto seed = daemon::as_integer(*item);
-      if (seed && *seed >= 0) {
-        campaign->seeds.push_back(static_cast<std::uint64_t>(*seed));
-      } else {
-        root->issues()->add(item->where, "seeds", "whole numbers of at least 0",
-                            daemon::describe(*item), "");
-      }
-    }
-    return;
-  }
-  const long long count = root->integer("seeds", 1, 1000000).value_or(1);
-  for (long long i = 1; i <= count; ++i) campaign->seeds.push_back(static_cast<std::uint64_t>(i));
-}
-
 // A key twice, or one that the campaign itself sets, would hide one of its values.
 void check_keys(MapReader* root, const Campaign& campaign) {
   std::set<std::string> seen{"seed"};

@@ -34,6 +34,14 @@ struct CampaignTarget {
   double rate = 1.0;
 };
 
+/// Along the last setting, whose values go evenly from what is easiest to what is hardest: where
+/// the success rate crosses a level. Each run of it has a seed of its own.
+struct CampaignSearch {
+  double from = 0.0, to = 0.0;  ///< the values at the ends; `to` is the smaller one of some keys
+  double rate = 0.5;            ///< of successes at the limit
+  double width = 0.0;           ///< of the 95 % interval that ends the search, in units of the key
+};
+
 /// Polar plots of what a search found, one file for each scenario.
 struct CampaignPlot {
   std::string angle;                     ///< setting whose values are angles in rad, 0 upwards
@@ -52,7 +60,7 @@ struct Campaign {
   std::vector<std::string> scenarios;     ///< as written: names, paths, kinds of the gauntlet
   std::set<std::string> drawn;            ///< those that are kinds of the gauntlet
   std::vector<CampaignSetting> settings;  ///< every combination is tried
-  bool searches = false;  ///< the last setting ascends, and is bisected instead of tried in full
+  std::optional<CampaignSearch> search;
   /// By setting and value: KEY=VALUE of everything that it stands for, of a sweep and of settings
   /// that change several keys together.
   std::map<std::string, std::map<std::string, std::vector<std::string>>> bundles;

@@ -14,6 +14,7 @@
 #include "cli/campaign/page_command.h"
 #include "cli/campaign/plan.h"
 #include "cli/campaign/runner.h"
+#include "cli/campaign/search.h"
 #include "cli/campaign/slurm_engine.h"
 #include "cli/failure.h"
 #include "cli/private_directory.h"
@@ -63,6 +64,17 @@ RunnerOptions runner_options(const CampaignPlan& plan, const fs::path& folder, i
           plan.origin.trust};
 }
 
+// Why the campaign cannot be cut into these shards; empty if it can.
+std::string wrong_shard(const CampaignPlan& plan) {
+  if (!plan.campaign.search) return "";
+  const std::size_t parts = RunOrder(plan.campaign, plan.runs, {}).parts();
+  if (static_cast<std::size_t>(plan.origin.shard.count) <= parts) return "";
+  return "--shard " + shard_text(plan.origin.shard) + ": the campaign has " +
+         std::to_string(parts) + (parts == 1 ? " search" : " searches") +
+         ", one for each combination, and each needs its own results to go on: give at most " +
+         "--shard I/" + std::to_string(parts);
+}
+
 // Why this campaign does not begin in the folder like this; empty if it does.
 std::string wrong_folder(const Arguments& arguments, const fs::path& folder) {
   if (arguments.resume && !holds_campaign(folder)) {
@@ -93,6 +105,7 @@ int run(const Context& context, const Arguments& arguments) {
   const auto plan =
       plan_of_file({file.string(), arguments.settings, arguments.trust, shard}, &error);
   if (!plan) return failed(error);
+  if (const std::string why = wrong_shard(*plan); !why.empty()) return failed(why);
   const fs::path folder =
       fs::absolute(arguments.folder.empty() ? file.stem().string() + "-results" : arguments.folder)
           .lexically_normal();

@@ -73,7 +73,7 @@ int play_locally(const Context& context, const CampaignPlan& plan, const RunnerO
   }
   if (const std::size_t before = results.results().size(); before > 0) {
     std::cerr << "goes on: " << before << " of " << before + order.remaining()
-              << (plan.campaign.searches ? " runs at most are done\n" : " runs are done\n");
+              << (plan.campaign.search ? " runs at most are done\n" : " runs are done\n");
   }
   CalibrationFailures failures;
   PoolEnd end = calibrate(plan, runs, options, results.results(), &failures, &error);

@@ -205,7 +205,7 @@ int play_on_slurm(const Context& context, const CampaignPlan& plan, const Runner
     }
     fs::create_directories(folder / "slurm", ignored);
     fs::create_directories(folder / "shards", ignored);
-    const int most = static_cast<int>(RunOrder(plan.campaign, plan.runs, {}).lanes());
+    const int most = static_cast<int>(RunOrder(plan.campaign, plan.runs, {}).parts());
     job.shards = std::min(shards > 0 ? shards : kUsualShards, most);
   } else if (shards > 0 && shards != job.shards) {
     return failed(folder.string() + ": is cut into " + std::to_string(job.shards) +
