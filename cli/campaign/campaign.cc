@@ -16,6 +16,7 @@
 #include "cli/campaign/search.h"
 #include "cli/campaign/settings.h"
 #include "cli/campaign/sweep.h"
+#include "cli/campaign/tune_section.h"
 #include "cli/gauntlet/gauntlet.h"
 #include "cli/random_draw.h"
 #include "daemon/config/node.h"
@@ -137,6 +138,10 @@ void check_keys(MapReader* root, const Campaign& campaign) {
     for (const std::string& key : keys) check("set", key);
   }
   for (const CampaignDraw& draw : campaign.draws) check("draw", draw.key);
+  if (!campaign.tune) return;
+  for (const TunedParameter& tuned : campaign.tune->parameters) {
+    check("tune.parameters", tuned.key);
+  }
 }
 
 std::string draw_value(const CampaignDraw& draw, std::uint64_t seed) {
@@ -193,6 +198,7 @@ std::optional<Campaign> load_campaign(const std::string& file, Issues* issues,
   read_groups(&root, &campaign);
   campaign.keep_logs = static_cast<int>(root.integer("keep_logs", 0, 1000000).value_or(10));
   read_calibrate(&root, &campaign);
+  read_tune(root.map("tune"), &campaign);
   check_keys(&root, campaign);
   root.finish();
   std::size_t runs = campaign.scenarios.size() * campaign.seeds.size();

@@ -10,9 +10,9 @@ namespace {
 
 // The limit may lie beyond the levels by as much of their range.
 constexpr double kBeyond = 0.25;
-// Widths of the fall, from a single step to nearly the whole range: logistic scale, evenly in its
+// Widths of the fall, from a single step to half of the range: logistic scale, evenly in its
 // logarithm.
-constexpr double kSteepest = 0.001, kFlattest = 0.3;
+constexpr double kSteepest = 0.001, kFlattest = 0.45;
 constexpr int kWidths = 12;
 // Runs that fail far below the limit, and that succeed far above it.
 constexpr double kLapses[] = {0.0, 0.02, 0.05};

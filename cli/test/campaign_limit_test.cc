@@ -146,7 +146,7 @@ TEST(Limit, BeyondTheLevelsIsSaidToBeThere) {
     EXPECT_GT(above.high, 1.0);
     EXPECT_GT(above.limit, 1.0);
     EXPECT_GT(above.low, 1.0 - kStop);
-    EXPECT_LE(above.runs, 16);
+    EXPECT_LE(above.runs, 20);
     const Found below = search(model, step(-1.0), 40, &chance);
     EXPECT_LT(below.low, 0.0);
     EXPECT_LT(below.high, kStop);
