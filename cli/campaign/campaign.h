@@ -46,7 +46,7 @@ struct CampaignSearch {
 struct TunedParameter {
   std::string key;  ///< as for --set
   double low = 0.0, high = 1.0;
-  double usual = 0.5;  ///< its default, within the range
+  double usual = 0.5;              ///< its default, within the range
   double least = 0.0, most = 1.0;  ///< the range of its declaration
 };
 

@@ -19,6 +19,7 @@
 #include "cli/failure.h"
 #include "cli/private_directory.h"
 #include "cli/setting_option.h"
+#include "cli/tune/tune_command.h"
 #include "daemon/config/issues.h"
 
 namespace gaitd::cli {
@@ -105,6 +106,9 @@ int run(const Context& context, const Arguments& arguments) {
   const auto plan =
       plan_of_file({file.string(), arguments.settings, arguments.trust, shard}, &error);
   if (!plan) return failed(error);
+  if (plan->campaign.tune) {
+    return failed(file.string() + ": has a section 'tune'; play it with gaitctl campaign tune");
+  }
   if (const std::string why = wrong_shard(*plan); !why.empty()) return failed(why);
   const fs::path folder =
       fs::absolute(arguments.folder.empty() ? file.stem().string() + "-results" : arguments.folder)
@@ -209,6 +213,7 @@ void add_campaign_command(CLI::App* app, Context* context) {
                     "Go on where it was, and only that: an error where nothing was started");
   add_merge_command(command, context);
   add_page_command(command, context);
+  add_tune_command(command, context);
   command->require_subcommand(0, 1);
   command->callback([context, command, arguments] {
     if (!command->get_subcommands().empty()) return;

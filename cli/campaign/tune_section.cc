@@ -43,8 +43,8 @@ const LiveParameters::Row* find_row(const LiveParameters& all, const Campaign& c
   const std::size_t dot = key.find('.'), slash = key.find('/');
   const bool names_variant = slash < dot;
   const std::string scope = key.substr(0, std::min(slash, dot));
-  const std::string variant = names_variant ? key.substr(slash + 1, dot - slash - 1)
-                                            : variant_of(campaign, scope);
+  const std::string variant =
+      names_variant ? key.substr(slash + 1, dot - slash - 1) : variant_of(campaign, scope);
   for (int i = 0; i < all.size(); ++i) {
     const LiveParameters::Row& row = all.row(i);
     if (row.key == scope + key.substr(std::min(dot, key.size())) &&
@@ -63,7 +63,10 @@ std::optional<double> share_of(std::string text) {
   text.pop_back();
   char* end = nullptr;
   const double percent = std::strtod(text.c_str(), &end);
-  if (end == text.c_str() || text.find_first_not_of(' ', static_cast<std::size_t>(end - text.c_str())) != std::string::npos) return std::nullopt;
+  if (end == text.c_str() ||
+      text.find_first_not_of(' ', static_cast<std::size_t>(end - text.c_str())) !=
+          std::string::npos)
+    return std::nullopt;
   return percent > 0.0 && percent < 100.0 ? std::optional(percent / 100.0) : std::nullopt;
 }
 
@@ -80,7 +83,7 @@ void read_parameters(MapReader map, Campaign* campaign, CampaignTune* tune) {
       continue;
     }
     const GaitdParameter& declared = row->declared;
-    TunedParameter tuned{entry.key, 0.0, 0.0, declared.default_value, declared.minimum,
+    TunedParameter tuned{entry.key,       0.0, 0.0, declared.default_value, declared.minimum,
                          declared.maximum};
     const std::optional<double> share =
         entry.value->kind == NodeKind::kScalar ? share_of(entry.value->text) : std::nullopt;
@@ -98,9 +101,8 @@ void read_parameters(MapReader map, Campaign* campaign, CampaignTune* tune) {
     if (tuned.low >= tuned.high || tuned.usual < tuned.low || tuned.usual > tuned.high ||
         tuned.low < tuned.least || tuned.high > tuned.most) {
       map.fail(entry.key,
-               "[lowest, highest] around the default " +
-                   daemon::value_text(declared, tuned.usual) + " and within " +
-                   daemon::range_text(declared) + ", or a share of the default",
+               "[lowest, highest] around the default " + daemon::value_text(declared, tuned.usual) +
+                   " and within " + daemon::range_text(declared) + ", or a share of the default",
                daemon::describe(*entry.value), "for example 30 %");
       continue;
     }
@@ -178,9 +180,11 @@ void read_tune(MapReader map, Campaign* campaign) {
   read_objective(map.map("objective"), &tune);
   tune.generations = static_cast<int>(map.integer("generations", 1, 1000).value_or(10));
   // Hansen's usual number, and what CMA-ES needs.
-  const int usual = std::max(kFewestCandidates,
-                             4 + static_cast<int>(3.0 * std::log(std::max<std::size_t>(1, tune.parameters.size()))));
-  tune.population = static_cast<int>(map.integer("population", kFewestCandidates, 1000).value_or(usual));
+  const int usual = std::max(
+      kFewestCandidates,
+      4 + static_cast<int>(3.0 * std::log(std::max<std::size_t>(1, tune.parameters.size()))));
+  tune.population =
+      static_cast<int>(map.integer("population", kFewestCandidates, 1000).value_or(usual));
   tune.seed = static_cast<std::uint64_t>(map.integer("seed", 0, 1000000000).value_or(1));
   read_held_out(map.map("held_out"), *campaign, &tune);
   map.finish();

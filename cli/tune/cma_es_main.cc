@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// gaitd-cma-es: one generation of CMA-ES (Hansen, The CMA evolution strategy: a comparing review, 2006), by pagmo.
-// The only argument is JSON: {"seed", "start": [...], "spread", "population", "fitness": [[...], ...]}, the fitness of
-// each candidate of the generations so far, less is better; {"candidates": [[...], ...]} of the next one goes to
-// standard output. It remembers nothing: the same argument gives the same candidates.
+// gaitd-cma-es: one generation of CMA-ES (Hansen, The CMA evolution strategy: a comparing review,
+// 2006), by pagmo. The only argument is JSON: {"seed", "start": [...], "spread", "population",
+// "fitness": [[...], ...]}, the fitness of each candidate of the generations so far, less is
+// better; {"candidates": [[...], ...]} of the next one goes to standard output. It remembers
+// nothing: the same argument gives the same candidates.
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -52,8 +53,10 @@ json next_generation(const json& asked) {
   pagmo::population first(pagmo::problem(problem), 0u, seed);
   for (std::size_t i = 0; i < population; ++i) first.push_back(start, {0.0});
   const auto generations = static_cast<unsigned>(asked.at("fitness").size() + 1);
-  // It ends after the generations alone, and draws beyond the bounds: who plays a candidate mirrors it there.
-  const pagmo::cmaes strategy(generations, -1, -1, -1, -1, asked.at("spread"), 0.0, 0.0, false, false, seed);
+  // It ends after the generations alone, and draws beyond the bounds: who plays a candidate mirrors
+  // it there.
+  const pagmo::cmaes strategy(generations, -1, -1, -1, -1, asked.at("spread"), 0.0, 0.0, false,
+                              false, seed);
   strategy.evolve(first);
   json candidates = json::array();
   for (std::size_t i = played->candidates.size() - population; i < played->candidates.size(); ++i) {
@@ -66,7 +69,9 @@ json next_generation(const json& asked) {
 
 int main(int argc, char** argv) {
   try {
-    if (argc != 2) throw std::invalid_argument("expected one argument, JSON; gaitctl campaign tune calls this program");
+    if (argc != 2)
+      throw std::invalid_argument(
+          "expected one argument, JSON; gaitctl campaign tune calls this program");
     std::cout << next_generation(json::parse(argv[1])).dump() << "\n";
     return 0;
   } catch (const std::exception& e) {

@@ -13,8 +13,9 @@ namespace gaitd::cli {
 struct Score {
   int runs = 0;
   int failures = 0;
-  std::vector<double> figures;  ///< means of those of the objective, of runs without a fall; NaN: none
-  double value = 0.0;           ///< less is better: failures first, then the weighted figures
+  std::vector<double>
+      figures;         ///< means of those of the objective, of runs without a fall; NaN: none
+  double value = 0.0;  ///< less is better: failures first, then the weighted figures
 };
 
 /// By what candidates are judged: figures count in units of their mean with the defaults, so that

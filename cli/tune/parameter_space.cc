@@ -43,8 +43,8 @@ std::vector<std::string> ParameterSpace::values(const std::vector<double>& point
     const TunedParameter& parameter = parameters_[i];
     const double low = scaled(parameter, parameter.low), high = scaled(parameter, parameter.high);
     const double value = low + (high - low) * mirrored(point[i]);
-    values.push_back(setting_number(std::clamp(parameter.low > 0.0 ? std::exp(value) : value,
-                                               parameter.low, parameter.high)));
+    values.push_back(setting_number(
+        std::clamp(parameter.low > 0.0 ? std::exp(value) : value, parameter.low, parameter.high)));
   }
   return values;
 }

@@ -12,7 +12,8 @@ namespace gaitd::cli {
 /// that are played. Positive ranges are logarithmic. What is beyond 0..1 is mirrored back.
 class ParameterSpace {
  public:
-  explicit ParameterSpace(const std::vector<TunedParameter>& parameters) : parameters_(parameters) {}
+  explicit ParameterSpace(const std::vector<TunedParameter>& parameters)
+      : parameters_(parameters) {}
 
   std::vector<double> usual() const;
   /// Values as --set takes them, in the order of the parameters.
