@@ -114,6 +114,8 @@ expect 0 gaitctl campaign measured.yaml -o measured
 for file in "$GAITD_SOURCE"/sim/campaigns/*.yaml; do
   # Stopped before the first run ends: only whether it can be read and started.
   code=0
-  timeout -s INT 2 gaitctl campaign "$file" -o "$scratch/$(basename "$file")" >read.txt 2>&1 || code=$?
+  words=(campaign)
+  grep -q '^tune:' "$file" && words+=(tune)
+  timeout -s INT 2 gaitctl "${words[@]}" "$file" -o "$scratch/$(basename "$file")" >read.txt 2>&1 || code=$?
   grep -q 'interrupted' read.txt || fail "$file: $(cat read.txt)"
 done
