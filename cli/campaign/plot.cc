@@ -67,7 +67,9 @@ struct Curve {
 
 std::string grid(double x, double y, double largest, double step) {
   std::string out;
-  for (double ring = step; ring <= largest * (1.0 + 1e-9); ring += step) {
+  const auto rings = static_cast<int>(largest / step + 1e-9);
+  for (int i = 1; i <= rings; ++i) {
+    const double ring = i * step;
     const double r = kRadius * ring / largest;
     out += format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"none\" stroke=\"#ccc\"/>\n", x,
                   y, r);

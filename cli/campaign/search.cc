@@ -209,7 +209,7 @@ SearchResult RunOrder::result_of(const Search& search) const {
       static_cast<int>(std::count_if(search.trials.begin(), search.trials.end(),
                                      [](const Trial& trial) { return trial.success; }));
   result.finished = search.ended && !search.stuck;
-  const auto [from, to, rate, width] = *campaign_.search;
+  const double from = campaign_.search->from, to = campaign_.search->to;
   const auto value = [&](double place) {
     return std::atof(number_text(from + (to - from) * std::clamp(place, 0.0, 1.0)).c_str());
   };
