@@ -76,6 +76,7 @@ std::string verdict(const std::vector<CampaignResult>& usual,
   objective.set_usual(a);
   const json out = verdict_json(objective, a, b);
   EXPECT_HAS(verdict_text(out), "McNemar p = ");
+  EXPECT_EQ(verdict_text(out).find("in its figures") != std::string::npos, out["by"] == "figures");
   return out["verdict"];
 }
 

@@ -62,7 +62,8 @@ json verdict_json(const Objective& objective, const std::vector<const CampaignRe
           {"only_winner_fails", only_winner},
           {"p", p},
           {"objective", mean},
-          {"verdict", verdict}};
+          {"verdict", verdict},
+          {"by", verdict == "undecided" ? json() : json(p < kDecided ? "failures" : "figures")}};
 }
 
 std::string verdict_text(const json& verdict) {
@@ -71,6 +72,7 @@ std::string verdict_text(const json& verdict) {
                      : word == "worse"
                          ? "the winner is WORSE than the defaults"
                          : "no difference between the winner and the defaults is shown";
+  if (verdict["by"] == "figures") text += " in its figures, not in how often it fails,";
   text += " on what it never saw: of " + verdict["pairs"].dump() + " pairs " +
           verdict["only_default_fails"].dump() + " failed with the defaults alone, " +
           verdict["only_winner_fails"].dump() +
