@@ -58,6 +58,7 @@ const std::map<std::string, const char*>& examples() {
       {"campaign", "gaitctl campaign push-map.yaml -o pushes --jobs 4"},
       {"campaign merge", "gaitctl campaign merge shard-1 shard-2 -o merged"},
       {"campaign report", "gaitctl campaign report pushes -o pushes.html"},
+      {"campaign tune", "gaitctl campaign tune sim/campaigns/tune-pushes.yaml -o tuned"},
       {"compare", "gaitctl compare push-bent-forward -- a.yaml b.yaml"},
       {"sim push", "gaitctl sim push --link utorso --force 0,200,0 --duration 0.1"},
       {"sim reset", "gaitctl sim reset"},

@@ -5,14 +5,14 @@ source "$(dirname "$0")/packages_common.sh"
 
 make_packages "$scratch"
 root=$scratch/root
-for name in gaitd gaitd-dev gaitd-mujoco gaitd-ros2 gaitd-unitree python3-gaitd; do dpkg-deb -x "$scratch/$name.deb" "$root"; done
+for name in gaitd gaitd-dev gaitd-mujoco gaitd-tune gaitd-ros2 gaitd-unitree python3-gaitd; do dpkg-deb -x "$scratch/$name.deb" "$root"; done
 for file in etc/gaitd/gaitd.yaml usr/lib/sysusers.d/gaitd.conf usr/lib/tmpfiles.d/gaitd.conf \
   usr/lib/udev/rules.d/60-gaitd.rules \
   lib/systemd/system/gaitd.service usr/share/doc/gaitd/examples/network/80-can-fd.network \
   usr/bin/gaitd usr/bin/gaitctl usr/bin/gaitd-fake-robot \
   usr/lib/gaitd/plugins/backend/socketcan.so usr/lib/gaitd/plugins/backend/mujoco.so usr/share/gaitd/robots/atlas/can-fd.yaml \
   usr/bin/gaitd-ros2 usr/share/man/man8/gaitd-ros2.8 lib/systemd/system/gaitd-ros2.service \
-  usr/lib/gaitd/plugins/backend/unitree_dds.so usr/lib/gaitd/gaitd-unitree-link usr/bin/gaitd-fake-g1 \
+  usr/lib/gaitd/plugins/backend/unitree_dds.so usr/lib/gaitd/gaitd-unitree-link usr/lib/gaitd/gaitd-cma-es usr/bin/gaitd-fake-g1 \
   usr/share/doc/gaitd-unitree/examples/unitree.conf \
   usr/include/gaitd/abi/plugin.h usr/lib/cmake/gaitd/gaitd-config.cmake; do
   [[ -f $root/$file ]] || fail "not in the packages: $file"
@@ -24,6 +24,8 @@ fi
 [[ $(dpkg-deb -f "$scratch/gaitd.deb" Depends) != *mujoco* ]] || fail "gaitd depends on MuJoCo"
 [[ $(dpkg-deb -f "$scratch/gaitd-mujoco.deb" Depends) == *libmujoco* ]] ||
   fail "gaitd-mujoco does not depend on MuJoCo"
+[[ $(dpkg-deb -f "$scratch/gaitd.deb" Depends) != *pagmo* ]] || fail "gaitd depends on pagmo"
+[[ $(dpkg-deb -f "$scratch/gaitd-tune.deb" Depends) == *libpagmo* ]] || fail "gaitd-tune does not depend on pagmo"
 [[ $(dpkg-deb -f "$scratch/gaitd.deb" Depends) != *ddsc* ]] || fail "gaitd depends on DDS"
 [[ $(dpkg-deb -f "$scratch/gaitd-ros2.deb" Depends) == *libddsc* ]] || fail "gaitd-ros2 does not depend on DDS"
 [[ $(dpkg-deb -f "$scratch/gaitd-unitree.deb" Depends) == *libddsc* ]] || fail "gaitd-unitree does not depend on DDS"

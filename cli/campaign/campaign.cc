@@ -16,6 +16,7 @@
 #include "cli/campaign/search.h"
 #include "cli/campaign/settings.h"
 #include "cli/campaign/sweep.h"
+#include "cli/campaign/tune_section.h"
 #include "cli/gauntlet/gauntlet.h"
 #include "cli/random_draw.h"
 #include "daemon/config/node.h"
@@ -113,24 +114,6 @@ void read_draws(MapReader map, Campaign* campaign) {
   }
 }
 
-void read_seeds(MapReader* root, Campaign* campaign) {
-  const NodePtr node = root->node("seeds");
-  if (node != nullptr && node->kind == NodeKind::kList) {
-    for (const NodePtr& item : node->items) {
-      const auto seed = daemon::as_integer(*item);
-      if (seed && *seed >= 0) {
-        campaign->seeds.push_back(static_cast<std::uint64_t>(*seed));
-      } else {
-        root->issues()->add(item->where, "seeds", "whole numbers of at least 0",
-                            daemon::describe(*item), "");
-      }
-    }
-    return;
-  }
-  const long long count = root->integer("seeds", 1, 1000000).value_or(1);
-  for (long long i = 1; i <= count; ++i) campaign->seeds.push_back(static_cast<std::uint64_t>(i));
-}
-
 // A key twice, or one that the campaign itself sets, would hide one of its values.
 void check_keys(MapReader* root, const Campaign& campaign) {
   std::set<std::string> seen{"seed"};
@@ -155,6 +138,10 @@ void check_keys(MapReader* root, const Campaign& campaign) {
     for (const std::string& key : keys) check("set", key);
   }
   for (const CampaignDraw& draw : campaign.draws) check("draw", draw.key);
+  if (!campaign.tune) return;
+  for (const TunedParameter& tuned : campaign.tune->parameters) {
+    check("tune.parameters", tuned.key);
+  }
 }
 
 std::string draw_value(const CampaignDraw& draw, std::uint64_t seed) {
@@ -211,6 +198,7 @@ std::optional<Campaign> load_campaign(const std::string& file, Issues* issues,
   read_groups(&root, &campaign);
   campaign.keep_logs = static_cast<int>(root.integer("keep_logs", 0, 1000000).value_or(10));
   read_calibrate(&root, &campaign);
+  read_tune(root.map("tune"), &campaign);
   check_keys(&root, campaign);
   root.finish();
   std::size_t runs = campaign.scenarios.size() * campaign.seeds.size();

@@ -34,6 +34,34 @@ struct CampaignTarget {
   double rate = 1.0;
 };
 
+/// Along the last setting, whose values go evenly from what is easiest to what is hardest: where
+/// the success rate crosses a level. Each run of it has a seed of its own.
+struct CampaignSearch {
+  double from = 0.0, to = 0.0;  ///< the values at the ends; `to` is the smaller one of some keys
+  double rate = 0.5;            ///< of successes at the limit
+  double width = 0.0;           ///< of the 95 % interval that ends the search, in units of the key
+};
+
+/// A parameter of gaitd or a plugin that is tuned, in its unit.
+struct TunedParameter {
+  std::string key;  ///< as for --set
+  double low = 0.0, high = 1.0;
+  double usual = 0.5;              ///< its default, within the range
+  double least = 0.0, most = 1.0;  ///< the range of its declaration
+};
+
+/// What `gaitctl campaign tune` looks for, and by what it judges.
+struct CampaignTune {
+  std::vector<TunedParameter> parameters;
+  std::vector<std::pair<std::string, double>> objective;  ///< figures of a run, their weights
+  int generations = 10;
+  int population = 8;      ///< candidates of a generation
+  std::uint64_t seed = 1;  ///< of the optimiser
+  std::vector<std::uint64_t> held_out_seeds;
+  std::vector<std::string> held_out_kinds;      ///< of the gauntlet, beside those that are tuned on
+  std::vector<std::string> held_out_scenarios;  ///< as written
+};
+
 /// Polar plots of what a search found, one file for each scenario.
 struct CampaignPlot {
   std::string angle;                     ///< setting whose values are angles in rad, 0 upwards
@@ -52,7 +80,8 @@ struct Campaign {
   std::vector<std::string> scenarios;     ///< as written: names, paths, kinds of the gauntlet
   std::set<std::string> drawn;            ///< those that are kinds of the gauntlet
   std::vector<CampaignSetting> settings;  ///< every combination is tried
-  bool searches = false;  ///< the last setting ascends, and is bisected instead of tried in full
+  std::optional<CampaignSearch> search;
+  std::optional<CampaignTune> tune;
   /// By setting and value: KEY=VALUE of everything that it stands for, of a sweep and of settings
   /// that change several keys together.
   std::map<std::string, std::map<std::string, std::vector<std::string>>> bundles;

@@ -14,10 +14,12 @@
 #include "cli/campaign/page_command.h"
 #include "cli/campaign/plan.h"
 #include "cli/campaign/runner.h"
+#include "cli/campaign/search.h"
 #include "cli/campaign/slurm_engine.h"
 #include "cli/failure.h"
 #include "cli/private_directory.h"
 #include "cli/setting_option.h"
+#include "cli/tune/tune_command.h"
 #include "daemon/config/issues.h"
 
 namespace gaitd::cli {
@@ -63,6 +65,17 @@ RunnerOptions runner_options(const CampaignPlan& plan, const fs::path& folder, i
           plan.origin.trust};
 }
 
+// Why the campaign cannot be cut into these shards; empty if it can.
+std::string wrong_shard(const CampaignPlan& plan) {
+  if (!plan.campaign.search) return "";
+  const std::size_t parts = RunOrder(plan.campaign, plan.runs, {}).parts();
+  if (static_cast<std::size_t>(plan.origin.shard.count) <= parts) return "";
+  return "--shard " + shard_text(plan.origin.shard) + ": the campaign has " +
+         std::to_string(parts) + (parts == 1 ? " search" : " searches") +
+         ", one for each combination, and each needs its own results to go on: give at most " +
+         "--shard I/" + std::to_string(parts);
+}
+
 // Why this campaign does not begin in the folder like this; empty if it does.
 std::string wrong_folder(const Arguments& arguments, const fs::path& folder) {
   if (arguments.resume && !holds_campaign(folder)) {
@@ -93,6 +106,10 @@ int run(const Context& context, const Arguments& arguments) {
   const auto plan =
       plan_of_file({file.string(), arguments.settings, arguments.trust, shard}, &error);
   if (!plan) return failed(error);
+  if (plan->campaign.tune) {
+    return failed(file.string() + ": has a section 'tune'; play it with gaitctl campaign tune");
+  }
+  if (const std::string why = wrong_shard(*plan); !why.empty()) return failed(why);
   const fs::path folder =
       fs::absolute(arguments.folder.empty() ? file.stem().string() + "-results" : arguments.folder)
           .lexically_normal();
@@ -196,6 +213,7 @@ void add_campaign_command(CLI::App* app, Context* context) {
                     "Go on where it was, and only that: an error where nothing was started");
   add_merge_command(command, context);
   add_page_command(command, context);
+  add_tune_command(command, context);
   command->require_subcommand(0, 1);
   command->callback([context, command, arguments] {
     if (!command->get_subcommands().empty()) return;

@@ -18,7 +18,7 @@ namespace {
 PoolEnd calibrate(const CampaignPlan& plan, const std::vector<CampaignRun>& runs,
                   const RunnerOptions& options, const CampaignResults& results,
                   CalibrationFailures* failures, std::string* error) {
-  ProgressBar bar("calibrations ");
+  ProgressBar bar(options.part + "calibrations ");
   const auto progress = [&](const ProgressCounts& counts) { bar.show(counts); };
   const PoolEnd end =
       make_calibrations(plan.campaign, runs, options, results, progress, failures, error);
@@ -30,7 +30,7 @@ PoolEnd calibrate(const CampaignPlan& plan, const std::vector<CampaignRun>& runs
 PoolEnd play(const CampaignPlan& plan, const RunnerOptions& options,
              const CalibrationFailures& failures, RunOrder* order, ResultFile* results,
              std::string* error) {
-  ProgressBar bar("");
+  ProgressBar bar(options.part);
   const auto progress = [&](int finished) {
     const std::size_t done = results->results().size();
     bar.show({done, done + order->remaining(), count_failed(results->results()), finished});
@@ -71,9 +71,10 @@ int play_locally(const Context& context, const CampaignPlan& plan, const RunnerO
   if (!write_drawn(plan.campaign, runs, options.folder, &error) || !results.open(file, &error)) {
     return fail(context, kFailed, "campaign", error);
   }
-  if (const std::size_t before = results.results().size(); before > 0) {
+  const std::size_t before = results.results().size();
+  if (before > 0 && (options.part.empty() || order.remaining() > 0)) {
     std::cerr << "goes on: " << before << " of " << before + order.remaining()
-              << (plan.campaign.searches ? " runs at most are done\n" : " runs are done\n");
+              << (plan.campaign.search ? " runs at most are done\n" : " runs are done\n");
   }
   CalibrationFailures failures;
   PoolEnd end = calibrate(plan, runs, options, results.results(), &failures, &error);

@@ -38,7 +38,9 @@ bool conclude(const Context& context, const CampaignPlan& plan, const CampaignRe
   std::ofstream(folder / "summary.json") << json_text(kept);
   const nlohmann::json shown =
       summary_json(plan.campaign, plan.runs, results, &order, options, folder);
-  std::cout << (context.json ? json_text(shown) : summary_text(shown, output_columns()));
+  if (options.part.empty()) {
+    std::cout << (context.json ? json_text(shown) : summary_text(shown, output_columns()));
+  }
   return shown["pass"].get<bool>();
 }
 

@@ -90,7 +90,7 @@ json figures_json(const std::string& name, const std::vector<Pair>& pairs) {
 
 json comparisons_json(const CampaignPlan& plan, const CampaignResults& results) {
   json comparisons = json::array();
-  if (plan.campaign.searches) return comparisons;
+  if (plan.campaign.search) return comparisons;
   int combinations = 1, stride = 1;
   for (const CampaignSetting& setting : plan.campaign.settings) {
     combinations *= std::max(1, static_cast<int>(setting.values.size()));

@@ -57,7 +57,8 @@ double ring_step(double value) {
 
 struct Radius {
   double length = 0.0;
-  bool at_least = false;
+  double low = 0.0, high = 0.0;  // the interval
+  bool beyond = false;
 };
 
 struct Curve {
@@ -66,7 +67,9 @@ struct Curve {
 
 std::string grid(double x, double y, double largest, double step) {
   std::string out;
-  for (double ring = step; ring <= largest * (1.0 + 1e-9); ring += step) {
+  const auto rings = static_cast<int>(largest / step + 1e-9);
+  for (int i = 1; i <= rings; ++i) {
+    const double ring = i * step;
     const double r = kRadius * ring / largest;
     out += format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"none\" stroke=\"#ccc\"/>\n", x,
                   y, r);
@@ -86,10 +89,18 @@ std::string drawing(const Curve& curve, double x, double y, double largest, cons
     const double r = kRadius * value.length / largest;
     const double px = x - r * std::sin(angle), py = y - r * std::cos(angle);
     points += format("%.1f,%.1f ", px, py);
+    if (value.high > value.low) {
+      const double in = kRadius * value.low / largest, out = kRadius * value.high / largest;
+      dots += format(
+          "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\" "
+          "stroke-opacity=\"0.6\"/>\n",
+          x - in * std::sin(angle), y - in * std::cos(angle), x - out * std::sin(angle),
+          y - out * std::cos(angle), colour);
+    }
     dots += format(
         "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%s\" fill=\"%s\" stroke=\"%s\" "
         "stroke-width=\"1.6\"/>\n",
-        px, py, value.at_least ? "4" : "2", value.at_least ? "#fff" : colour, colour);
+        px, py, value.beyond ? "4" : "2", value.beyond ? "#fff" : colour, colour);
   }
   return "<polygon points=\"" + points +
          format("\" fill=\"%s\" fill-opacity=\"0.12\" stroke=\"%s\" stroke-width=\"1.6\"/>\n",
@@ -108,7 +119,7 @@ void read_plot(daemon::MapReader map, Campaign* campaign) {
     *key = map.text(name).value_or("");
     if (key->empty()) return std::vector<std::string>();
     const std::size_t i = index_of(*campaign, *key);
-    if (i < campaign->settings.size() - (campaign->searches ? 1 : 0)) {
+    if (i < campaign->settings.size() - (campaign->search ? 1 : 0)) {
       return campaign->settings[i].values;
     }
     map.fail(name, "a key of 'set'", "'" + *key + "'", "write one that has a list of values there");
@@ -128,7 +139,7 @@ void read_plot(daemon::MapReader map, Campaign* campaign) {
     }
   }
   plot.scale = map.number("scale", {1e-9, 1e9, ""}).value_or(1.0);
-  plot.label = map.text("label").value_or(campaign->searches ? "" : "success rate");
+  plot.label = map.text("label").value_or(campaign->search ? "" : "success rate");
   map.finish();
   campaign->plot = std::move(plot);
 }
@@ -136,10 +147,14 @@ void read_plot(daemon::MapReader map, Campaign* campaign) {
 std::vector<PlotPoint> plot_points(const Campaign& campaign, const std::vector<CampaignRun>& runs,
                                    const CampaignResults& results, RunOrder* order) {
   std::vector<PlotPoint> points;
-  if (campaign.searches) {
+  if (campaign.search) {
     for (const SearchResult& found : order->found()) {
-      if (!found.finished) continue;
-      points.push_back({found.scenario, found.values, found.held.value_or(0.0), found.at_least});
+      const std::optional<double>& bound = found.low ? found.low : found.high;
+      if (!found.finished || !bound) continue;
+      const auto [from, to, rate, width] = *campaign.search;
+      points.push_back({found.scenario, found.values, found.limit.value_or(*bound),
+                        found.low.value_or(std::min(from, to)),
+                        found.high.value_or(std::max(from, to)), !found.limit});
     }
     return points;
   }
@@ -152,7 +167,7 @@ std::vector<PlotPoint> plot_points(const Campaign& campaign, const std::vector<C
   for (const auto& [cell, count] : counts) {
     const CampaignRun& run = runs[static_cast<std::size_t>(cell)];  // of the first seed
     points.push_back(
-        {run.scenario, run.values, static_cast<double>(count.first) / count.second, false});
+        {run.scenario, run.values, static_cast<double>(count.first) / count.second, {}, {}, false});
   }
   return points;
 }
@@ -168,7 +183,7 @@ std::string polar_plot(const Campaign& campaign, const std::vector<PlotPoint>& p
   const std::vector<std::string> panels = values(plot.panels), curves = values(plot.curves);
   std::vector<std::vector<Curve>> data(panels.size(), std::vector<Curve>(curves.size()));
   double largest = 0.0;
-  bool open_ended = false;
+  bool beyond = false;
   for (const PlotPoint& result : points) {
     if (result.scenario != scenario) continue;
     const auto place = [&](const std::string& key, const std::vector<std::string>& of) {
@@ -176,13 +191,14 @@ std::string polar_plot(const Campaign& campaign, const std::vector<PlotPoint>& p
       const std::string& value = result.values[index_of(campaign, key)];
       return static_cast<std::size_t>(std::find(of.begin(), of.end(), value) - of.begin());
     };
-    const Radius radius{plot.scale * result.value, result.at_least};
+    const Radius radius{plot.scale * result.value, plot.scale * result.low.value_or(result.value),
+                        plot.scale * result.high.value_or(result.value), result.beyond};
     Curve& curve = data[place(plot.panels, panels)][place(plot.curves, curves)];
     const auto [point, fresh] =
         curve.points.emplace(std::atof(result.values[angle].c_str()), radius);
     if (!fresh && radius.length < point->second.length) point->second = radius;
-    largest = std::max(largest, radius.length);
-    open_ended = open_ended || radius.at_least;
+    largest = std::max(largest, radius.high);
+    beyond = beyond || radius.beyond;
   }
   const double step = ring_step(std::max(largest, 1e-9));
   largest = step * std::ceil(std::max(largest, 1e-9) / step - 1e-9);
@@ -208,7 +224,8 @@ std::string polar_plot(const Campaign& campaign, const std::vector<PlotPoint>& p
     out += label(x, height - 12.0, "start", name, kColours[k % std::size(kColours)]);
     x += 8.0 * static_cast<double>(name.size()) + 24.0;
   }
-  out += label(width - 20.0, height - 12.0, "end", plot.label + (open_ended ? "; ○ at least" : ""));
+  out += label(width - 20.0, height - 12.0, "end",
+               plot.label + (beyond ? "; ○ beyond what was tried" : ""));
   return out + "</svg>\n";
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,17 +19,18 @@ struct PlotPoint {
   std::string scenario;
   std::vector<std::string> values;  ///< of the settings, without the searched one
   double value = 0.0;
-  bool at_least = false;  ///< as SearchResult
+  std::optional<double> low, high;  ///< 95 % interval of what a search found
+  bool beyond = false;              ///< the value is a bound: the limit is beyond what was tried
 };
 
-/// Of a search the largest value that was held, 0 where none was; what is not known yet is left
-/// out. Else the success rate.
+/// Of a search the limit, or what it is at least or at most where it is beyond what was tried; what
+/// is not known yet is left out. Else the success rate.
 std::vector<PlotPoint> plot_points(const Campaign& campaign, const std::vector<CampaignRun>& runs,
                                    const CampaignResults& results, RunOrder* order);
 
 /// Polar diagrams of one scenario as SVG: the value over the angle, an angle of 0 upwards and
-/// growing counter-clockwise. Of settings that are not drawn the least of all their values. What
-/// held all that was tried has a hollow dot.
+/// growing counter-clockwise, with the interval as a line across. Of settings that are not drawn
+/// the least of all their values. A limit beyond what was tried has a hollow dot.
 std::string polar_plot(const Campaign& campaign, const std::vector<PlotPoint>& points,
                        const std::string& scenario);
 

@@ -21,6 +21,7 @@ struct RunnerOptions {
   int jobs = 1;                        ///< processes at once
   bool trust = false;                  ///< load libraries that scenarios name by path
   std::filesystem::path scratch = {};  ///< where logs are written first; empty: in the folder
+  std::string part = {};  ///< of a tuning: stands before the bar, and the summary is only written
 };
 
 /// What gaitctl run is given: the name of a scenario, its file, or for a kind of the gauntlet the

@@ -53,11 +53,11 @@ bool narrow(Campaign* campaign, const std::string& assignment, std::string* erro
   const std::string key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
   // What is drawn is not asked for again: --set comes later, and wins.
   std::erase_if(campaign->draws, [&](const CampaignDraw& draw) { return draw.key == key; });
-  const bool searches = campaign->searches && campaign->settings.back().key == key;
+  const bool searched = campaign->search && campaign->settings.back().key == key;
   const auto setting =
       std::find_if(campaign->settings.begin(), campaign->settings.end(),
                    [&](const CampaignSetting& candidate) { return candidate.key == key; });
-  if (setting == campaign->settings.end() || searches) return false;
+  if (setting == campaign->settings.end() || searched) return false;
   const auto bundle = campaign->bundles.find(key);
   if (bundle != campaign->bundles.end() && !bundle->second.contains(value)) {
     *error = "--set " + assignment + ": expected one of the campaign's values of '" + key + "':";

@@ -122,7 +122,8 @@ std::optional<std::string> submit(const CampaignPlan& plan, const RunnerOptions&
 enum class WaitEnd { kOver, kInterrupted };
 
 // Until no task of the job waits or runs, with a bar of what they have done.
-WaitEnd wait_for(const CampaignPlan& plan, const fs::path& folder, const Job& job, Slurm* slurm) {
+WaitEnd wait_for(const CampaignPlan& plan, const fs::path& folder, const std::string& part,
+                 const Job& job, Slurm* slurm) {
   using Clock = std::chrono::steady_clock;
   const StopSignals signals;
   const ResultFormat format(plan.campaign, plan.runs);
@@ -132,7 +133,7 @@ WaitEnd wait_for(const CampaignPlan& plan, const fs::path& folder, const Job& jo
   }
   const std::size_t total = RunOrder(plan.campaign, plan.runs, {}).remaining();
   const auto pause = std::chrono::milliseconds(std::max(1000, 10 * job.shards));
-  ProgressBar bar("job " + job.number + " ");
+  ProgressBar bar(part + "job " + job.number + " ");
   std::string told;
   int before = -1;
   Clock::time_point next{};
@@ -205,7 +206,7 @@ int play_on_slurm(const Context& context, const CampaignPlan& plan, const Runner
     }
     fs::create_directories(folder / "slurm", ignored);
     fs::create_directories(folder / "shards", ignored);
-    const int most = static_cast<int>(RunOrder(plan.campaign, plan.runs, {}).lanes());
+    const int most = static_cast<int>(RunOrder(plan.campaign, plan.runs, {}).parts());
     job.shards = std::min(shards > 0 ? shards : kUsualShards, most);
   } else if (shards > 0 && shards != job.shards) {
     return failed(folder.string() + ": is cut into " + std::to_string(job.shards) +
@@ -229,7 +230,7 @@ int play_on_slurm(const Context& context, const CampaignPlan& plan, const Runner
     std::cerr << "job " << job.number << ": " << open->size() << " of " << job.shards
               << " shards\n";
   }
-  if (wait_for(plan, folder, job, &slurm) == WaitEnd::kInterrupted) {
+  if (wait_for(plan, folder, options.part, job, &slurm) == WaitEnd::kInterrupted) {
     std::cerr << "interrupted; job " << job.number << " goes on: --resume waits for it, scancel "
               << job.number << " ends it\n";
     return kInterrupted;

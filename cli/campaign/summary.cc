@@ -50,14 +50,7 @@ std::string settings_text(const json& settings) {
   return text;
 }
 
-std::string held_text(const json& cell) {
-  if (!cell["finished"].get<bool>()) return "not finished";
-  if (cell["held"].is_null()) return "none";
-  char text[32];
-  std::snprintf(text, sizeof(text), "%s%g", cell["at_least"].get<bool>() ? "≥ " : "",
-                cell["held"].get<double>());
-  return text;
-}
+json or_null(const std::optional<double>& value) { return value ? json(*value) : json(); }
 
 // Cells of a search. False if one is not finished.
 bool add_found(const Campaign& campaign, RunOrder* order, json* cells) {
@@ -66,12 +59,74 @@ bool add_found(const Campaign& campaign, RunOrder* order, json* cells) {
     finished = finished && found.finished;
     json cell = {{"scenario", found.scenario},
                  {"finished", found.finished},
-                 {"held", found.held ? json(*found.held) : json()},
-                 {"at_least", found.at_least}};
+                 {"runs", found.runs},
+                 {"successes", found.successes},
+                 {"limit", or_null(found.limit)},
+                 {"low", or_null(found.low)},
+                 {"high", or_null(found.high)}};
     add_settings(campaign, found.values, &cell);
     cells->push_back(std::move(cell));
   }
   return finished;
+}
+
+std::string short_text(const json& value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.4g", value.get<double>());
+  return text;
+}
+
+// An interval with an end beyond what was tried.
+std::string open_text(const json& cell) {
+  if (!cell["low"].is_null()) return "≥ " + short_text(cell["low"]);
+  return cell["high"].is_null() ? "not known" : "≤ " + short_text(cell["high"]);
+}
+
+std::vector<std::string> limit_texts(const json& cell) {
+  if (!cell["finished"].get<bool>()) return {"not finished", ""};
+  const bool open = cell["low"].is_null() || cell["high"].is_null();
+  const std::string interval =
+      open ? open_text(cell) : short_text(cell["low"]) + " .. " + short_text(cell["high"]);
+  return {cell["limit"].is_null() ? open_text(cell) : short_text(cell["limit"]), interval};
+}
+
+std::string search_text(const json& summary, std::size_t columns) {
+  std::vector<std::vector<std::string>> rows;
+  for (const json& cell : summary["cells"]) {
+    const std::vector<std::string> limit = limit_texts(cell);
+    rows.push_back(
+        {cell["scenario"], limit[0], limit[1], cell["runs"].dump(), settings_text(cell["labels"])});
+  }
+  char rate[16];
+  std::snprintf(rate, sizeof(rate), "%g", 100.0 * summary["search"]["rate"].get<double>());
+  return "limit: " + summary["search"]["key"].get<std::string>() + " at which " + rate +
+         " % of the runs succeed\n" +
+         table({"SCENARIO", "LIMIT", "95 % INTERVAL", "RUNS", "SETTINGS"}, rows, columns);
+}
+
+std::string rates_text(const json& summary, std::size_t columns) {
+  std::vector<std::vector<std::string>> rows;
+  for (const json& cell : summary["cells"]) {
+    // Of the many cells of a sweep only those that fail.
+    if (cell["set"].contains(kSweptSetting) && cell["success_rate"] >= summary["success_min"]) {
+      continue;
+    }
+    rows.push_back({cell["scenario"], cell["successes"].dump() + "/" + cell["runs"].dump(),
+                    percent_text(cell["success_rate"]),
+                    percent_text(cell["low"]) + " .. " + percent_text(cell["high"]),
+                    cell["falls"].dump(), cell["refusals"].dump(), settings_text(cell["labels"])});
+  }
+  return table({"SCENARIO", "SUCCESS", "RATE", "95 % INTERVAL", "FALLS", "REFUSED", "SETTINGS"},
+               rows, columns);
+}
+
+json search_json(const Campaign& campaign) {
+  if (!campaign.search) return nullptr;
+  return {{"key", campaign.settings.back().key},
+          {"rate", campaign.search->rate},
+          {"from", campaign.search->from},
+          {"to", campaign.search->to},
+          {"width", campaign.search->width}};
 }
 
 }  // namespace
@@ -92,9 +147,9 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
     refusals[cell] += result.refused ? 1 : 0;
     total += result.success ? 1 : 0;
   }
-  if (campaign.searches) pass = add_found(campaign, order, &cells) && pass;
+  if (campaign.search) pass = add_found(campaign, order, &cells) && pass;
   for (const auto& [cell, count] : counts) {
-    if (campaign.searches) break;
+    if (campaign.search) break;
     const CampaignRun& run = runs[static_cast<std::size_t>(cell)];  // of the first seed
     const SuccessInterval interval = wilson_interval(count.first, count.second);
     const double rate = static_cast<double>(count.first) / count.second;
@@ -134,7 +189,7 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
           {"finished", results.size()},
           {"successes", total},
           {"success_min", campaign.success_min},
-          {"searched", campaign.searches ? json(campaign.settings.back().key) : json()},
+          {"search", search_json(campaign)},
           {"cells", cells},
           {"groups", groups_json(campaign, runs, results)},
           {"targets", targets},
@@ -144,32 +199,15 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
 }
 
 std::string summary_text(const json& summary, std::size_t columns) {
-  const bool searches = !summary["searched"].is_null();
-  std::vector<std::vector<std::string>> rows;
-  for (const json& cell : summary["cells"]) {
-    const std::string settings = settings_text(cell["labels"]);
-    // Of the many cells of a sweep only those that fail.
-    if (cell["set"].contains(kSweptSetting) && cell["success_rate"] >= summary["success_min"]) {
-      continue;
-    }
-    if (searches) {
-      rows.push_back({cell["scenario"], held_text(cell), settings});
-      continue;
-    }
-    rows.push_back({cell["scenario"], cell["successes"].dump() + "/" + cell["runs"].dump(),
-                    percent_text(cell["success_rate"]),
-                    percent_text(cell["low"]) + " .. " + percent_text(cell["high"]),
-                    cell["falls"].dump(), cell["refusals"].dump(), settings});
-  }
   std::string text = summary["campaign"].get<std::string>() + ": " + summary["finished"].dump() +
                      " of " + summary["runs"].dump() + " runs, " + summary["successes"].dump() +
                      " succeeded\n\n";
-  std::vector<std::string> header = {"SCENARIO", "SUCCESS", "RATE",    "95 % INTERVAL",
-                                     "FALLS",    "REFUSED", "SETTINGS"};
-  if (searches)
-    header = {"SCENARIO", "LARGEST " + summary["searched"].get<std::string>(), "SETTINGS"};
   const std::string groups = groups_text(summary["groups"], columns);
-  text += groups.empty() ? table(header, rows, columns) : groups;
+  if (!summary["search"].is_null()) {
+    text += search_text(summary, columns);
+  } else {
+    text += groups.empty() ? rates_text(summary, columns) : groups;
+  }
   if (!summary["targets"].empty()) text += "\ntargets\n" + targets_text(summary["targets"]);
   text += "\nworst runs\n";
   for (const json& run : summary["worst"]) {

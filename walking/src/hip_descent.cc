@@ -8,13 +8,13 @@
 namespace gaitd::walking {
 namespace {
 
-constexpr double kComesDown = 0.5;    // of a swing: a foot that still rises asks for nothing
-constexpr int kSamples = 8;           // of what is left of the swing
-constexpr double kSpeed = 0.3;        // sqrt(g h), with which a hip comes down over level ground
-constexpr double kBraking = 0.2;      // g, with which it comes to a stop over lower ground
-constexpr double kLead = 0.4;         // 1/omega, by which a leg is behind what it is told
-constexpr double kFall = 0.1;         // heights of the CoM, down to ground where that matters in full
-constexpr double kSteepest = 0.5;     // longest leg: lower no foot makes it
+constexpr double kComesDown = 0.5;  // of a swing: a foot that still rises asks for nothing
+constexpr int kSamples = 8;         // of what is left of the swing
+constexpr double kSpeed = 0.3;      // sqrt(g h), with which a hip comes down over level ground
+constexpr double kBraking = 0.2;    // g, with which it comes to a stop over lower ground
+constexpr double kLead = 0.4;       // 1/omega, by which a leg is behind what it is told
+constexpr double kFall = 0.1;       // heights of the CoM, down to ground where that matters in full
+constexpr double kSteepest = 0.5;   // longest leg: lower no foot makes it
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 // How success depends on each setting, on two together, and on what was drawn.
 import {data, isNumeric, label, shortName, varied} from './data.js';
 import {make} from '../shared/dom.js';
+import {intervalWords, limitWords} from './rates.js';
 import {showRun, showRuns} from './run_panel.js';
 import {draw, hint, number, percent, picture, pressable, scale, text, ticks} from './svg.js';
 
@@ -93,6 +94,33 @@ function map({rows, columns, cells}) {
             (run) => run.places[a.place] === i && run.places[b.place] === k));
       })));
   return figure(`${a.key} × ${b.key}, % success`, make('table', {className: 'map'}, head, ...body));
+}
+
+// Of a search: the least limit of all that differ in other things, darker the larger it is.
+function limitMap(a, b) {
+  const {from, to} = data.summary.search;
+  const value = (one) => one.limit ?? one.low ?? one.high;
+  const at = (axis, one) => axis.key === 'scenario' ? one.scenario : one.labels[axis.key];
+  const head = make('tr', {}, make('th'), ...b.labels.map((_, k) => make('th', {textContent: label(b, k)})));
+  const body = a.labels.map((_, i) => make('tr', {}, make('th', {textContent: label(a, i)}),
+      ...b.labels.map((_, k) => {
+        const [least] = data.summary.cells.filter((one) => one.finished && value(one) !== null &&
+            at(a, one) === a.labels[i] && at(b, one) === b.labels[k]).sort((one, two) => value(one) - value(two));
+        if (!least) return make('td', {className: 'empty'});
+        const words = intervalWords(least);
+        const cell = make('td', {title: `${label(a, i)}, ${label(b, k)}: ${limitWords(least)} (${words})`},
+            limitWords(least), make('small', {textContent: least.limit === null ? '' : words}));
+        cell.style.setProperty('--color', color((value(least) - from) / (to - from)));
+        return pressable(cell, () => showRuns(`${label(a, i)}, ${label(b, k)}`,
+            (run) => run.places[a.place] === i && run.places[b.place] === k));
+      })));
+  return figure(`${a.key} × ${b.key}, ${data.summary.search.key}`, make('table', {className: 'map'}, head, ...body));
+}
+
+export function limitMaps() {
+  const axes = varied.filter(({key, labels}) => key !== data.summary.search.key && labels.length <= 60);
+  return axes.flatMap((one, i) => axes.slice(i + 1).map((two) =>
+      two.labels.length > one.labels.length ? limitMap(two, one) : limitMap(one, two)));
 }
 
 export const maps = () => data.maps.map(map);

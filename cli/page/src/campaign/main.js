@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import '../shared/base.css';
 import './campaign.css';
-import {drawn, maps, polar, settings} from './axes.js';
+import {drawn, limitMaps, maps, polar, settings} from './axes.js';
 import {comparisons} from './comparisons.js';
 import {data} from './data.js';
 import {distributions} from './distributions.js';
@@ -17,13 +17,13 @@ $('verdict').append(make('span', {className: summary.pass ? 'pass' : 'fail', tex
     (summary.finished < summary.runs ? `, of ${summary.runs.toLocaleString('en')} that are asked for` : ''));
 
 const grid = (children) => children.length ? [make('div', {className: 'figures'}, ...children)] : [];
-const searched = Boolean(summary.searched);
-// A bisection plays what is near the edge, so that shares of its runs say nothing.
+const searched = Boolean(summary.search);
+// A search plays what is near the limit, so that shares of its runs say nothing.
 const sections = [
-  ['rates', searched ? 'Found' : 'Rates', rates()],
+  ['rates', searched ? 'Limits' : 'Rates', rates()],
   ['polar', 'Polar plots', grid(polar())],
   ['settings', 'By setting', searched ? [] : grid(settings())],
-  ['maps', 'Maps', searched ? [] : grid(maps())],
+  ['maps', 'Maps', grid(searched ? limitMaps() : maps())],
   ['drawn', 'By what was drawn', searched ? [] : grid(drawn())],
   ['distributions', 'Distributions', distributions()],
   ['comparisons', 'Variants on the same seeds', comparisons()],

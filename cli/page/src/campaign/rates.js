@@ -3,7 +3,7 @@
 import {data, shortName} from './data.js';
 import {make} from '../shared/dom.js';
 import {showRuns} from './run_panel.js';
-import {draw, hint, percent, picture, pressable} from './svg.js';
+import {draw, hint, number, percent, picture, pressable, scale} from './svg.js';
 
 const kWidth = 150;
 
@@ -56,30 +56,43 @@ function combinations() {
   return table(['scenario', ...keys], rows);
 }
 
+// The limit as a dot on its interval, which goes on to the edge where it is beyond what was tried.
+function limitBar({limit, low, high}) {
+  const {from, to} = data.summary.search;
+  const x = scale(Math.min(from, to), Math.max(from, to), 6, kWidth - 6);
+  const left = low === null ? 0 : x(low), right = high === null ? kWidth : x(high);
+  return picture(kWidth, 16,
+      draw('line', {x1: 6, x2: kWidth - 6, y1: 8, y2: 8, class: 'track'}),
+      draw('line', {x1: left, x2: right, y1: 8, y2: 8, class: 'interval'}),
+      ...(limit === null ? [] : [draw('circle', {cx: x(limit), cy: 8, r: 4, class: 'dot'})]));
+}
+
+const bound = ({low, high}) => low !== null ? `≥ ${number(low)}` : high !== null ? `≤ ${number(high)}` : 'not known';
+export const limitWords = (one) => !one.finished ? 'not finished' : one.limit === null ? bound(one) : number(one.limit);
+export const intervalWords = (one) => !one.finished ? '' : one.low === null || one.high === null ? bound(one) :
+    `${number(one.low)} … ${number(one.high)}`;
+
 function found() {
-  const keys = data.axes.filter(({key, labels}) => key !== 'scenario' && labels.length > 1 &&
-      key !== data.summary.searched).map(({key}) => key);
-  const largest = Math.max(...data.summary.cells.map(({held}) => held ?? 0), 1e-9);
-  return make('table', {className: 'rates'}, make('thead', {}, make('tr', {},
+  const {key, rate} = data.summary.search;
+  const keys = data.axes.filter(({key: name, labels}) => name !== 'scenario' && labels.length > 1 && name !== key)
+      .map(({key: name}) => name);
+  const head = (words) => make('th', {textContent: words, className: 'count'});
+  return [make('p', {className: 'quiet', textContent: `${key} at which ${percent(rate)} of the runs succeed; each run has ` +
+      'a seed of its own'}),
+    make('table', {className: 'rates'}, make('thead', {}, make('tr', {},
       ...['scenario', ...keys].map((name) => make('th', {textContent: name})),
-      make('th', {textContent: `largest ${data.summary.searched}`, className: 'count'}), make('th'))),
+      head('limit'), make('th'), head('95 % interval'), head('runs'))),
       make('tbody', {}, ...data.summary.cells.map((one) => {
-        const names = [shortName(one.scenario), ...keys.map((key) => one.labels[key])];
-        const held = !one.finished ? 'not finished' : one.held === null ? 'none' :
-            `${one.at_least ? '≥ ' : ''}${one.held}`;
-        const end = 6 + (one.held ?? 0) / largest * (kWidth - 12);
-        const bar = picture(kWidth, 16, draw('line', {x1: 6, x2: kWidth - 6, y1: 8, y2: 8, class: 'track'}),
-            draw('line', {x1: 6, x2: end, y1: 8, y2: 8, class: 'interval'}),
-            draw('circle', {cx: end, cy: 8, r: 4, class: one.at_least ? 'dot open' : 'dot'}));
-        return pressable(make('tr', {}, ...names.map((name) => cell(name)), cell(held, 'count'),
-            make('td', {}, one.finished && one.held !== null ? bar : '')),
+        const names = [shortName(one.scenario), ...keys.map((name) => one.labels[name])];
+        return pressable(make('tr', {}, ...names.map((name) => cell(name)), cell(limitWords(one), 'count'),
+            make('td', {}, one.finished ? limitBar(one) : ''), cell(intervalWords(one), 'count quiet'), cell(one.runs, 'count')),
             () => showRuns(names.join(' '), has({...one.labels, scenario: one.scenario})), names.join(' '));
-      })));
+      })))];
 }
 
 export function rates() {
   const {summary} = data;
-  if (summary.searched) return [found()];
+  if (summary.search) return found();
   const all = combinations(), out = groups();
   const targets = summary.targets.map((target) => make('p', {}, make('span', {
     className: target.pass ? 'pass' : 'fail', textContent: target.pass ? 'reached ' : 'missed '}),
