@@ -13,6 +13,7 @@ namespace {
 // Of a step, how far the hip is behind the foot that lands: a half and what the CoM still has to go
 // in the transfer that follows.
 constexpr double kLandingShare = 0.6;
+constexpr double kRisenAt = 0.5;  // of a swing
 
 // m, by how much the hip is lower than when standing for a leg to span `share` of the way between
 // two footholds; negative where it could be higher.
@@ -38,6 +39,16 @@ double landing_drop(const GaitdPose& stance, const GaitdPose& next, const LegRea
   return std::clamp(lowered(stance, next, kLandingShare, r) + below, 0.0, r.largest_drop + below);
 }
 
+// How far the CoM must come down, over `ground` (m, W), so that a lower trailing leg spans two
+// footholds until lift-off.
+double trailing_drop(const GaitdPose& trailing, const GaitdPose& leading, double ground,
+                     const LegReach& r) {
+  const double rise = leading.position[2] - trailing.position[2];
+  if (rise <= 0.0) return 0.0;
+  const double lower = lowered(trailing, leading, r.trailing_share, r) + rise;
+  return std::clamp(lower, 0.0, r.largest_drop + rise) - (leading.position[2] - ground);
+}
+
 }  // namespace
 
 double com_height_target(const GaitdGaitState& gait, const LegReach& reach) {
@@ -57,6 +68,7 @@ double com_height_target(const GaitdGaitState& gait, const LegReach& reach) {
     if (gait.trailing_side != GAITD_BOTH) {
       lower = std::max(lower, (1.0 - share) * landing_drop(trailing, leading, reach));
     }
+    lower = std::max(lower, trailing_drop(trailing, leading, ground, reach));
   } else if (gait.phase == GAITD_PHASE_TRANSFER && gait.trailing_side != GAITD_BOTH) {
     const GaitdPose& trailing = gait.footholds[gait.trailing_side].pose;
     const GaitdPose& leading = gait.footholds[other_side(gait.trailing_side)].pose;
@@ -65,8 +77,12 @@ double com_height_target(const GaitdGaitState& gait, const LegReach& reach) {
   } else if (gait.phase == GAITD_PHASE_SWING) {
     const GaitdPose& stance = gait.footholds[gait.support].pose;
     ground = stance.position[2];
-    // Low enough for the step that is coming, never waiting for it.
-    lower = std::max((1.0 - share) * lower, drop(stance, gait.adjusted[0].pose, reach));
+    const GaitdPose& trailing = gait.footholds[gait.next_side].pose;
+    lower = std::max(lower, trailing_drop(trailing, stance, ground, reach));
+    // Low enough for the step that is coming, never waiting for it; up again before the swing foot
+    // comes to the edge of a stair.
+    const double left = std::max(0.0, 1.0 - share / kRisenAt);
+    lower = std::max(left * lower, drop(stance, gait.adjusted[0].pose, reach));
   }
   return ground + reach.standing_height - lower;
 }

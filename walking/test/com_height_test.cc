@@ -52,5 +52,27 @@ TEST(ComHeight, IsAsHighAsOnLevelGroundForFootholdsInReach) {
   }
 }
 
+TEST(ComHeight, StaysLowEnoughForATrailingLegOnLowerGround) {
+  GaitdGaitState gait = landed(-0.2, false);
+  for (double share : {0.0, 0.5, 0.9, 1.0}) {
+    gait.time_in_phase = share;
+    const double height = com_height_target(gait, kReach);
+    const double hip = height - (kReach.standing_height - kReach.leg_length);
+    EXPECT_LE(std::hypot(hip, 0.9 * 0.3), kReach.longest + 1e-9) << share;
+  }
+}
+
+TEST(ComHeight, ComesUpOverAHigherFootInTheFirstHalfOfTheSwing) {
+  GaitdGaitState gait = landed(-0.2, false);
+  gait.time_in_phase = 1.0;
+  const double lift_off = com_height_target(gait, kReach);
+  gait.phase = GAITD_PHASE_SWING;
+  gait.support = GAITD_LEFT;
+  gait.time_in_phase = 0.0;
+  EXPECT_NEAR(com_height_target(gait, kReach), lift_off, 1e-9);
+  gait.time_in_phase = 0.5;
+  EXPECT_NEAR(com_height_target(gait, kReach), 0.2 + kReach.standing_height, 1e-9);
+}
+
 }  // namespace
 }  // namespace gaitd::walking
