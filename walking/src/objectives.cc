@@ -110,7 +110,9 @@ void ObjectiveBuilder::reset(const GaitdRobotState& robot, const GaitdGaitState&
   }
   swing_step_ = -1;
   pelvis_share_ = 1.0;
-  height_.reset(robot.com[2]);
+  mode_ = gait.mode;
+  height_.reset(robot.com[2], robot.com_velocity[2]);
+  lowering_.reset(leg_parameters_[Legs::kStraightKnee]);
   const Eigen::Quaterniond pelvis = sdk::quaternion(robot.pelvis_orientation);
   yaw_.reset(sdk::yaw_of(pelvis));
   tilt_ = sdk::log_so3(sdk::from_yaw(-yaw_.value()) * pelvis);
