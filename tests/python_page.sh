@@ -14,4 +14,4 @@ python=$PWD/my-env/bin/python
 cd /
 installed=$("$python" -c 'import gaitd; print(gaitd.__file__); gaitd.find_program("gaitctl")')
 [[ $installed == "$clone/my-env/"* ]] || fail "the package comes from $installed"
-"$python" -m pip show gaitd | grep -q '^Requires: numpy$' || fail "the package does not say that it needs numpy"
+"$python" -m pip show gaitd | grep '^Requires: numpy$' >/dev/null || fail "the package does not say that it needs numpy"
