@@ -7,6 +7,7 @@
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/hip_descent.h"
 #include "gaitd/walking/support.h"
+#include "objective_terms.h"
 
 namespace gaitd::walking {
 namespace {
@@ -18,24 +19,11 @@ using sdk::view;
 // finds no ground.
 constexpr double kHeightRate = 2.3;
 constexpr double kDescentRate = 5.4;
-constexpr double kTouchdownTime = 0.05;    // s, in which the touchdown damping fades
-constexpr double kHeelStrikeTime = 0.1;    // s after touchdown in which the drives damp
-constexpr double kClosingTouchdown = 0.5;  // of the touchdown velocity
-constexpr double kLevelRate = 1.0;         // 1/s, with which a walk levels the pelvis
-constexpr double kNever = 1e9;             // rad
-constexpr double kLandingKnee = 0.5;       // of the knee of walk-bent
-constexpr double kShortestLeg = 0.3;       // of its length
-constexpr double kToeEdge = 0.01;  // m, points this far behind the toe point are not on the edge
-constexpr double kYawRate = 6.0;   // 1/s, of the reference filter of the heading
-constexpr std::uint32_t kAngularRows = 0b000111;
-constexpr std::uint32_t kLinearRows = 0b111000;
-constexpr std::uint32_t kAllRows = 0b111111;
-
-double damping(double stiffness, double ratio) { return 2.0 * ratio * std::sqrt(stiffness); }
-
-Eigen::Vector3d rotation_error(const Eigen::Quaterniond& goal, const Eigen::Quaterniond& now) {
-  return sdk::log_so3(goal * now.conjugate());
-}
+constexpr double kHeelStrikeTime = 0.1;  // s after touchdown in which the drives damp
+constexpr double kLevelRate = 1.0;       // 1/s, with which a walk levels the pelvis
+constexpr double kLandingKnee = 0.5;     // of the knee of walk-bent
+constexpr double kShortestLeg = 0.3;     // of its length
+constexpr double kYawRate = 6.0;         // 1/s, of the reference filter of the heading
 
 double heading(const GaitdPose& pose) { return sdk::yaw_of(sdk::quaternion(pose.orientation)); }
 
@@ -47,24 +35,6 @@ double heading_target(const GaitdGaitState& gait) {
   const double right = heading(gait.footholds[GAITD_RIGHT].pose);
   if (gait.phase != GAITD_PHASE_SWING) return mean_heading(left, right);
   return mean_heading(heading(gait.footholds[gait.support].pose), heading(gait.adjusted[0].pose));
-}
-
-// Of a point of the sole, in the axes of the body of the foot.
-Eigen::Vector3d point_in_body(const GaitdFoot& foot, const Eigen::Vector3d& in_sole) {
-  return view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole;
-}
-
-// One straight leg carries the robot. A sole that tilts then stays tilted: the knee has no way to
-// give. Bent legs bring it back by themselves, and need the edges of the sole against pushes; with
-// two feet on the ground the other one takes the load.
-bool stiff_alone(const GaitdGaitState& gait) {
-  return gait.phase == GAITD_PHASE_SWING && gait.mode == GAITD_MODE_WALK_STRAIGHT;
-}
-
-// s, for which the touchdown is overdue.
-double late_time(const GaitdGaitState& gait) {
-  return gait.phase == GAITD_PHASE_SWING ? std::max(0.0, gait.time_in_phase - gait.phase_duration)
-                                         : 0.0;
 }
 
 }  // namespace
@@ -176,73 +146,6 @@ void ObjectiveBuilder::update_impedance(const GaitdGaitState& gait, GaitdObjecti
       set(leg.joints[i], swing    ? Impedance::kSwing
                          : strike ? Impedance::kHeelStrike
                                   : Impedance::kSupport);
-    }
-  }
-}
-
-void ObjectiveBuilder::update_rests(double dt, const GaitdRobotState& robot,
-                                    const GaitdGaitState& gait, const GaitdToeOff& toe_off) {
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    if (gait.footholds[side].contact == GAITD_CONTACT_NONE || on_toe(side)) {
-      rests_[side].reset();
-      continue;
-    }
-    const bool flat = stiff_alone(gait) && toe_off.active == 0;
-    const double start = flat ? parameters_[Objective::kTiltStart] : kNever;
-    rests_[side].update(dt, robot.feet[side], gait.footholds[side], weight_,
-                        {start, parameters_[Objective::kTiltFull]});
-  }
-}
-
-bool ObjectiveBuilder::on_toe(int side) const {
-  return time_in_toe_off_[side] > parameters_[Objective::kToeRamp];
-}
-
-double ObjectiveBuilder::load_share(int side, const GaitdGaitState& gait) const {
-  const double ramp = parameters_[Objective::kContactRamp];
-  if (ramp <= 0.0) return 1.0;
-  double share = std::min(1.0, time_in_contact_[side] / ramp);
-  const bool leaving =
-      gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 && gait.next_side == side;
-  // A transfer that waits for the ICP past its time needs both feet.
-  const bool waiting = gait.time_in_phase > gait.phase_duration;
-  if (leaving && !waiting) share = std::min(share, gait.time_remaining / ramp);
-  return std::clamp(share, 0.0, 1.0);
-}
-
-void ObjectiveBuilder::update_contacts(double dt, const GaitdGaitState& gait,
-                                       const GaitdToeOff& toe_off, GaitdObjectives& out) const {
-  const double rho_max = parameters_[Objective::kRhoMax] * weight_;
-  const double rho_min = parameters_[Objective::kRhoMin] * weight_;
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    const GaitdFoothold& foothold = gait.footholds[side];
-    if (foothold.contact == GAITD_CONTACT_NONE) continue;
-    const GaitdFoot& foot = model_.feet[side];
-    const bool toe = on_toe(side);
-    // On the way onto the toe the points behind it carry less and less.
-    const double unloaded = time_in_toe_off_[side] / std::max(parameters_[Objective::kToeRamp], dt);
-    const Eigen::Quaterniond sole = sdk::quaternion(foothold.pose.orientation);
-    const double share = load_share(side, gait);
-    const int points = toe ? 1 : foothold.polygon_count;
-    const double used = stiff_alone(gait) ? 1.0 - parameters_[Objective::kContactMargin] : 1.0;
-    const Eigen::Vector2d middle = sole_middle(foothold);
-    for (int i = 0; i < points && out.contact_count < GAITD_MAX_CONTACTS; ++i) {
-      GaitdContactPoint& c = out.contacts[out.contact_count++];
-      c.side = side;
-      c.body = foot.body;
-      Eigen::Vector3d in_sole = view(toe_off.toe_point);
-      if (!toe) {
-        const Eigen::Vector2d corner = view(foothold.contact_polygon[i]);
-        in_sole << rests_[side].bearing_point(middle + used * (corner - middle)), 0.0;
-      }
-      view(c.point) = point_in_body(foot, in_sole);
-      view(c.normal) = sole * Eigen::Vector3d::UnitZ();
-      view(c.tangent) = sole * Eigen::Vector3d::UnitX();
-      c.friction = parameters_[Objective::kFriction];
-      const bool behind = in_sole.x() < toe_off.toe_point[0] - kToeEdge;
-      const double rest = behind ? std::max(0.0, 1.0 - unloaded) : 1.0;
-      c.rho_max = std::max(share * share * rest * rest * rho_max, 1e-3);
-      c.rho_min = std::min(rho_min, 0.5 * c.rho_max);
     }
   }
 }
@@ -367,122 +270,6 @@ void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot
         stiffness * (model_.nominal_position[i] - robot.joint_position[i]) -
         rate_gain * robot.joint_velocity[i];
   }
-}
-
-void ObjectiveBuilder::update_feet(double dt, const GaitdRobotState& robot,
-                                   const GaitdGaitState& gait, const GaitdToeOff& toe_off,
-                                   GaitdObjectives& out) {
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    if (gait.footholds[side].contact == GAITD_CONTACT_NONE) {
-      add_swing_foot(side, robot, gait, out);
-    } else if (on_toe(side)) {
-      add_toe(side, robot, gait, toe_off, out);
-    } else {
-      add_stance_foot(side, robot, out);
-    }
-  }
-}
-
-void ObjectiveBuilder::add_stance_foot(int side, const GaitdRobotState& robot,
-                                       GaitdObjectives& out) const {
-  const GaitdFoot& foot = model_.feet[side];
-  GaitdTask& task = add_task(out, GAITD_TASK_FRAME, foot.body, kAllRows);
-  const SoleRest& rest = rests_[side];
-  Eigen::Vector3d pivot;
-  pivot << rest.pivot(), 0.0;
-  view(task.point) = point_in_body(foot, pivot);
-  const double settled = parameters_[Objective::kStanceDamping];
-  const double extra = std::max(0.0, parameters_[Objective::kTouchdownDamping] - settled);
-  const double rate = settled + extra * std::exp(-time_in_contact_[side] / kTouchdownTime);
-  sdk::Vector6d twist = view(robot.feet[side].twist);
-  const Eigen::Vector3d turn = twist.head<3>();
-  twist.tail<3>() += turn.cross(sdk::quaternion(robot.feet[side].orientation) * pivot);
-  view(task.acceleration) = -rate * twist;
-  const double stiffness = parameters_[Objective::kTiltStiffness];
-  view(task.acceleration).head<3>() +=
-      rest.share() *
-      (stiffness * rest.way_back() - std::max(0.0, damping(stiffness, 1.0) - rate) * turn);
-  auto stop = view(task.acceleration).tail<3>();
-  const double hardest = parameters_[Objective::kTouchdownStop];
-  if (stop.norm() > hardest) stop *= hardest / stop.norm();
-  view(task.weight).setConstant(parameters_[Objective::kStanceWeight]);
-}
-
-void ObjectiveBuilder::add_toe(int side, const GaitdRobotState& robot, const GaitdGaitState& gait,
-                               const GaitdToeOff& toe_off, GaitdObjectives& out) const {
-  const GaitdFoot& foot = model_.feet[side];
-  const Eigen::Vector3d in_sole = view(toe_off.toe_point);
-  const Eigen::Vector3d in_body = point_in_body(foot, in_sole);
-  const GaitdPose& hold = gait.footholds[side].pose;
-  // The point is held where the foothold has it; rows along the axes of the foothold.
-  GaitdTask& point = add_task(out, GAITD_TASK_FRAME, foot.body, kLinearRows);
-  view(point.point) = in_body;
-  const double stiffness = parameters_[Objective::kToeStiffness];
-  const double ratio = parameters_[Objective::kToeDampingRatio];
-  view(point.acceleration).tail<3>() =
-      stiffness * (sdk::transform(hold, in_sole) - kinematics_.frame_position(foot.body, in_body)) -
-      damping(stiffness, ratio) * kinematics_.frame_velocity(foot.body, in_body).tail<3>();
-  view(point.weight).setConstant(parameters_[Objective::kToeWeight]);
-  // Roll and yaw of the sole are held; its pitch has no row at all, but for a foot that has to come
-  // back because no step follows.
-  const bool stays = gait.phase == GAITD_PHASE_STAND || gait.transfer_final != 0;
-  GaitdTask& turn = add_task(out, GAITD_TASK_FRAME, foot.body, stays ? kAngularRows : 0b000101);
-  view(turn.point) = in_body;
-  const Eigen::Quaterniond now = sdk::quaternion(robot.feet[side].orientation);
-  sdk::store(now, turn.axes);
-  const double angular = parameters_[Objective::kToeAngularStiffness];
-  const Eigen::Vector3d error =
-      now.conjugate() * rotation_error(sdk::quaternion(hold.orientation), now);
-  const Eigen::Vector3d rate = now.conjugate() * view(robot.feet[side].twist).head<3>();
-  view(turn.acceleration).head<3>() = angular * error - damping(angular, ratio) * rate;
-  view(turn.weight).setConstant(parameters_[Objective::kToeAngularWeight]);
-}
-
-void ObjectiveBuilder::plan_swing(const GaitdRobotState& robot, const GaitdGaitState& gait,
-                                  const GaitdPose& lift_off) {
-  if (gait.phase != GAITD_PHASE_SWING) return;
-  const int side = gait.next_side;
-  const GaitdFootstep& goal = gait.adjusted[0];
-  SwingParameters swing = swing_parameters_;
-  if (goal.closing != 0) {
-    // Nothing follows: there is time to meet the ground gently.
-    const int touchdown = static_cast<int>(Swing::kTouchdownVelocity);
-    swing.set(touchdown, kClosingTouchdown * swing[Swing::kTouchdownVelocity]);
-  }
-  if (swing_step_ != gait.step_index) {
-    swing_.begin(lift_off, view(robot.feet[side].twist), gait.footholds[side].pose.position[2],
-                 goal, gait.phase_duration, swing);
-    swing_step_ = gait.step_index;
-    swing_revision_ = gait.plan_revision;
-  } else if (swing_revision_ != gait.plan_revision) {
-    swing_.replan(gait.time_in_phase, goal, gait.phase_duration, swing);
-    swing_revision_ = gait.plan_revision;
-  }
-}
-
-void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
-                                      const GaitdGaitState& gait, GaitdObjectives& out) {
-  const SwingTrajectory::Sample s = swing_.evaluate(gait.time_in_phase);
-  const GaitdFoot& foot = model_.feet[side];
-  const GaitdFootState& now = robot.feet[side];
-  GaitdTask& task = add_task(out, GAITD_TASK_FRAME, foot.body, kAllRows);
-  view(task.point) = view(foot.sole.origin);
-  const double ratio = parameters_[Objective::kSwingDampingRatio];
-  const double kp_xy = parameters_[Objective::kSwingStiffness];
-  const double kp_z = parameters_[Objective::kSwingHeightStiffness];
-  const Eigen::Vector3d kp(kp_xy, kp_xy, kp_z);
-  const Eigen::Vector3d kd(damping(kp_xy, ratio), damping(kp_xy, ratio), damping(kp_z, ratio));
-  const auto twist = view(now.twist);
-  view(task.acceleration).tail<3>() = s.acceleration +
-                                      kp.cwiseProduct(s.position - view(now.position)) +
-                                      kd.cwiseProduct(s.velocity - twist.tail<3>());
-  view(task.acceleration).head<3>() =
-      s.angular_acceleration +
-      kp_z * rotation_error(s.orientation, sdk::quaternion(now.orientation)) +
-      damping(kp_z, ratio) * (s.angular_velocity - twist.head<3>());
-  const double heavier = 1.0 + parameters_[Objective::kLateSwingWeight] * late_time(gait);
-  view(task.weight).head<3>().setConstant(heavier * parameters_[Objective::kSwingAngularWeight]);
-  view(task.weight).tail<3>().setConstant(heavier * parameters_[Objective::kSwingWeight]);
 }
 
 Eigen::Vector3d ObjectiveBuilder::hip(int side) const {
