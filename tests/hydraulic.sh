@@ -1,6 +1,7 @@
 # Every scenario with hydraulic drives and the sensors of a laboratory, on the robot that `calibrate` has
-# measured, with both estimators. The gate asks for all of them on three robots; here, where a run of a
-# difficult scenario is decided by millimetres, the share that holds may not sink.
+# measured, with the estimator that finds it harder. The gate asks for all of them on three robots with both
+# estimators; here, where a run of a difficult scenario is decided by millimetres, the share that holds may
+# not sink.
 source "$(dirname "$0")/common.sh"
 cd "$scratch"
 
@@ -10,8 +11,8 @@ sed -e 's/^seeds:.*/seeds: [2]/' -e '/^calibrate:/d' \
   -e "s#calibration: hydraulic,#calibration: $robot,#" \
   "$GAITD_SOURCE/sim/campaigns/gate.yaml" >gate.yaml
 grep -q "calibration: $robot," gate.yaml || fail "gate.yaml has no calibration of hydraulic drives"
-echo 'success_min: [{where: {plant: hydraulic}, rate: 0.85}]' >>gate.yaml
-gaitctl campaign gate.yaml -o out --set plant=hydraulic >campaign.txt 2>&1 && result=0 || result=$?
+echo 'success_min: [{where: {plant: hydraulic}, rate: 0.88}]' >>gate.yaml
+gaitctl campaign gate.yaml -o out --set plant=hydraulic --set state_estimator.variant=kinematic_inertial >campaign.txt 2>&1 && result=0 || result=$?
 cat out/summary.txt
 ((result == 0)) || { tail -40 campaign.txt; fail "campaign: $result"; }
-(($(wc -l <out/results.csv) > 100)) || fail "only $(wc -l <out/results.csv) runs"
+(($(wc -l <out/results.csv) > 60)) || fail "only $(wc -l <out/results.csv) runs"
