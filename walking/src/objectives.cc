@@ -114,7 +114,7 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
   update_contacts(dt, gait, toe_off, out);
   update_momentum(dt, robot, gait, adjustment, out);
   update_upper_body(dt, robot, gait, out);
-  update_feet(dt, robot, gait, toe_off, out);
+  update_feet(robot, gait, toe_off, out);
   update_privileged(dt, robot, gait, out);
   update_impedance(gait, out);
 }

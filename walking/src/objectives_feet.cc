@@ -99,9 +99,8 @@ void ObjectiveBuilder::update_contacts(double dt, const GaitdGaitState& gait,
   }
 }
 
-void ObjectiveBuilder::update_feet(double dt, const GaitdRobotState& robot,
-                                   const GaitdGaitState& gait, const GaitdToeOff& toe_off,
-                                   GaitdObjectives& out) {
+void ObjectiveBuilder::update_feet(const GaitdRobotState& robot, const GaitdGaitState& gait,
+                                   const GaitdToeOff& toe_off, GaitdObjectives& out) {
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     if (gait.footholds[side].contact == GAITD_CONTACT_NONE) {
       add_swing_foot(side, robot, gait, out);

@@ -61,7 +61,7 @@ class ObjectiveBuilder {
                        const GaitdStepAdjustment& adjustment, GaitdObjectives& out);
   void update_upper_body(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                          GaitdObjectives& out);
-  void update_feet(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
+  void update_feet(const GaitdRobotState& robot, const GaitdGaitState& gait,
                    const GaitdToeOff& toe_off, GaitdObjectives& out);
   void update_rests(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                     const GaitdToeOff& toe_off);
