@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -153,9 +152,7 @@ std::string draw_value(const CampaignDraw& draw, std::uint64_t seed) {
   for (std::size_t i = 0; i < draw.low.size(); ++i) {
     const double value =
         draw.low[i] + (draw.high[i] - draw.low[i]) * uniform_draw(seed, draw.key, i);
-    char number[32];
-    std::snprintf(number, sizeof(number), "%.6g", value);
-    text += (i > 0 ? ", " : "") + std::string(number);
+    text += (i > 0 ? ", " : "") + setting_number(value);
   }
   return draw.is_list ? "[" + text + "]" : text;
 }

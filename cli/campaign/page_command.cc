@@ -2,10 +2,7 @@
 #include "cli/campaign/page_command.h"
 
 #include <CLI/CLI.hpp>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -22,6 +19,7 @@
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "cli/report/report_data.h"
+#include "cli/write_file.h"
 #include "daemon/log/log_reader.h"
 
 namespace gaitd::cli {
@@ -35,13 +33,6 @@ struct Arguments {
   std::string output = "campaign.html";
   bool replays = false;
 };
-
-bool write_file(const fs::path& file, const std::string& text, std::string* error) {
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text << std::flush;
-  if (!out) *error = file.string() + ": cannot write: " + std::strerror(errno);
-  return static_cast<bool>(out);
-}
 
 // What the log of a run says, and its replay in `replays` beside the page, where one is asked for.
 std::optional<json> log_json(int number, const fs::path& log_file, const fs::path& page,

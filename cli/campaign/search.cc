@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <utility>
+
+#include "cli/campaign/settings.h"
 
 namespace gaitd::cli {
 namespace {
@@ -20,12 +21,6 @@ constexpr int kFewestSeeds = 8, kUsualSeeds = 40;
 // them tells.
 constexpr int kBatch = 4;
 constexpr double kTail = 0.025;  // on either side of the interval
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", value);
-  return text;
-}
 
 }  // namespace
 
@@ -50,15 +45,15 @@ void read_search(MapReader map, Campaign* campaign) {
   const double step = range / static_cast<double>(count - 1);
   if (width && (*width < step || *width > range)) {
     map.fail("width",
-             "a width of the interval between " + number_text(step) +
-                 ", the step from value to value, and " + number_text(range),
+             "a width of the interval between " + setting_number(step) +
+                 ", the step from value to value, and " + setting_number(range),
              daemon::describe(*map.node("width")), "a larger 'count' makes the step smaller");
     return;
   }
   CampaignSetting setting{*key, {}};
   for (long long i = 0; i < count; ++i) {
-    setting.values.push_back(number_text(*from + (*to - *from) * static_cast<double>(i) /
-                                                     static_cast<double>(count - 1)));
+    setting.values.push_back(setting_number(*from + (*to - *from) * static_cast<double>(i) /
+                                                        static_cast<double>(count - 1)));
   }
   campaign->settings.push_back(std::move(setting));
   campaign->search = {*from, *to, rate, width.value_or(range / 10.0)};
@@ -211,7 +206,7 @@ SearchResult RunOrder::result_of(const Search& search) const {
   result.finished = search.ended && !search.stuck;
   const double from = campaign_.search->from, to = campaign_.search->to;
   const auto value = [&](double place) {
-    return std::atof(number_text(from + (to - from) * std::clamp(place, 0.0, 1.0)).c_str());
+    return std::atof(setting_number(from + (to - from) * std::clamp(place, 0.0, 1.0)).c_str());
   };
   if (search.low > 0.0) result.low = value(search.low);
   if (search.high < 1.0) result.high = value(search.high);

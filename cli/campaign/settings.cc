@@ -2,6 +2,7 @@
 #include "cli/campaign/settings.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 namespace gaitd::cli {
@@ -28,6 +29,12 @@ CampaignSetting read_bundles(MapReader map, const std::string& key, Campaign* ca
 
 std::string setting_text(const Node& node) {
   return node.kind == NodeKind::kScalar && !node.quoted ? node.text : daemon::to_json(node).dump();
+}
+
+std::string setting_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
 }
 
 void read_settings(MapReader map, Campaign* campaign) {

@@ -11,6 +11,9 @@ namespace gaitd::cli {
 /// As YAML takes it behind KEY=.
 std::string setting_text(const daemon::Node& node);
 
+/// A value that a campaign makes itself, for KEY=.
+std::string setting_number(double value);
+
 /// Reads `set:`. The values of a key are a list, or names, each with a map of what it stands for.
 void read_settings(daemon::MapReader map, Campaign* campaign);
 

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
+
+#include "cli/campaign/settings.h"
 
 namespace gaitd::cli {
 namespace {
@@ -21,12 +22,6 @@ double mirrored(double coordinate) {
 }
 
 }  // namespace
-
-std::string setting_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", value);
-  return text;
-}
 
 std::vector<double> ParameterSpace::usual() const {
   std::vector<double> point;

@@ -23,9 +23,6 @@ class ParameterSpace {
   const std::vector<TunedParameter>& parameters_;
 };
 
-/// A number as --set takes it.
-std::string setting_number(double value);
-
 /// Each of the values once 15 % smaller and once 15 % larger, within what its declaration allows,
 /// the others as they are. Where that changes nothing it is left out.
 struct Neighbour {

@@ -2,7 +2,6 @@
 #include "cli/tune/stage.h"
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -11,6 +10,7 @@
 #include "cli/campaign/slurm_engine.h"
 #include "cli/failure.h"
 #include "cli/print.h"
+#include "cli/write_file.h"
 #include "daemon/config/node.h"
 
 namespace gaitd::cli {
@@ -80,12 +80,6 @@ void take_calibrations(const fs::path& tuning, const fs::path& folder) {
   }
 }
 
-bool write_file(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text << std::flush;
-  return static_cast<bool>(out);
-}
-
 }  // namespace
 
 std::vector<const CampaignResult*> StageResults::runs(const std::string& candidate) const {
@@ -112,8 +106,8 @@ std::optional<StageResults> play_stage(const Context& context, const CampaignPla
   const fs::path file = options.folder / (stage.name + ".yaml"),
                  folder = options.folder / stage.name;
   const std::string text = stage_text(tuning.campaign, stage, options.folder);
-  if (!write_file(file, text)) return failed(file.string() + ": cannot write");
   std::string error;
+  if (!write_file(file, text, &error)) return failed(error);
   auto plan =
       plan_of_file({file.string(), tuning.origin.settings, tuning.origin.trust, {}}, &error);
   if (!plan) return failed(error);

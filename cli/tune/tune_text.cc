@@ -2,17 +2,15 @@
 #include "cli/tune/tune_text.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
 
+#include "cli/campaign/settings.h"
 #include "cli/print.h"
 #include "cli/table.h"
 #include "cli/terminal.h"
 #include "cli/tune/verdict.h"
+#include "cli/write_file.h"
 
 namespace gaitd::cli {
 namespace {
@@ -22,12 +20,7 @@ using nlohmann::json;
 
 constexpr const char* kWinnerFile = "winner.yaml";
 
-std::string number(double value) {
-  if (!std::isfinite(value)) return "";
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", value);
-  return text;
-}
+std::string number(double value) { return std::isfinite(value) ? setting_number(value) : ""; }
 
 std::string candidates_csv(const TuneOutcome& outcome) {
   const CampaignTune& tune = *outcome.campaign->tune;
@@ -78,13 +71,6 @@ std::string neighbours_text(const TuneOutcome& outcome) {
     if (neighbour.lost > 0) text += "\n  " + neighbour.name + ": " + std::to_string(neighbour.lost);
   }
   return text + "\n";
-}
-
-bool write_file(const fs::path& file, const std::string& text, std::string* error) {
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text << std::flush;
-  if (!out) *error = file.string() + ": cannot write: " + std::strerror(errno);
-  return static_cast<bool>(out);
 }
 
 }  // namespace

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace gaitd::cli {
+
+/// Writes all of a file, in place of what was there; false with why not in `error`.
+bool write_file(const std::filesystem::path& file, const std::string& text, std::string* error);
+
+}  // namespace gaitd::cli
