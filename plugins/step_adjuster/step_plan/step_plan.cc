@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "step_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
+
+namespace gaitd::plugins {
+namespace {
+
+constexpr double kUnit = 0.1;  // m of shift that time_scale is as dear as
+constexpr int kUnknownPhase = -1;
+constexpr double kLeastGamma = 0.2;
+constexpr double kRestMargin = 0.04;  // m, of an ICP that comes to rest, to the edge of the feet
+constexpr double kClearance = 0.02;   // m, between soles that pass each other
+constexpr double kTimeStep = 0.01;    // s
+
+double square(double x) { return x * x; }
+
+// Extent of the two soles together, along and across (m).
+Eigen::Vector2d soles_apart(const GaitdModel& model) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Constant(kClearance);
+  for (const GaitdFoot& foot : model.feet) {
+    Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();
+    for (int i = 0; i < foot.point_count; ++i) {
+      const Eigen::Vector2d point(foot.points[i][0], foot.points[i][1]);
+      low = low.cwiseMin(point);
+      high = high.cwiseMax(point);
+    }
+    sum += 0.5 * (high - low);
+  }
+  return sum;
+}
+
+walking::ConvexPolygon turned(const walking::ConvexPolygon& polygon, double yaw,
+                              const Eigen::Vector2d& origin) {
+  walking::ConvexPolygon result;
+  const Eigen::Rotation2Dd rotation(yaw);
+  for (int i = 0; i < polygon.size(); ++i) result.add(origin + rotation * polygon.vertex(i));
+  return result;
+}
+
+}  // namespace
+
+using sdk::view;
+
+StepPlan::StepPlan(const GaitdModel& model)
+    : model_(model), apart_(soles_apart(model)), feedback_(model) {
+  reset();
+}
+
+void StepPlan::set_parameter(int index, double value) {
+  p_.set(index, value);
+  if (index < kFeedbackCount) feedback_.set_parameter(index, value);
+}
+
+void StepPlan::reset() {
+  feedback_.reset();
+  step_index_ = -1;
+  phase_ = GAITD_PHASE_STAND;
+  start_shift_.setZero();
+  shift_.setZero();
+  time_shift_ = 0.0;
+}
+
+void StepPlan::get_state(GaitdStepAdjusterState& s) const {
+  feedback_.get_state(s);
+  s.step_index = step_index_;
+  view(s.shift) = Eigen::Vector3d(shift_.x(), shift_.y(), 0.0);
+  s.time_shift = time_shift_;
+}
+
+void StepPlan::set_state(const GaitdStepAdjusterState& s) {
+  feedback_.set_state(s);
+  step_index_ = s.step_index;
+  shift_ = view(s.shift).head<2>();
+  time_shift_ = s.time_shift;
+  phase_ = kUnknownPhase;  // what was shifted so far is in the gait state
+}
+
+void StepPlan::begin_phase(const GaitdGaitState& gait) {
+  // The planned duration is what the phase began with; a swap keeps what was shifted since.
+  if (phase_ != kUnknownPhase || step_index_ != gait.step_index) time_shift_ = 0.0;
+  phase_ = gait.phase;
+  step_index_ = gait.step_index;
+  const GaitdFootstep& step = gait.commanded[0];
+  // A step before this one may have left the commanded way, another variant may have begun it.
+  shift_ = start_shift_ =
+      (view(gait.adjusted[0].pose.position) - view(step.pose.position)).head<2>();
+}
+
+walking::ConvexPolygon StepPlan::reach(int side, double inward) const {
+  const double height = model_.nominal_com_height;
+  const double sign = walking::side_sign(side);
+  const double forward = p_[P::kReachForward] * height;
+  const double backward = -p_[P::kReachBackward] * height;
+  const double outward = p_[P::kReachOutward] * height;
+  const double separation = model_.nominal_foot_separation;
+  walking::ConvexPolygon polygon;
+  for (const auto& [x, y] : {std::pair{forward, inward},
+                             {forward, separation},
+                             {0.0, outward},
+                             {backward, separation},
+                             {backward, inward}}) {
+    polygon.add({x, sign * y});
+  }
+  polygon.make_hull();
+  return polygon;
+}
+
+// A foot that lands beside the other one keeps beside it; one that lands ahead or behind may land in
+// front of it or behind it, as far as its straight way there passes the other one.
+HalfPlane StepPlan::clear(const Eigen::Vector2d& foot, const Eigen::Vector2d& goal,
+                          int side) const {
+  const double sign = walking::side_sign(side);
+  HalfPlane plane;
+  plane.normal = {0.0, sign};
+  plane.offset = apart_.y();
+  if (std::abs(goal.x()) < apart_.x()) return plane;
+  plane.offset = 0.0;
+  const double ahead = goal.x() > 0.0 ? 1.0 : -1.0;
+  const Eigen::Vector2d corner(ahead * apart_.x(), sign * apart_.y());
+  if (ahead * (corner.x() - foot.x()) <= 0.0) return plane;  // it is past the other foot
+  // Left of the way to the corner for a left foot that goes ahead.
+  const Eigen::Vector2d way = (corner - foot).normalized();
+  plane.normal = sign * ahead * Eigen::Vector2d(-way.y(), way.x());
+  plane.offset = plane.normal.dot(corner);
+  return plane;
+}
+
+CaptureSet StepPlan::capture_set(const GaitdGaitState& gait) const {
+  const int side = gait.adjusted[0].side;
+  const double time = p_[P::kShortestTransfer] + p_[P::kShortestSwing];
+  const auto sole = [&](int of) {
+    walking::ConvexPolygon polygon;
+    for (int i = 0; i < model_.feet[of].point_count; ++i) {
+      polygon.add({model_.feet[of].points[i][0], model_.feet[of].points[i][1]});
+    }
+    polygon.make_hull();
+    return polygon.inset(feedback_[walking::Feedback::kMargin]);
+  };
+  const int other = walking::other_side(side);
+  const double yaw = sdk::yaw_of(sdk::quaternion(gait.adjusted[0].pose.orientation));
+  const Eigen::Vector2d here = Eigen::Vector2d::Zero();
+  return {turned(reach(other, apart_.y()), yaw, here), turned(sole(side), yaw, here),
+          turned(reach(side, apart_.y()), yaw, here), turned(sole(other), yaw, here),
+          std::exp(gait.omega * time)};
+}
+
+StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
+  const GaitdGaitState& gait = *in.gait;
+  const GaitdFootstep& step = gait.commanded[0];
+  StepProblem c;
+  c.omega = gait.omega;
+  c.kappa = feedback_.kappa();
+  c.com = view(in.robot->com).head<2>();
+  c.icp = view(in.robot->icp);
+  const double growth = std::exp(c.omega * gait.time_remaining);
+  c.gamma = std::max(in.plan->gamma[0] * growth, kLeastGamma);
+  const Eigen::Vector2d made =
+      (view(gait.adjusted[0].pose.position) - view(step.pose.position)).head<2>();
+  c.start_shift = start_shift_;
+  c.icp_end = view(in.plan->icp_end) + c.gamma * (start_shift_ - made);
+  const Eigen::Vector2d planned = view(in.plan->icp) - view(in.plan->offset);
+  const Eigen::Vector2d ecmp =
+      growth > 1.0 + 1e-6
+          ? Eigen::Vector2d((growth * planned - view(in.plan->icp_end)) / (growth - 1.0))
+          : Eigen::Vector2d(view(in.plan->ecmp));
+  c.cmp_region = feedback_.cmp_region(gait);
+  c.cmp = c.cmp_region.closest_point(walking::cmp_of(ecmp, c.com, c.kappa));
+  c.commanded = view(step.pose.position).head<2>();
+  c.foot = view(in.robot->feet[gait.next_side].position).head<2>();
+  if (gait.footstep_count == 1) {
+    // The step ends in standing: the ICP may come to rest anywhere well between the feet.
+    walking::ConvexPolygon both;
+    for (const GaitdFoothold& f :
+         {gait.footholds[gait.support], walking::foothold_of(model_, gait.adjusted[0])}) {
+      walking::add_foothold(f, model_.feet[step.side].toe_point, both);
+    }
+    both.make_hull();
+    const Eigen::Vector2d stance_ecmp = c.ecmp();
+    const Eigen::Vector2d coming = stance_ecmp + growth * (c.icp - stance_ecmp);
+    c.icp_end = both.inset(kRestMargin).closest_point(coming) - (made - start_shift_);
+    c.gamma = 1.0;
+  }
+
+  const GaitdPose& stance = gait.footholds[gait.support].pose;
+  const Eigen::Vector2d origin = view(stance.position).head<2>();
+  const double yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
+  const Eigen::Rotation2Dd heading(yaw);
+  const Eigen::Vector2d goal = c.commanded + shift_;
+  c.clear = clear(heading.inverse() * (c.foot - origin), heading.inverse() * (goal - origin),
+                  step.side);
+  c.clear.normal = heading * c.clear.normal;
+  c.clear.offset =
+      std::min(c.clear.offset + c.clear.normal.dot(origin), c.clear.normal.dot(goal));
+  c.reach = turned(reach(step.side, 0.0), yaw, origin);
+  c.reach.add(c.commanded + start_shift_);
+  c.reach.add(goal);
+  c.reach.make_hull();
+  c.landing = walking::landing_region(step);
+  c.capture = capture_set(gait);
+
+  c.planned = gait.time_remaining - time_shift_;
+  const double duration = gait.phase_duration - time_shift_;
+  c.shortest =
+      std::max(p_[P::kShortestSwing] - gait.time_in_phase, p_[P::kHoldTime] + kTimeStep);
+  c.longest = p_[P::kLongestSwing] * duration - gait.time_in_phase;
+  c.foot_speed = p_[P::kFootSpeed];
+  return c;
+}
+
+void StepPlan::adjust(const GaitdStepAdjusterInput& in) {
+  const GaitdGaitState& gait = *in.gait;
+  const StepProblem step = problem(in);
+  const double now = gait.time_remaining;
+  if (step.missed(shift_, now).norm() / step.gamma < p_[P::kDeadBand]) return;
+  // What a step leaves to the next costs the shift that the next will need for it, and so on:
+  // E^2 - 1 of the Riccati equation of x' = E x - u, for steps of the commanded pace.
+  const GaitdFootstep& next = gait.adjusted[std::min(1, gait.footstep_count - 1)];
+  const double growth = std::exp(gait.omega * (next.transfer_duration + next.swing_duration));
+  const StepWeights weights{.cmp = p_[P::kCmpWeight],
+                            .change = p_[P::kChangeWeight],
+                            .time = square(kUnit / p_[P::kTimeScale]),
+                            .missed = p_[P::kMissed] * (growth * growth - 1.0)};
+  Eigen::Vector2d shift = shift_;
+  double remaining = now;
+  if (!qp_.solve(step, weights, shift, remaining)) return;
+  shift_ = shift;
+  time_shift_ = remaining - step.planned;
+}
+
+// A transfer whose ICP runs ahead ends as much earlier as the plan would need for the lead.
+void StepPlan::shorten_transfer(const GaitdStepAdjusterInput& in) {
+  const Eigen::Vector2d planned = view(in.plan->icp) - view(in.plan->offset);
+  const Eigen::Vector2d velocity = view(in.plan->icp_velocity);
+  const double speed = velocity.norm();
+  if (speed < 1e-3) return;
+  const GaitdGaitState& gait = *in.gait;
+  double lead = velocity.dot(view(in.robot->icp) - planned) / speed;
+  // Feet that cannot hold the ICP had better step.
+  const walking::ConvexPolygon feet = walking::support_polygon(model_, gait);
+  if (feet.inside_distance(view(in.robot->icp)) < 0.0) lead = speed * gait.time_remaining;
+  if (lead <= p_[P::kLead]) return;
+  const double least = std::max(p_[P::kShortestTransfer] - gait.time_in_phase, 0.0);
+  const double left = std::max(gait.time_remaining - lead / speed, least);
+  time_shift_ += std::min(0.0, left - gait.time_remaining);
+}
+
+GaitdStatus StepPlan::process(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out) {
+  feedback_.update(in, out);
+  const GaitdGaitState& gait = *in.gait;
+  const bool transfer = gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 &&
+                        gait.trailing_side != GAITD_BOTH;
+  if (gait.footstep_count == 0 || (gait.phase != GAITD_PHASE_SWING && !transfer)) {
+    phase_ = gait.phase;
+    return GAITD_OK;
+  }
+  if (gait.step_index != step_index_ || gait.phase != phase_) begin_phase(gait);
+  if (transfer) {
+    shorten_transfer(in);
+  } else if (gait.time_remaining > p_[P::kHoldTime]) {
+    adjust(in);
+  }
+  out.active = 1;
+  view(out.shift) = Eigen::Vector3d(shift_.x(), shift_.y(), 0.0);
+  out.time_shift = time_shift_;
+  return GAITD_OK;
+}
+
+}  // namespace gaitd::plugins

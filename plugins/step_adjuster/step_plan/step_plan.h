@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "gaitd/sdk/layer.h"
+#include "gaitd/walking/icp_feedback.h"
+#include "step_qp.h"
+
+namespace gaitd::plugins {
+
+// ICP feedback that moves the CMP first, and where that does not do, the next foothold and the end
+// of the swing, earlier or later: all three from one convex QP (step_qp.h). In a transfer it decides
+// when the swing begins. Nothing changes in the last moments before touchdown.
+class StepPlan {
+ public:
+  enum class P {
+    kCmpWeight = static_cast<int>(walking::Feedback::kCount),  // follow those of the feedback
+    kChangeWeight,
+    kTimeScale,
+    kDeadBand,
+    kHoldTime,
+    kReachForward,
+    kReachBackward,
+    kReachOutward,
+    kShortestSwing,
+    kLongestSwing,
+    kFootSpeed,
+    kShortestTransfer,
+    kLead,
+    kMissed,
+    kCount
+  };
+  static constexpr int kFeedbackCount = static_cast<int>(walking::Feedback::kCount);
+  static constexpr int kOwnCount = static_cast<int>(P::kCount) - kFeedbackCount;
+  static constexpr std::array<GaitdParameter, kOwnCount> kOwnParameters = {
+      sdk::real_parameter("cmp_weight", "", 1e-6, 1e3, 0.1,
+                          "of a moved CMP, against a foothold moved as far"),
+      sdk::real_parameter("change_weight", "", 0, 1e3, 0.1,
+                          "of a change of what was decided in the tick before"),
+      sdk::real_parameter("time_scale", "s", 0.01, 100, 0.5,
+                          "by which an earlier or later touchdown costs as much as 0.1 m of shift"),
+      sdk::real_parameter("dead_band", "m", 0, 0.2, 0.02,
+                          "a shift closer than this to the one made changes nothing"),
+      sdk::real_parameter("hold_time", "s", 0, 1, 0.05, "before touchdown without changes"),
+      sdk::real_parameter("reach_forward", "com heights", 0.1, 1.5, 0.85,
+                          "foothold ahead of the stance foot, over the nominal CoM height"),
+      sdk::real_parameter("reach_backward", "com heights", 0.1, 1.5, 0.5, "behind it"),
+      sdk::real_parameter("reach_outward", "com heights", 0.1, 1.5, 0.65,
+                          "largest sideways distance"),
+      sdk::real_parameter("shortest_swing", "s", 0.1, 2, 0.2, "that a swing is sped up to"),
+      sdk::real_parameter("longest_swing", "", 1, 3, 1.5,
+                          "that a swing is drawn out to, over its commanded duration"),
+      sdk::real_parameter("foot_speed", "m/s", 0.5, 20, 3,
+                          "mean speed that a moved foothold may ask of the swing foot"),
+      sdk::real_parameter("shortest_transfer", "s", 0.05, 2, 0.1, "that one is shortened to"),
+      sdk::real_parameter("lead", "m", 0, 1, 0.05,
+                          "of the ICP along its motion that shortens a transfer"),
+      sdk::real_parameter("missed", "", 0, 1e4, 1.0,
+                          "scale of missed"),
+  };
+  static constexpr auto kParameters = [] {
+    std::array<GaitdParameter, static_cast<int>(P::kCount)> all{};
+    for (int i = 0; i < kFeedbackCount; ++i) all[i] = walking::kFeedbackParameters[i];
+    for (int i = 0; i < kOwnCount; ++i) all[kFeedbackCount + i] = kOwnParameters[i];
+    return all;
+  }();
+
+  explicit StepPlan(const GaitdModel& model);
+  void set_parameter(int index, double value);
+  GaitdStatus process(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out);
+  void reset();
+  void get_state(GaitdStepAdjusterState& s) const;
+  void set_state(const GaitdStepAdjusterState& s);
+
+ private:
+  void begin_phase(const GaitdGaitState& gait);
+  StepProblem problem(const GaitdStepAdjusterInput& in) const;
+  // Footholds of foot `side` in the frame of the other one: as far as legs reach, and not across.
+  walking::ConvexPolygon reach(int side, double inward) const;
+  HalfPlane clear(const Eigen::Vector2d& foot, const Eigen::Vector2d& goal, int side) const;
+  CaptureSet capture_set(const GaitdGaitState& gait) const;
+  void adjust(const GaitdStepAdjusterInput& in);
+  void shorten_transfer(const GaitdStepAdjusterInput& in);
+
+  const GaitdModel model_;
+  Eigen::Vector2d apart_;  // m, of two soles that just do not touch: behind each other, side by side
+  walking::IcpFeedback feedback_;
+  sdk::Parameters<P> p_{kParameters};
+  StepQp qp_;
+  int step_index_ = -1;  // of the phase that the following belong to
+  int phase_ = GAITD_PHASE_STAND;
+  Eigen::Vector2d start_shift_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d shift_ = Eigen::Vector2d::Zero();  // m, W, against the commanded foothold
+  double time_shift_ = 0.0;                          // s
+};
+
+}  // namespace gaitd::plugins

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "step_qp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gaitd::plugins {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kShortestEdge = 1e-9;  // m
+constexpr double kLeastGrowth = 1e-6;   // of the ICP error, below which no CMP changes anything
+// A robot that cannot be caught any more is worth any shift.
+constexpr double kLostWeight = 1e4;
+// The time that a way needs is concave in tau: its tangent is moved to the solution.
+constexpr int kTangents = 3;
+
+enum { kShift = 0, kMoment = 2, kLost = 4, kTau = 6 };
+
+Eigen::Vector2d inwards(const walking::ConvexPolygon& polygon, int i, double& length) {
+  const Eigen::Vector2d edge = polygon.vertex((i + 1) % polygon.size()) - polygon.vertex(i);
+  length = edge.norm();
+  return {-edge.y() / length, edge.x() / length};
+}
+
+}  // namespace
+
+Eigen::Vector2d StepProblem::missed(const Eigen::Vector2d& shift, double remaining) const {
+  const double growth = std::exp(omega * remaining);
+  const Eigen::Vector2d end = icp_end + gamma * (shift - start_shift);
+  Eigen::Vector2d best = ecmp();
+  if (growth > 1.0 + kLeastGrowth) {
+    const Eigen::Vector2d ideal = (growth * icp - end) / (growth - 1.0);
+    const Eigen::Vector2d inside = cmp_region.closest_point(walking::cmp_of(ideal, com, kappa));
+    best = walking::ecmp_of(inside, com, kappa);
+  }
+  return best + growth * (icp - best) - end;
+}
+
+StepQp::StepQp() : solver_({kUnknowns, 0, kRows}) {}
+
+void StepQp::add(const Row& row, double least) {
+  if (rows_ == kRows) return;
+  C_.row(rows_) = row;
+  l_[rows_] = least;
+  u_[rows_] = kInfinity;
+  ++rows_;
+}
+
+void StepQp::add_foothold_rows(const walking::ConvexPolygon& polygon,
+                               const Eigen::Vector2d& commanded) {
+  for (int i = 0; polygon.size() >= 3 && i < polygon.size(); ++i) {
+    double length;
+    const Eigen::Vector2d n = inwards(polygon, i, length);
+    if (length < kShortestEdge) continue;
+    Row row = Row::Zero();
+    row.segment<2>(kShift) = n.transpose();
+    add(row, n.dot(polygon.vertex(i) - commanded));
+  }
+}
+
+void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vector2d& shift,
+                  double remaining, double tangent) {
+  const double tau = std::exp(p.omega * remaining);
+  const double lever = std::max(tau - 1.0, kLeastGrowth);
+  const Eigen::Vector2d ecmp = p.ecmp();
+  const Eigen::Vector2d grown = tau * (p.icp - ecmp);  // d xi_T / d (tau / tau')
+  const Eigen::Vector2d reached = ecmp + grown;
+  const Eigen::Vector2d miss = reached - p.icp_end + p.gamma * p.start_shift;
+
+  H_.setZero();
+  g_.setZero();
+  for (int k = 0; k < 2; ++k) {
+    // e = miss - gamma D - m + grown t, along axis k
+    Row e = Row::Zero();
+    e[kShift + k] = -p.gamma;
+    e[kMoment + k] = -1.0;
+    e[kTau] = grown[k];
+    H_ += w.missed * e.transpose() * e;
+    g_ += w.missed * miss[k] * e.transpose();
+    H_(kShift + k, kShift + k) += 1.0 + w.change;
+    g_[kShift + k] -= p.start_shift[k] + w.change * shift[k];
+    H_(kMoment + k, kMoment + k) += w.cmp / (lever * lever);
+    H_(kLost + k, kLost + k) += kLostWeight;
+  }
+  // T = remaining + t / w
+  const double per_tau = 1.0 / (p.omega * p.omega);
+  H_(kTau, kTau) += w.time * (1.0 + w.change) * per_tau;
+  g_[kTau] += w.time * (remaining - p.planned) / p.omega;
+
+  rows_ = 0;
+  add_foothold_rows(p.reach, p.commanded);
+  add_foothold_rows(p.landing, p.commanded);
+  Row row = Row::Zero();
+  row.segment<2>(kShift) = p.clear.normal.transpose();
+  add(row, p.clear.offset - p.clear.normal.dot(p.commanded));
+  for (int i = 0; p.cmp_region.size() >= 3 && i < p.cmp_region.size(); ++i) {
+    double length;
+    const Eigen::Vector2d n = inwards(p.cmp_region, i, length);
+    if (length < kShortestEdge) continue;
+    const double room = n.dot(p.cmp - p.cmp_region.vertex(i));  // >= 0
+    row.setZero();
+    row.segment<2>(kMoment) = p.kappa * n.transpose();
+    row[kTau] = tau * room;
+    add(row, -lever * room);
+  }
+  for (int i = 0; i < CaptureSet::kDirections; ++i) {
+    const Eigen::Vector2d n = CaptureSet::direction(i);
+    row.setZero();
+    row.segment<2>(kShift) = n.transpose();
+    row.segment<2>(kMoment) = n.transpose();
+    row.segment<2>(kLost) = n.transpose();
+    row[kTau] = -n.dot(grown);
+    add(row, n.dot(reached - p.commanded) - p.capture.limit[i]);
+  }
+  // |foothold - foot| <= v T, T at most its tangent at `tangent`.
+  const double at = std::exp(p.omega * tangent);
+  const double way = (p.commanded + shift - p.foot).norm();
+  const double speed = std::max(p.foot_speed, way / remaining);
+  for (int i = 0; i < kSpeedDirections; ++i) {
+    const double angle = 2.0 * M_PI * i / kSpeedDirections;
+    const Eigen::Vector2d n(std::cos(angle), std::sin(angle));
+    row.setZero();
+    row.segment<2>(kShift) = -n.transpose();
+    row[kTau] = speed * tau / (at * p.omega);
+    add(row, n.dot(p.commanded - p.foot) - speed * (tangent + (tau - at) / (at * p.omega)));
+  }
+  lower_.setConstant(-kInfinity);
+  upper_.setConstant(kInfinity);
+  lower_[kTau] = std::min(0.0, std::exp(p.omega * (p.shortest - remaining)) - 1.0);
+  upper_[kTau] = std::max(0.0, std::exp(p.omega * (p.longest - remaining)) - 1.0);
+}
+
+bool StepQp::solve(const StepProblem& p, const StepWeights& w, Eigen::Vector2d& shift,
+                   double& remaining) {
+  double tangent = remaining;
+  Eigen::Vector2d found = shift;
+  for (int i = 0; i < kTangents; ++i) {
+    fill(p, w, shift, remaining, tangent);
+    qp::Problem problem;
+    problem.H = H_;
+    problem.g = g_;
+    problem.C = C_.topRows(rows_);
+    problem.l = qp::VectorView(l_.data(), rows_);
+    problem.u = qp::VectorView(u_.data(), rows_);
+    problem.lb = lower_;
+    problem.ub = upper_;
+    const qp::Result result = solver_.solve(problem, {.warm_start = i > 0});
+    if (!result.solved()) return false;
+    found = {result.x[kShift], result.x[kShift + 1]};
+    const double next = remaining + std::log1p(result.x[kTau]) / p.omega;
+    const bool settled = std::abs(next - tangent) < 1e-3;
+    tangent = next;
+    if (settled) break;
+  }
+  shift = found;
+  remaining = tangent;
+  return true;
+}
+
+}  // namespace gaitd::plugins

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "capture_set.h"
+#include "gaitd/qp/dense_solver.h"
+#include "gaitd/walking/icp_feedback.h"
+#include "gaitd/walking/polygon.h"
+
+namespace gaitd::plugins {
+
+// normal . p >= offset
+struct HalfPlane {
+  Eigen::Vector2d normal = Eigen::Vector2d::UnitX();
+  double offset = 0.0;
+};
+
+// What is left of a swing, in the world frame (m, s).
+struct StepProblem {
+  double omega = 3.0;
+  double kappa = 1.0;
+  Eigen::Vector2d com, icp;   // measured
+  Eigen::Vector2d cmp;        // constant one that the plan amounts to, inside cmp_region
+  Eigen::Vector2d icp_end;    // of the plan at touchdown, with shift D0
+  double gamma = 1.0;         // d icp_end / d shift
+  Eigen::Vector2d commanded;  // foothold
+  Eigen::Vector2d start_shift;  // D0, with which the swing began
+  Eigen::Vector2d foot;         // where the swing foot is
+  walking::ConvexPolygon cmp_region;
+  walking::ConvexPolygon reach;
+  walking::ConvexPolygon landing;  // where the terrain allows it; empty: anywhere
+  HalfPlane clear;                 // of the stance foot, on the way too
+  CaptureSet capture;
+  double planned = 0.0;   // left of the commanded duration
+  double shortest = 0.0;  // that may be left
+  double longest = 0.0;
+  double foot_speed = 0.0;  // m/s, mean, of the way that is left
+
+  Eigen::Vector2d ecmp() const { return walking::ecmp_of(cmp, com, kappa); }
+  // What the plan misses at touchdown with the best constant CMP and this shift, after `remaining`
+  // seconds (m).
+  Eigen::Vector2d missed(const Eigen::Vector2d& shift, double remaining) const;
+};
+
+struct StepWeights {
+  double cmp;      // of a moved CMP, against a foothold moved as far
+  double change;   // of what was decided in the tick before
+  double time;     // 1/s^2 ... m^2 of shift that a second costs
+  double missed;   // of the ICP missed at touchdown: what the steps after have to make good for
+};
+
+// Place and time of the next foothold and the CMP until then, from one convex QP. With the growth
+// tau = exp(w T) and m = (tau - 1) d as unknowns the ICP at touchdown is linear,
+//   xi_T = r + tau (xi - r) - m,
+// and so is the CMP r + d in the support polygon (the time as an unknown: Khadiv et al. 2016).
+//   min  |D - D0|^2 + w_c |m / (tau' - 1)|^2 + w_t (T - T0)^2 + w_e |e|^2 + w_v |v|^2 + changes
+//   s.t. e = xi_T - xi_end - gamma (D - D0)
+//        xi_T - foothold - v in the capture set
+//        foothold in reach, allowed, clear of the stance foot, and not too fast to be reached
+// tau' is the tau of before.
+class StepQp {
+ public:
+  StepQp();
+  // From the decision so far; false when there is no better one, and `shift` and `remaining` are
+  // left alone then.
+  bool solve(const StepProblem& problem, const StepWeights& weights, Eigen::Vector2d& shift,
+             double& remaining);
+
+ private:
+  static constexpr int kUnknowns = 7;  // D, m, v, tau / tau' - 1
+  static constexpr int kSpeedDirections = 8;
+  static constexpr int kRows =
+      3 * walking::ConvexPolygon::kCapacity + CaptureSet::kDirections + kSpeedDirections + 1;
+  using Row = Eigen::Matrix<double, 1, kUnknowns>;
+
+  void add(const Row& row, double least);  // row . x >= least
+  void add_foothold_rows(const walking::ConvexPolygon& polygon, const Eigen::Vector2d& commanded);
+  void fill(const StepProblem& p, const StepWeights& w, const Eigen::Vector2d& shift,
+            double remaining, double tangent);
+
+  qp::DenseSolver solver_;
+  Eigen::Matrix<double, kUnknowns, kUnknowns> H_;
+  Eigen::Matrix<double, kUnknowns, 1> g_, lower_, upper_;
+  Eigen::Matrix<double, kRows, kUnknowns> C_;
+  Eigen::Matrix<double, kRows, 1> l_, u_;
+  int rows_ = 0;
+};
+
+}  // namespace gaitd::plugins
