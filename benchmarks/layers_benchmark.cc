@@ -8,7 +8,7 @@
 #include "daemon/config/paths.h"
 #include "daemon/host/loaded_plugin.h"
 #include "gaitd/sdk/layer.h"
-#include "icp_qp.h"
+#include "step_plan.h"
 #include "measure.h"
 #include "never.h"
 #include "nullspace_qp.h"
@@ -94,7 +94,7 @@ void whole_body_controller(benchmark::State& state, const std::string& walk) {
 
 void step_adjuster(benchmark::State& state, const std::string& walk) {
   const auto ticks = read_walk(walk);
-  const auto layer = make_layer<plugins::IcpQp>();
+  const auto layer = make_layer<plugins::StepPlan>();
   GaitdStepAdjustment out{};
   measure(
       state, static_cast<int>(ticks.size()), [&] { layer->reset(); },

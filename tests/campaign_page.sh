@@ -23,7 +23,7 @@ schema: gaitd.campaign/1
 name: pushes
 scenarios: [pushed.yaml]
 set:
-  step_adjuster.variant: [icp_qp, fixed_steps]
+  step_adjuster.variant: [step_plan, fixed_steps]
   disturbances.0.direction: [0, 1.5708]
 draw: {disturbances.0.force: [150, 2500]}
 seeds: 3

@@ -26,7 +26,7 @@ sed '/^expect:/,$d; /swap:/d' "$GAITD_SOURCE/sim/scenarios/swaps.yaml" >walk.yam
 awk 'BEGIN {
   split("toe_off whole_body_controller icp_planner step_adjuster state_estimator", layer, " ")
   split("never com_height_qp single_cmp fixed_steps invariant_ekf", variant, " ")
-  split("icp_criteria nullspace_qp heel_to_toe icp_qp kinematic_inertial", before, " ")
+  split("icp_criteria nullspace_qp heel_to_toe step_plan kinematic_inertial", before, " ")
   for (i = 0; i < 125; ++i) {
     k = i % 5 + 1
     printf "  - {at: %.2f, swap: {layer: %s, to: %s}}\n", 2 + 0.41 * i, layer[k], int(i / 5) % 2 ? before[k] : variant[k]

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "icp_qp.h"
+#include "step_plan.h"
 #include "interior_point.h"
 #include "recorded_problems.h"
 #include "recorded_ticks.h"
@@ -113,9 +113,9 @@ INSTANTIATE_TEST_SUITE_P(Recorded, Sequence,
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(StepAdjuster, IsFastInEveryTickOfTheRecordedWalks) {
-  plugins::IcpQp layer(testing::atlas());
-  for (std::size_t i = 0; i < plugins::IcpQp::kParameters.size(); ++i) {
-    layer.set_parameter(static_cast<int>(i), plugins::IcpQp::kParameters[i].default_value);
+  plugins::StepPlan layer(testing::atlas());
+  for (std::size_t i = 0; i < plugins::StepPlan::kParameters.size(); ++i) {
+    layer.set_parameter(static_cast<int>(i), plugins::StepPlan::kParameters[i].default_value);
   }
   for (const char* walk : kRecordedWalks) {
     const auto ticks = read_walk(walk);

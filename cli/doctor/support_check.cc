@@ -141,7 +141,7 @@ Findings check_support(const LogCase& log) {
                   on_edge * log.period(), log.time(first_on_edge));
   }
   const char* advice =
-      "gait.recovery, step_adjuster.variant=icp_qp and its reach_* let steps catch more; "
+      "gait.recovery, step_adjuster.variant=step_plan and its reach_* let steps catch more; "
       "step_adjuster.gain_*, wider or slower steps";
   Findings findings = {log_finding(
       log, "cop", episode->begin,

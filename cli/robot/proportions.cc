@@ -35,7 +35,6 @@ constexpr Scaled kScaled[] = {
     {"swing.edge_height", 0.12, 1.0},        {"icp_planner.exit_step_length", 0.2, 1.0},
     {"icp_planner.margin", 0.015, 1.0},      {"icp_planner.fit_limit", 0.08, 1.0},
     {"step_adjuster.margin", 0.01, 1.0},     {"step_adjuster.excursion", 0.03, 1.0},
-    {"step_adjuster.dead_band", 0.02, 1.0},  {"step_adjuster.lead", 0.05, 1.0},
     {"toe_off.min_height", 0.1, 1.0},        {"toe_off.cmp_distance", 0.03, 1.0}};
 
 double rounded(double value) {

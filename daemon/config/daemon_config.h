@@ -57,7 +57,7 @@ struct DaemonConfig {
   double period = 0.001;           // s
   std::optional<Profile> profile;  // none: that of the backend
   std::array<std::string, GAITD_LAYER_COUNT> variants = {"kinematic_inertial", "heel_to_toe",
-                                                         "icp_qp", "icp_criteria", "nullspace_qp"};
+                                                         "step_plan", "icp_criteria", "nullspace_qp"};
   RealtimeConfig realtime;
   LogConfig log;
   std::string socket;  // "": the default place for the user

@@ -33,7 +33,7 @@ def campaign(
     campaign names by path.
 
     The columns are those of ``results.csv``: scenario, seed, settings and draws, success, fell, figures ... Settings
-    that are words are plain (``icp_qp``), lists and objects their JSON.
+    that are words are plain (``step_plan``), lists and objects their JSON.
     ``frame.attrs["summary"]`` is ``summary.json``: success rates with their intervals, and whether the campaign passed.
     Runs that fail are rows with success 0; nothing is raised. Raises :class:`ProgramError` where gaitctl refuses the
     campaign or is interrupted.

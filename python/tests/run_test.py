@@ -70,7 +70,7 @@ class Campaigns(unittest.TestCase):
         campaign = {
             "name": "tiny",
             "scenarios": [scratch("tiny.yaml")],
-            "set": {"step_adjuster.variant": ["icp_qp", "fixed_steps"]},
+            "set": {"step_adjuster.variant": ["step_plan", "fixed_steps"]},
             "draw": {"model_error.mass_scale.utorso": [0.95, 1.05]},
             "seeds": 2,
             "success": "no_fall",
@@ -90,7 +90,7 @@ class Campaigns(unittest.TestCase):
                     self.assertTrue(np.isnan(value), name)
                 else:
                     self.assertEqual(float(value), float(text), name)
-        self.assertEqual(set(frame["step_adjuster.variant"]), {"icp_qp", "fixed_steps"})
+        self.assertEqual(set(frame["step_adjuster.variant"]), {"step_plan", "fixed_steps"})
         self.assertTrue(frame["success"].all(), frame.to_csv())
         with open(scratch("tiny/summary.json"), encoding="utf-8") as file:
             self.assertEqual(frame.attrs["summary"], json.load(file))

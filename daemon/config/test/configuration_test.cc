@@ -46,14 +46,14 @@ TEST(DaemonConfig, ReadsWhatDiffersFromTheDefaults) {
   const std::string file =
       folder.write("gaitd.yaml",
                    "schema: gaitd.config/1\nbackend: socketcan\nclock: lockstep\nperiod: 0.004\n"
-                   "toe_off: {variant: icp_criteria}\nstep_adjuster/icp_qp: {dead_band: 0.02}\n"
+                   "toe_off: {variant: icp_criteria}\nstep_adjuster/step_plan: {dead_band: 0.02}\n"
                    "realtime: {affinity: [2, 3], overrun: stop}\nlog: {compression: none}\n");
   Settings settings;
   Issues issues;
   ASSERT_TRUE(load_config_file(file, &settings, &issues)) << issues.error_text();
   ASSERT_TRUE(settings.set_assignment("period=0.002", &issues));
   const DaemonConfig config = read_daemon_config(&settings, &issues);
-  settings.declare_variant("step_adjuster", "icp_qp");
+  settings.declare_variant("step_adjuster", "step_plan");
   settings.report_unknown(&issues);
   EXPECT_TRUE(issues.ok()) << issues.error_text();
   EXPECT_FALSE(config.profile);  // that of the backend

@@ -95,7 +95,7 @@ TEST(Scenario, ReadsEverySection) {
           "seed: 7\n"
           "start: {x: 1, y: 2, yaw: 0.5}\n"
           "mode: walk-straight\n"
-          "set: {step_adjuster.variant: icp_qp, gait: {swing_duration: 0.7}}\n"
+          "set: {step_adjuster.variant: step_plan, gait: {swing_duration: 0.7}}\n"
           "terrain:\n"
           "  friction: 0.6\n"
           "  ground_z: 0.1\n"

@@ -17,7 +17,7 @@ namespace gaitd::daemon {
 
 using testing::atlas;
 inline constexpr double kPipelinePeriod = 0.001;  // s
-inline constexpr const char* kVariants[] = {"kinematic_inertial", "heel_to_toe", "icp_qp",
+inline constexpr const char* kVariants[] = {"kinematic_inertial", "heel_to_toe", "step_plan",
                                             "icp_criteria", "nullspace_qp"};
 
 inline std::vector<double> defaults(std::span<const GaitdParameter> table) {

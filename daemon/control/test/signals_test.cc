@@ -21,7 +21,7 @@ using testing::atlas;
 const LayerVariants& variants() {
   static const LayerVariants v = {{{"kinematic_inertial", "invariant_ekf"},
                                    {"heel_to_toe", "single_cmp"},
-                                   {"icp_qp", "fixed_steps"},
+                                   {"step_plan", "fixed_steps"},
                                    {"icp_criteria", "never"},
                                    {"nullspace_qp", "com_height_qp"}}};
   return v;

@@ -21,8 +21,9 @@ double support(const walking::ConvexPolygon& polygon, const Eigen::Vector2d& dir
 struct CaptureSet {
   static constexpr int kDirections = 16;
 
-  // `reach`: footholds of the step that follows, from the foothold; `reach_after`: those of the step
-  // after that, from the next; `sole` and `sole_after`: where the CMP may be. All in one frame, m.
+  // `reach`: footholds of the step that follows, from the foothold; `reach_after`: those of the
+  // step after that, from the next; `sole` and `sole_after`: where the CMP may be. All in one
+  // frame, m.
   CaptureSet(const walking::ConvexPolygon& reach, const walking::ConvexPolygon& sole,
              const walking::ConvexPolygon& reach_after, const walking::ConvexPolygon& sole_after,
              double growth);

@@ -10,12 +10,13 @@
 namespace gaitd::plugins {
 namespace {
 
-constexpr double kUnit = 0.1;  // m of shift that time_scale is as dear as
 constexpr int kUnknownPhase = -1;
 constexpr double kLeastGamma = 0.2;
 constexpr double kRestMargin = 0.04;  // m, of an ICP that comes to rest, to the edge of the feet
 constexpr double kClearance = 0.02;   // m, between soles that pass each other
-constexpr double kTimeStep = 0.01;    // s
+// sqrt(h/g), before touchdown: no leg follows a change any more.
+constexpr double kHold = 0.09;
+constexpr double kLeastLeft = 1.3 * kHold;
 
 double square(double x) { return x * x; }
 
@@ -47,7 +48,11 @@ walking::ConvexPolygon turned(const walking::ConvexPolygon& polygon, double yaw,
 using sdk::view;
 
 StepPlan::StepPlan(const GaitdModel& model)
-    : model_(model), apart_(soles_apart(model)), feedback_(model) {
+    : model_(model),
+      length_(model.nominal_com_height),
+      time_(std::sqrt(model.nominal_com_height / model.gravity)),
+      apart_(soles_apart(model)),
+      feedback_(model) {
   reset();
 }
 
@@ -92,11 +97,10 @@ void StepPlan::begin_phase(const GaitdGaitState& gait) {
 }
 
 walking::ConvexPolygon StepPlan::reach(int side, double inward) const {
-  const double height = model_.nominal_com_height;
   const double sign = walking::side_sign(side);
-  const double forward = p_[P::kReachForward] * height;
-  const double backward = -p_[P::kReachBackward] * height;
-  const double outward = p_[P::kReachOutward] * height;
+  const double forward = p_[P::kReachForward] * length_;
+  const double backward = -p_[P::kReachBackward] * length_;
+  const double outward = p_[P::kReachOutward] * length_;
   const double separation = model_.nominal_foot_separation;
   walking::ConvexPolygon polygon;
   for (const auto& [x, y] : {std::pair{forward, inward},
@@ -110,8 +114,8 @@ walking::ConvexPolygon StepPlan::reach(int side, double inward) const {
   return polygon;
 }
 
-// A foot that lands beside the other one keeps beside it; one that lands ahead or behind may land in
-// front of it or behind it, as far as its straight way there passes the other one.
+// A foot that lands beside the other one keeps beside it; one that lands ahead or behind may land
+// in front of it or behind it, as far as its straight way there passes the other one.
 HalfPlane StepPlan::clear(const Eigen::Vector2d& foot, const Eigen::Vector2d& goal,
                           int side) const {
   const double sign = walking::side_sign(side);
@@ -132,7 +136,7 @@ HalfPlane StepPlan::clear(const Eigen::Vector2d& foot, const Eigen::Vector2d& go
 
 CaptureSet StepPlan::capture_set(const GaitdGaitState& gait) const {
   const int side = gait.adjusted[0].side;
-  const double time = p_[P::kShortestTransfer] + p_[P::kShortestSwing];
+  const double time = time_ * (p_[P::kShortestTransfer] + p_[P::kShortestSwing]);
   const auto sole = [&](int of) {
     walking::ConvexPolygon polygon;
     for (int i = 0; i < model_.feet[of].point_count; ++i) {
@@ -191,11 +195,10 @@ StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
   const double yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
   const Eigen::Rotation2Dd heading(yaw);
   const Eigen::Vector2d goal = c.commanded + shift_;
-  c.clear = clear(heading.inverse() * (c.foot - origin), heading.inverse() * (goal - origin),
-                  step.side);
+  c.clear =
+      clear(heading.inverse() * (c.foot - origin), heading.inverse() * (goal - origin), step.side);
   c.clear.normal = heading * c.clear.normal;
-  c.clear.offset =
-      std::min(c.clear.offset + c.clear.normal.dot(origin), c.clear.normal.dot(goal));
+  c.clear.offset = std::min(c.clear.offset + c.clear.normal.dot(origin), c.clear.normal.dot(goal));
   c.reach = turned(reach(step.side, 0.0), yaw, origin);
   c.reach.add(c.commanded + start_shift_);
   c.reach.add(goal);
@@ -205,10 +208,9 @@ StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
 
   c.planned = gait.time_remaining - time_shift_;
   const double duration = gait.phase_duration - time_shift_;
-  c.shortest =
-      std::max(p_[P::kShortestSwing] - gait.time_in_phase, p_[P::kHoldTime] + kTimeStep);
+  c.shortest = std::max(time_ * p_[P::kShortestSwing] - gait.time_in_phase, kLeastLeft * time_);
   c.longest = p_[P::kLongestSwing] * duration - gait.time_in_phase;
-  c.foot_speed = p_[P::kFootSpeed];
+  c.foot_speed = p_[P::kFootSpeed] * length_ / time_;
   return c;
 }
 
@@ -216,18 +218,22 @@ void StepPlan::adjust(const GaitdStepAdjusterInput& in) {
   const GaitdGaitState& gait = *in.gait;
   const StepProblem step = problem(in);
   const double now = gait.time_remaining;
-  if (step.missed(shift_, now).norm() / step.gamma < p_[P::kDeadBand]) return;
+  const double dead_band = p_[P::kDeadBand] * length_;
+  if (step.missed(shift_, now).norm() < dead_band * step.gamma) return;
   // What a step leaves to the next costs the shift that the next will need for it, and so on:
   // E^2 - 1 of the Riccati equation of x' = E x - u, for steps of the commanded pace.
   const GaitdFootstep& next = gait.adjusted[std::min(1, gait.footstep_count - 1)];
   const double growth = std::exp(gait.omega * (next.transfer_duration + next.swing_duration));
   const StepWeights weights{.cmp = p_[P::kCmpWeight],
                             .change = p_[P::kChangeWeight],
-                            .time = square(kUnit / p_[P::kTimeScale]),
-                            .missed = p_[P::kMissed] * (growth * growth - 1.0)};
+                            .time = square(step.foot_speed),
+                            .missed = growth * growth - 1.0};
   Eigen::Vector2d shift = shift_;
   double remaining = now;
   if (!qp_.solve(step, weights, shift, remaining)) return;
+  // A later touchdown is as much of a change as the way of the foot in that time.
+  const double change = (shift - shift_).norm() + step.foot_speed * std::abs(remaining - now);
+  if (change < dead_band) return;
   shift_ = shift;
   time_shift_ = remaining - step.planned;
 }
@@ -243,8 +249,8 @@ void StepPlan::shorten_transfer(const GaitdStepAdjusterInput& in) {
   // Feet that cannot hold the ICP had better step.
   const walking::ConvexPolygon feet = walking::support_polygon(model_, gait);
   if (feet.inside_distance(view(in.robot->icp)) < 0.0) lead = speed * gait.time_remaining;
-  if (lead <= p_[P::kLead]) return;
-  const double least = std::max(p_[P::kShortestTransfer] - gait.time_in_phase, 0.0);
+  if (lead <= p_[P::kLead] * length_) return;
+  const double least = std::max(time_ * p_[P::kShortestTransfer] - gait.time_in_phase, 0.0);
   const double left = std::max(gait.time_remaining - lead / speed, least);
   time_shift_ += std::min(0.0, left - gait.time_remaining);
 }
@@ -261,7 +267,7 @@ GaitdStatus StepPlan::process(const GaitdStepAdjusterInput& in, GaitdStepAdjustm
   if (gait.step_index != step_index_ || gait.phase != phase_) begin_phase(gait);
   if (transfer) {
     shorten_transfer(in);
-  } else if (gait.time_remaining > p_[P::kHoldTime]) {
+  } else if (gait.time_remaining > kHold * time_) {
     adjust(in);
   }
   out.active = 1;

@@ -8,16 +8,14 @@
 namespace gaitd::plugins {
 
 // ICP feedback that moves the CMP first, and where that does not do, the next foothold and the end
-// of the swing, earlier or later: all three from one convex QP (step_qp.h). In a transfer it decides
-// when the swing begins. Nothing changes in the last moments before touchdown.
+// of the swing, earlier or later: all three from one convex QP (step_qp.h). In a transfer it
+// decides when the swing begins. Nothing changes in the last moments before touchdown.
 class StepPlan {
  public:
   enum class P {
     kCmpWeight = static_cast<int>(walking::Feedback::kCount),  // follow those of the feedback
     kChangeWeight,
-    kTimeScale,
     kDeadBand,
-    kHoldTime,
     kReachForward,
     kReachBackward,
     kReachOutward,
@@ -26,36 +24,33 @@ class StepPlan {
     kFootSpeed,
     kShortestTransfer,
     kLead,
-    kMissed,
     kCount
   };
   static constexpr int kFeedbackCount = static_cast<int>(walking::Feedback::kCount);
   static constexpr int kOwnCount = static_cast<int>(P::kCount) - kFeedbackCount;
   static constexpr std::array<GaitdParameter, kOwnCount> kOwnParameters = {
       sdk::real_parameter("cmp_weight", "", 1e-6, 1e3, 0.1,
-                          "of a moved CMP, against a foothold moved as far"),
-      sdk::real_parameter("change_weight", "", 0, 1e3, 0.1,
-                          "of a change of what was decided in the tick before"),
-      sdk::real_parameter("time_scale", "s", 0.01, 100, 0.5,
-                          "by which an earlier or later touchdown costs as much as 0.1 m of shift"),
-      sdk::real_parameter("dead_band", "m", 0, 0.2, 0.02,
+                          "of a moved CMP, against a foothold moved as far: the smaller, the more "
+                          "is left to the stance foot before a step moves"),
+      sdk::real_parameter(
+          "change_weight", "", 0, 1e3, 0.1,
+          "of a change of what was decided a tick ago: calms steps that noise moves, "
+          "and slows those that a push needs"),
+      sdk::real_parameter("dead_band", "com heights", 0, 0.2, 0.017,
                           "a shift closer than this to the one made changes nothing"),
-      sdk::real_parameter("hold_time", "s", 0, 1, 0.05, "before touchdown without changes"),
       sdk::real_parameter("reach_forward", "com heights", 0.1, 1.5, 0.85,
-                          "foothold ahead of the stance foot, over the nominal CoM height"),
+                          "of a foothold ahead of the stance foot"),
       sdk::real_parameter("reach_backward", "com heights", 0.1, 1.5, 0.5, "behind it"),
-      sdk::real_parameter("reach_outward", "com heights", 0.1, 1.5, 0.65,
-                          "largest sideways distance"),
-      sdk::real_parameter("shortest_swing", "s", 0.1, 2, 0.2, "that a swing is sped up to"),
+      sdk::real_parameter("reach_outward", "com heights", 0.1, 1.5, 0.65, "to its side"),
+      sdk::real_parameter("shortest_swing", "sqrt(h/g)", 0.3, 6, 0.8, "that a swing is sped up to"),
       sdk::real_parameter("longest_swing", "", 1, 3, 1.5,
                           "that a swing is drawn out to, over its commanded duration"),
-      sdk::real_parameter("foot_speed", "m/s", 0.5, 20, 3,
-                          "mean speed that a moved foothold may ask of the swing foot"),
-      sdk::real_parameter("shortest_transfer", "s", 0.05, 2, 0.1, "that one is shortened to"),
-      sdk::real_parameter("lead", "m", 0, 1, 0.05,
+      sdk::real_parameter("foot_speed", "sqrt(g h)", 0.1, 7, 0.6,
+                          "mean speed of the swing foot that a moved foothold may ask for"),
+      sdk::real_parameter("shortest_transfer", "sqrt(h/g)", 0.15, 6, 0.29,
+                          "that a transfer is shortened to"),
+      sdk::real_parameter("lead", "com heights", 0, 1, 0.0425,
                           "of the ICP along its motion that shortens a transfer"),
-      sdk::real_parameter("missed", "", 0, 1e4, 1.0,
-                          "scale of missed"),
   };
   static constexpr auto kParameters = [] {
     std::array<GaitdParameter, static_cast<int>(P::kCount)> all{};
@@ -82,7 +77,9 @@ class StepPlan {
   void shorten_transfer(const GaitdStepAdjusterInput& in);
 
   const GaitdModel model_;
-  Eigen::Vector2d apart_;  // m, of two soles that just do not touch: behind each other, side by side
+  double length_, time_;  // m, s: h and sqrt(h/g), h the nominal height of the CoM
+  Eigen::Vector2d
+      apart_;  // m, of two soles that just do not touch: behind each other, side by side
   walking::IcpFeedback feedback_;
   sdk::Parameters<P> p_{kParameters};
   StepQp qp_;

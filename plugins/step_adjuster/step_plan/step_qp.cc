@@ -13,9 +13,6 @@ constexpr double kShortestEdge = 1e-9;  // m
 constexpr double kLeastGrowth = 1e-6;   // of the ICP error, below which no CMP changes anything
 // A robot that cannot be caught any more is worth any shift.
 constexpr double kLostWeight = 1e4;
-// The time that a way needs is concave in tau: its tangent is moved to the solution.
-constexpr int kTangents = 3;
-
 enum { kShift = 0, kMoment = 2, kLost = 4, kTau = 6 };
 
 Eigen::Vector2d inwards(const walking::ConvexPolygon& polygon, int i, double& length) {
@@ -61,7 +58,7 @@ void StepQp::add_foothold_rows(const walking::ConvexPolygon& polygon,
 }
 
 void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vector2d& shift,
-                  double remaining, double tangent) {
+                  double remaining) {
   const double tau = std::exp(p.omega * remaining);
   const double lever = std::max(tau - 1.0, kLeastGrowth);
   const Eigen::Vector2d ecmp = p.ecmp();
@@ -114,17 +111,20 @@ void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vecto
     row[kTau] = -n.dot(grown);
     add(row, n.dot(reached - p.commanded) - p.capture.limit[i]);
   }
-  // |foothold - foot| <= v T, T at most its tangent at `tangent`.
-  const double at = std::exp(p.omega * tangent);
-  const double way = (p.commanded + shift - p.foot).norm();
-  const double speed = std::max(p.foot_speed, way / remaining);
-  for (int i = 0; i < kSpeedDirections; ++i) {
-    const double angle = 2.0 * M_PI * i / kSpeedDirections;
-    const Eigen::Vector2d n(std::cos(angle), std::sin(angle));
-    row.setZero();
-    row.segment<2>(kShift) = -n.transpose();
-    row[kTau] = speed * tau / (at * p.omega);
-    add(row, n.dot(p.commanded - p.foot) - speed * (tangent + (tau - at) / (at * p.omega)));
+  // |foothold - foot| <= v T. A foot that has to be faster already may keep its speed. T is concave
+  // in tau: its tangents at a few times, evenly spaced, let it be a hundredth of a second faster.
+  const double speed = std::max(p.foot_speed, (p.commanded + shift - p.foot).norm() / remaining);
+  for (int k = 0; k < kTangents; ++k) {
+    const double time = p.shortest + (p.longest - p.shortest) * k / (kTangents - 1);
+    const double at = std::exp(p.omega * time);
+    for (int i = 0; i < kSpeedDirections; ++i) {
+      const double angle = 2.0 * M_PI * i / kSpeedDirections;
+      const Eigen::Vector2d n(std::cos(angle), std::sin(angle));
+      row.setZero();
+      row.segment<2>(kShift) = -n.transpose();
+      row[kTau] = speed * tau / (at * p.omega);
+      add(row, n.dot(p.commanded - p.foot) - speed * (time + (tau - at) / (at * p.omega)));
+    }
   }
   lower_.setConstant(-kInfinity);
   upper_.setConstant(kInfinity);
@@ -134,28 +134,21 @@ void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vecto
 
 bool StepQp::solve(const StepProblem& p, const StepWeights& w, Eigen::Vector2d& shift,
                    double& remaining) {
-  double tangent = remaining;
-  Eigen::Vector2d found = shift;
-  for (int i = 0; i < kTangents; ++i) {
-    fill(p, w, shift, remaining, tangent);
-    qp::Problem problem;
-    problem.H = H_;
-    problem.g = g_;
-    problem.C = C_.topRows(rows_);
-    problem.l = qp::VectorView(l_.data(), rows_);
-    problem.u = qp::VectorView(u_.data(), rows_);
-    problem.lb = lower_;
-    problem.ub = upper_;
-    const qp::Result result = solver_.solve(problem, {.warm_start = i > 0});
-    if (!result.solved()) return false;
-    found = {result.x[kShift], result.x[kShift + 1]};
-    const double next = remaining + std::log1p(result.x[kTau]) / p.omega;
-    const bool settled = std::abs(next - tangent) < 1e-3;
-    tangent = next;
-    if (settled) break;
-  }
-  shift = found;
-  remaining = tangent;
+  fill(p, w, shift, remaining);
+  qp::Problem problem;
+  problem.H = H_;
+  problem.g = g_;
+  problem.C = C_.topRows(rows_);
+  problem.l = qp::VectorView(l_.data(), rows_);
+  problem.u = qp::VectorView(u_.data(), rows_);
+  problem.lb = lower_;
+  problem.ub = upper_;
+  qp::Options options;
+  options.warm_start = false;
+  const qp::Result result = solver_.solve(problem, options);
+  if (!result.solved()) return false;
+  shift = {result.x[kShift], result.x[kShift + 1]};
+  remaining += std::log1p(result.x[kTau]) / p.omega;
   return true;
 }
 

@@ -21,11 +21,11 @@ struct HalfPlane {
 struct StepProblem {
   double omega = 3.0;
   double kappa = 1.0;
-  Eigen::Vector2d com, icp;   // measured
-  Eigen::Vector2d cmp;        // constant one that the plan amounts to, inside cmp_region
-  Eigen::Vector2d icp_end;    // of the plan at touchdown, with shift D0
-  double gamma = 1.0;         // d icp_end / d shift
-  Eigen::Vector2d commanded;  // foothold
+  Eigen::Vector2d com, icp;     // measured
+  Eigen::Vector2d cmp;          // constant one that the plan amounts to, inside cmp_region
+  Eigen::Vector2d icp_end;      // of the plan at touchdown, with shift D0
+  double gamma = 1.0;           // d icp_end / d shift
+  Eigen::Vector2d commanded;    // foothold
   Eigen::Vector2d start_shift;  // D0, with which the swing began
   Eigen::Vector2d foot;         // where the swing foot is
   walking::ConvexPolygon cmp_region;
@@ -45,10 +45,10 @@ struct StepProblem {
 };
 
 struct StepWeights {
-  double cmp;      // of a moved CMP, against a foothold moved as far
-  double change;   // of what was decided in the tick before
-  double time;     // 1/s^2 ... m^2 of shift that a second costs
-  double missed;   // of the ICP missed at touchdown: what the steps after have to make good for
+  double cmp;     // of a moved CMP, against a foothold moved as far
+  double change;  // of a change of what was decided before, likewise
+  double time;    // m^2/s^2, of an earlier or later touchdown: the way of the foot in that time
+  double missed;  // of the ICP missed at touchdown
 };
 
 // Place and time of the next foothold and the CMP until then, from one convex QP. With the growth
@@ -71,14 +71,15 @@ class StepQp {
  private:
   static constexpr int kUnknowns = 7;  // D, m, v, tau / tau' - 1
   static constexpr int kSpeedDirections = 8;
-  static constexpr int kRows =
-      3 * walking::ConvexPolygon::kCapacity + CaptureSet::kDirections + kSpeedDirections + 1;
+  static constexpr int kTangents = 4;
+  static constexpr int kRows = 3 * walking::ConvexPolygon::kCapacity + CaptureSet::kDirections +
+                               kTangents * kSpeedDirections + 1;
   using Row = Eigen::Matrix<double, 1, kUnknowns>;
 
   void add(const Row& row, double least);  // row . x >= least
   void add_foothold_rows(const walking::ConvexPolygon& polygon, const Eigen::Vector2d& commanded);
   void fill(const StepProblem& p, const StepWeights& w, const Eigen::Vector2d& shift,
-            double remaining, double tangent);
+            double remaining);
 
   qp::DenseSolver solver_;
   Eigen::Matrix<double, kUnknowns, kUnknowns> H_;
