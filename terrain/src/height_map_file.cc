@@ -20,6 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMaxText = 64 * 1024;  // bytes of the YAML
 constexpr int kMaxValue = 65535;
+constexpr double kLeastStep = 1e-7;           // m
+constexpr double kLeastVarianceStep = 1e-12;  // m^2
 constexpr std::array<const char*, 8> kKeys = {"image",        "resolution",    "origin",
                                               "height_scale", "height_offset", "unknown",
                                               "variance",     "variance_scale"};
@@ -138,8 +140,8 @@ struct Scale {
 };
 
 // Steps over the range of the values, so that the largest value is left for "unknown".
-Scale scale_over(double low, double high) {
-  return {std::max(high - low, 1e-6) / (kMaxValue - 1), low};
+Scale scale_over(double low, double high, double least_step) {
+  return {std::max((high - low) / (kMaxValue - 1), least_step), low};
 }
 
 }  // namespace
@@ -153,11 +155,12 @@ std::optional<HeightMap> load_height_map(const std::string& file, std::string* e
   Grid grid;
   grid.resolution = keys.number("resolution", 0.002, 1.0, {});
   grid.origin = keys.origin();
-  const double step = keys.number("height_scale", 1e-7, 1.0, {});
+  const double step = keys.number("height_scale", kLeastStep, 1.0, {});
   const double offset = keys.number("height_offset", -1e4, 1e4, 0.0);
   const double unknown = keys.number("unknown", -1.0, kMaxValue, kMaxValue);
   const bool has_variance = keys.has("variance");
-  const double variance_step = has_variance ? keys.number("variance_scale", 1e-12, 1.0, {}) : 0.0;
+  const double variance_step =
+      has_variance ? keys.number("variance_scale", kLeastVarianceStep, 1.0, {}) : 0.0;
   GreyImage heights, variances;
   const auto read = [&](const char* key, GreyImage* image) {
     const std::string name = keys.text(key);
@@ -202,8 +205,8 @@ std::string save_height_map(const HeightMap& map, const std::string& file) {
     }
   }
   if (!(low <= high)) low = high = 0.0;
-  const Scale height = scale_over(low, high);
-  const Scale variance = scale_over(0.0, most);
+  const Scale height = scale_over(low, high, kLeastStep);
+  const Scale variance = scale_over(0.0, most, kLeastVarianceStep);
   GreyImage heights{grid.columns, grid.rows, {}};
   heights.pixels.assign(std::size_t{1} * grid.columns * grid.rows, kMaxValue);
   GreyImage variances = heights;
