@@ -15,7 +15,7 @@ struct GreyImage {
   std::vector<std::uint16_t> pixels;
 };
 
-inline constexpr int kMaxImageSide = 4096;
+inline constexpr int kMaxImageSide = 2048;
 
 // "" or what is wrong.
 std::string read_grey_png(const std::string& file, GreyImage* image);

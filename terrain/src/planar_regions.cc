@@ -79,14 +79,19 @@ class Growing {
     if (!grid_.contains(i - kWindow, j - kWindow) || !grid_.contains(i + kWindow, j + kWindow)) {
       return;
     }
-    PlaneFit fit({i, j});
-    for (int v = j - kWindow; v <= j + kWindow; ++v) {
-      for (int u = i - kWindow; u <= i + kWindow; ++u) {
-        if (!map_.known(u, v)) return;
-        fit.add(u, v, map_.height(u, v));
+    // Least squares over a square, whose moments are known.
+    constexpr int kSide = 2 * kWindow + 1;
+    constexpr double kMoment = kSide * kWindow * (kWindow + 1) * kSide / 3.0;
+    Plane plane;
+    plane.at = Eigen::Vector2d(i, j);
+    for (int v = -kWindow; v <= kWindow; ++v) {
+      for (int u = -kWindow; u <= kWindow; ++u) {
+        const double height = map_.height(i + u, j + v);
+        if (!(height == height)) return;
+        plane.height += height / (kSide * kSide);
+        plane.slope += height / kMoment * Eigen::Vector2d(u, v);
       }
     }
-    const Plane plane = fit.plane();
     for (int v = j - kWindow; v <= j + kWindow; ++v) {
       for (int u = i - kWindow; u <= i + kWindow; ++u) {
         if (std::abs(map_.height(u, v) - plane.z(u, v)) > rules_.roughness) return;
