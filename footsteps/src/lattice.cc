@@ -33,11 +33,17 @@ constexpr double kWidthCost = 20.0;
 constexpr double kHeightCost = 12.0;
 constexpr double kTurnCost = 0.15;
 constexpr double kBackwardCost = 0.3;
+// What a swing over uneven ground costs beside that: for its time; squared, for the way of the foot
+// and for how much higher or lower it ends; and for a raised apex, in pelvis heights.
+constexpr double kSlowCost = 0.5;
+constexpr double kWayCost = 2.5;
+constexpr double kRiseCost = 6.0;
+constexpr double kRaisedCost = 8.0;
 // By which the estimate is inflated, search by search.
-constexpr double kInflations[] = {2.5, 1.6, 1.2};
+constexpr double kInflations[] = {8.0, 5.0, 3.0};
 // Once there is a way: so much more is spent on a better one, over what it took.
 constexpr int kImprove = 2;
-constexpr int kLeastImprove = 400;
+constexpr int kLeastImprove = 3000;
 constexpr double kGoalReach = 0.15;  // m, by which footholds at the goal may be beside it
 
 constexpr double kLongestGoal = 0.45;  // pelvis heights, of the steps to the goal itself
@@ -198,6 +204,17 @@ class Lattice::Search {
                        stance_of(node.parent), stands(node.parent, node.side), parameters_, step);
   }
 
+  // Of a swing over uneven ground: of its time, its way, its rise and its apex.
+  double swing_cost(const Node& node, const GaitdFootstep& step) const {
+    if (step.swing_duration <= parameters_[Gait::kSwingDuration]) return 0.0;
+    const GaitdPose from = stands(node.parent, node.side);
+    const Eigen::Vector3d way =
+        (sdk::view(step.pose.position) - sdk::view(from.position)) / steps_.unit();
+    const double raised = (step.swing_height - parameters_[Gait::kSwingHeight]) / steps_.unit();
+    return kSlowCost + kWayCost * way.head<2>().squaredNorm() + kRiseCost * way.z() * way.z() +
+           kRaisedCost * raised;
+  }
+
   void begin(double inflation) {
     queue_ = {};
     nodes_.clear();
@@ -232,6 +249,13 @@ class Lattice::Search {
         const StepState state = step_to(node, &step);
         ++tally_.steps[static_cast<std::size_t>(state)];
         if (state != StepState::kGood) continue;
+        if (const double more = node.weighed ? 0.0 : swing_cost(node, step); more > 0.0) {
+          Node weighed = node;
+          weighed.weighed = true;
+          weighed.cost += more;
+          push(std::move(weighed), inflation);
+          continue;
+        }
       }
       closed_.insert(node.key);
       nodes_.push_back(node);

@@ -16,8 +16,9 @@ namespace gaitd::footsteps {
 
 // A* over footsteps whose soles are on a lattice of places and headings, aligned with the goal. The
 // estimate of what is left is inflated at first, for a way soon, and less so in each search after
-// it, for a better one (ARA*). A step is checked when it is taken out of the queue, not for each of
-// the thousands that are put in. The same problem has the same answer, whatever the machine.
+// it, for a better one (ARA*). A step is checked, and its swing weighed, when it is taken out of
+// the queue, not for each of the thousands that are put in. The same problem has the same answer,
+// whatever the machine.
 class Lattice : public FootstepPlanner {
  public:
   Lattice(std::shared_ptr<StepMaker> steps, const PlannerOptions& options);
@@ -38,9 +39,10 @@ class Lattice : public FootstepPlanner {
     Place place;
     std::uint64_t key;
     Foothold foothold;
-    int parent;   // the foot that it steps from; -1: where the plan begins
-    double cost;  // steps, up to here
-    bool goal;    // a sole of the goal, exactly
+    int parent;            // the foot that it steps from; -1: where the plan begins
+    double cost;           // steps, up to here
+    bool goal;             // a sole of the goal, exactly
+    bool weighed = false;  // the cost of its swing is in it
   };
   struct Queued {
     double rank;

@@ -61,6 +61,8 @@ StepState StepMaker::make(int side, const GaitdPose& pose, const GaitdPose& stan
   const bool even = footholds_.highest_between(from, pose) < lower_end + kEven;
   const bool level = std::abs(height) < kLevel && std::abs(rise) < kLevel && even &&
                      tilt_of(pose) < kSteep && tilt_of(stance) < kSteep;
+  const double way = (sdk::view(pose.position) - sdk::view(from.position)).head<2>().norm();
+  if (!level && way > longest_way()) return StepState::kReach;
   step->swing_duration = parameters[Gait::kSwingDuration] * (level ? 1.0 : kSlowSwing);
   step->transfer_duration = parameters[Gait::kTransferDuration] * (level ? 1.0 : kSlowTransfer);
   step->swing_height = parameters[Gait::kSwingHeight];

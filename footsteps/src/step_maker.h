@@ -33,6 +33,8 @@ class StepMaker {
   // it stood itself (m). Further apart the gait machine accepts more than walks have been tried on.
   double highest_step() const { return 0.24 * unit_; }
   double highest_rise() const { return 0.36 * unit_; }
+  // m, from one foothold of a foot to the next where they are not level.
+  double longest_way() const { return 0.6 * unit_; }
 
  private:
   bool swings_clear(const GaitdFootstep& step, const GaitdPose& from) const;
