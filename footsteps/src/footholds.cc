@@ -21,7 +21,9 @@ constexpr double kRim = 0.03;         // m, around the sole
 constexpr double kRoughness = 0.012;  // m, of the ground from the plane of the sole
 constexpr double kEdge = 0.02;        // m, by which the ground beside the sole is lower at an edge
 constexpr double kRiser = 0.03;       // m, by which it is too high beside the sole
-constexpr double kBody = 0.24;        // m, half width of the body
+// Half of what a robot is wide, pelvis heights: its legs, and its arms at its sides.
+constexpr double kLegs = 0.26;
+constexpr double kArms = 0.54;
 // Steps that a foothold is worse by: with edges all around it, as rough as allowed, as steep as
 // allowed.
 constexpr double kEdgeCost = 3.0;
@@ -140,7 +142,11 @@ Footholds::Footholds(const GaitdModel& model, std::shared_ptr<const terrain::Hei
   regions_ = terrain::find_planar_regions(*map_);
   const double resolution = map_->grid().resolution;
   near_foot_ = dilated(*map_, static_cast<int>(std::ceil(half_width(model.feet[0]) / resolution)));
-  near_body_ = dilated(*map_, static_cast<int>(std::ceil(kBody / resolution)));
+  const auto cells = [&](double width) {
+    return static_cast<int>(std::ceil(width * model.nominal_pelvis_height / resolution));
+  };
+  near_legs_ = dilated(*map_, cells(kLegs));
+  near_arms_ = dilated(*map_, cells(kArms));
 }
 
 double Footholds::height(const Vector2d& p) const {
@@ -228,8 +234,12 @@ double Footholds::highest_between(const GaitdPose& from, const GaitdPose& to) co
   return highest;
 }
 
-double Footholds::highest_around(const Vector2d& p) const {
-  return map_ ? look_up(near_body_, map_->grid(), p) : -INFINITY;
+double Footholds::highest_near_legs(const Vector2d& p) const {
+  return map_ ? look_up(near_legs_, map_->grid(), p) : -INFINITY;
+}
+
+double Footholds::highest_near_arms(const Vector2d& p) const {
+  return map_ ? look_up(near_arms_, map_->grid(), p) : -INFINITY;
 }
 
 // From the convex part in which the foothold is furthest from the edge. `free`: from any edge.

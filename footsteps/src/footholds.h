@@ -50,8 +50,9 @@ class Footholds {
   // m, W: the highest ground within the width of a foot of the way of a sole from `from` to `to`.
   // -infinity: nothing is known to be there.
   double highest_between(const GaitdPose& from, const GaitdPose& to) const;
-  // m, W: the highest ground around `p`, as wide as the body.
-  double highest_around(const Eigen::Vector2d& p) const;
+  // m, W: the highest ground around `p` as far as the legs reach to the side, or the arms.
+  double highest_near_legs(const Eigen::Vector2d& p) const;
+  double highest_near_arms(const Eigen::Vector2d& p) const;
 
   // Where the sole may be shifted and stay on the plane that it stands on; a footstep without edges
   // nearby gets none.
@@ -72,7 +73,8 @@ class Footholds {
   std::array<Sole, GAITD_MAX_FEET> soles_;
   terrain::PlanarRegions regions_;
   std::vector<float> near_foot_;  // by cell: highest ground within half a foot
-  std::vector<float> near_body_;  // likewise, of the body
+  std::vector<float> near_legs_;  // likewise, of the legs
+  std::vector<float> near_arms_;  // likewise, of the arms
 };
 
 }  // namespace gaitd::footsteps

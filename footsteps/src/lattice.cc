@@ -10,6 +10,7 @@
 
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
+#include "step_costs.h"
 
 namespace gaitd::footsteps {
 namespace {
@@ -26,33 +27,16 @@ constexpr double kHeading = 2.0 * M_PI / kHeadings;
 // heights.
 constexpr double kAhead[] = {-0.22, -0.11, 0.0, 0.11, 0.22, 0.33, 0.43, 0.54};
 constexpr double kOutwards[] = {-0.02, 0.05, 0.13, 0.22};
-// What a step costs beside itself, in steps: squared, where it is one pelvis height long, wide or
-// high; for each turn by a heading; and backwards.
-constexpr double kLengthCost = 1.5;
-constexpr double kWidthCost = 20.0;
-constexpr double kHeightCost = 12.0;
-constexpr double kTurnCost = 0.15;
-constexpr double kBackwardCost = 0.3;
-// What a swing over uneven ground costs beside that: for its time; squared, for the way of the foot
-// and for how much higher or lower it ends; and for a raised apex, in pelvis heights.
-constexpr double kSlowCost = 0.5;
-constexpr double kWayCost = 2.5;
-constexpr double kRiseCost = 6.0;
-constexpr double kRaisedCost = 8.0;
+// What a pelvis height of uneven ground costs in the estimate.
+constexpr double kUneven = 8.0;
 // By which the estimate is inflated, search by search.
-constexpr double kInflations[] = {8.0, 5.0, 3.0};
+constexpr double kInflations[] = {3.0, 2.0, 1.5};
 // Once there is a way: so much more is spent on a better one, over what it took.
 constexpr int kImprove = 2;
-constexpr int kLeastImprove = 3000;
+constexpr int kLeastImprove = 6000;
 constexpr double kGoalReach = 0.15;  // m, by which footholds at the goal may be beside it
 
 constexpr double kLongestGoal = 0.45;  // pelvis heights, of the steps to the goal itself
-
-// Pelvis heights, and headings.
-double stride_cost(double ahead, double outwards, double turn) {
-  return 1.0 + kLengthCost * ahead * ahead + kWidthCost * outwards * outwards + kTurnCost * turn +
-         (ahead < 0.0 ? kBackwardCost : 0.0);
-}
 
 double wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 
@@ -73,6 +57,14 @@ Lattice::Lattice(std::shared_ptr<StepMaker> steps, const PlannerOptions& options
       }
     }
   }
+  per_metre_ = std::numeric_limits<double>::infinity();
+  for (const Stride& s : strides_) {
+    if (s.ahead > 0.0) per_metre_ = std::min(per_metre_, s.cost / s.ahead);
+  }
+  if (steps_->footholds().has_map()) {
+    way_ =
+        std::make_unique<WayEstimate>(steps_->footholds().map(), unit, per_metre_, kUneven / unit);
+  }
 }
 
 // One problem.
@@ -89,10 +81,6 @@ class Lattice::Search {
     const double dx = goal.x - from.x, dy = goal.y - from.y;
     const bool near = std::hypot(dx, dy) < steps_.unit();
     goal_ = {goal.x, goal.y, goal.yaw.value_or(near ? from.yaw : std::atan2(dy, dx))};
-    per_metre_ = std::numeric_limits<double>::infinity();
-    for (const Stride& s : lattice.strides_) {
-      if (s.ahead > 0.0) per_metre_ = std::min(per_metre_, s.cost / s.ahead);
-    }
   }
 
   Plan run() {
@@ -165,7 +153,8 @@ class Lattice::Search {
     const double distance = std::hypot(end.x - p.x, end.y - p.y);
     const double turn = std::abs(wrapped(end.yaw - p.yaw));
     // Each step takes one foot on, past the other one; the turn goes on meanwhile.
-    return std::max(per_metre_ * distance * 0.98, turn / (1.5 * kHeading));
+    const double way = lattice_.way_ ? lattice_.way_->between({p.x, p.y}, {end.x, end.y}) : 0.0;
+    return std::max({lattice_.per_metre_ * distance, way, turn / (1.5 * kHeading)});
   }
 
   std::uint64_t key_of(int side, int i, int j, int heading) const {
@@ -204,17 +193,6 @@ class Lattice::Search {
                        stance_of(node.parent), stands(node.parent, node.side), parameters_, step);
   }
 
-  // Of a swing over uneven ground: of its time, its way, its rise and its apex.
-  double swing_cost(const Node& node, const GaitdFootstep& step) const {
-    if (step.swing_duration <= parameters_[Gait::kSwingDuration]) return 0.0;
-    const GaitdPose from = stands(node.parent, node.side);
-    const Eigen::Vector3d way =
-        (sdk::view(step.pose.position) - sdk::view(from.position)) / steps_.unit();
-    const double raised = (step.swing_height - parameters_[Gait::kSwingHeight]) / steps_.unit();
-    return kSlowCost + kWayCost * way.head<2>().squaredNorm() + kRiseCost * way.z() * way.z() +
-           kRaisedCost * raised;
-  }
-
   void begin(double inflation) {
     queue_ = {};
     nodes_.clear();
@@ -247,9 +225,12 @@ class Lattice::Search {
       GaitdFootstep step;
       if (node.parent >= 0) {
         const StepState state = step_to(node, &step);
-        ++tally_.steps[static_cast<std::size_t>(state)];
+        tally_.count(state);
         if (state != StepState::kGood) continue;
-        if (const double more = node.weighed ? 0.0 : swing_cost(node, step); more > 0.0) {
+        if (const double more = node.weighed ? 0.0
+                                             : swing_cost(step, stands(node.parent, node.side),
+                                                          steps_.unit(), parameters_);
+            more > 0.0) {
           Node weighed = node;
           weighed.weighed = true;
           weighed.cost += more;
@@ -299,7 +280,7 @@ class Lattice::Search {
       const Place place{goal_.x + cell_ * i, goal_.y + cell_ * j,
                         wrapped(goal_.yaw + heading * kHeading)};
       const Foothold& found = foothold(key, side, place);
-      ++tally_.footholds[static_cast<std::size_t>(found.state)];
+      tally_.count(found.state);
       if (found.state == FootholdState::kGood) {
         add({side, place, key, found, at, stride.cost, false}, inflation);
       }
@@ -333,10 +314,10 @@ class Lattice::Search {
     const Node& from = nodes_[node.parent];
     const double height = node.foothold.z - from.foothold.z;
     if (std::abs(height) > steps_.highest_step()) {
-      ++tally_.steps[static_cast<std::size_t>(StepState::kReach)];
+      tally_.count(StepState::kReach);
       return;
     }
-    node.cost += from.cost + node.foothold.cost + kHeightCost * height * height;
+    node.cost += from.cost + node.foothold.cost + height_cost(height / steps_.unit());
     if (node.cost < best_cost_) push(std::move(node), inflation);
   }
 
@@ -350,30 +331,15 @@ class Lattice::Search {
   }
 
   std::string why_not() const {
-    const auto count = [](int n, const char* what) {
-      return n > 0 ? std::to_string(n) + " " + what + ", " : std::string();
-    };
-    const auto of = [this](FootholdState s) {
-      return tally_.footholds[static_cast<std::size_t>(s)];
-    };
-    const auto step = [this](StepState s) { return tally_.steps[static_cast<std::size_t>(s)]; };
     std::string text = queue_.empty() ? "no way"
                                       : "no way found in " + std::to_string(expansions_) +
                                             " expansions (goto.expansions)";
     char place[160];
     std::snprintf(place, sizeof(place), " to (%.2f, %.2f): footsteps get as far as (%.2f, %.2f); ",
                   goal_.x, goal_.y, nearest_place_.x, nearest_place_.y);
-    text += place;
-    std::string reasons = count(of(FootholdState::kRough), "places not flat enough for a sole") +
-                          count(of(FootholdState::kSteep), "too steep") +
-                          count(of(FootholdState::kBlocked), "beside a riser") +
-                          count(of(FootholdState::kUnknown), "not known") +
-                          count(step(StepState::kReach), "steps out of reach") +
-                          count(step(StepState::kSwing), "over too high ground") +
-                          count(step(StepState::kBody), "too near to high ground");
-    if (reasons.empty()) return text + "nothing leads on from there";
-    reasons.resize(reasons.size() - 2);
-    return text + "beyond it: " + reasons;
+    const std::string reasons = tally_.text();
+    return text + place +
+           (reasons.empty() ? "nothing leads on from there" : "beyond it: " + reasons);
   }
 
   const Lattice& lattice_;
@@ -383,7 +349,6 @@ class Lattice::Search {
   const double cell_;  // m
   Place goal_;
   std::array<Foothold, GAITD_MAX_FEET> goal_footholds_;
-  double per_metre_;  // least cost of a step over what it leads on
 
   struct Later {
     bool operator()(const Queued& a, const Queued& b) const {

@@ -11,6 +11,8 @@
 
 #include "gaitd/footsteps/planner.h"
 #include "step_maker.h"
+#include "tally.h"
+#include "way_estimate.h"
 
 namespace gaitd::footsteps {
 
@@ -49,13 +51,11 @@ class Lattice : public FootstepPlanner {
     std::uint32_t order;  // of equals the first
     Node node;
   };
-  struct Tally {                     // of what is in the way
-    std::array<int, 5> footholds{};  // by FootholdState
-    std::array<int, 4> steps{};      // by StepState
-  };
   class Search;
 
   std::vector<Stride> strides_;
+  double per_metre_;                  // least cost of a stride over what it leads on
+  std::unique_ptr<WayEstimate> way_;  // null: without a map
   std::shared_ptr<StepMaker> steps_;
   const PlannerOptions options_;
 };

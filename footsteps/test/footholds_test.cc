@@ -80,8 +80,9 @@ TEST(Footholds, TheWayOfASwingIsAsHighAsWhatItPasses) {
   };
   EXPECT_NEAR(map.highest_between(pose(0.0, 0.1), pose(1.0, 0.1)), 0.12, 1e-6);
   EXPECT_NEAR(map.highest_between(pose(0.0, -0.6), pose(1.0, -0.6)), 0.0, 1e-6);
-  EXPECT_NEAR(map.highest_around({0.3, 0.0}), 0.12, 1e-6);
-  EXPECT_NEAR(map.highest_around({0.0, 0.0}), 0.0, 1e-6);
+  EXPECT_NEAR(map.highest_near_legs({0.3, 0.0}), 0.12, 1e-6);
+  EXPECT_NEAR(map.highest_near_legs({0.0, 0.0}), 0.0, 1e-6);
+  EXPECT_NEAR(map.highest_near_arms({0.0, 0.0}), 0.12, 1e-6);
 }
 
 TEST(Footholds, TheLandingRegionKeepsTheSoleOnItsBlock) {
