@@ -29,7 +29,7 @@ void GotoTask::drop() {
 }
 
 void GotoTask::release_plan() {
-  if (plan_ != nullptr) port_->retire(plan_);
+  if (plan_ != nullptr && port_ != nullptr) port_->retire(plan_);
   plan_ = nullptr;
 }
 
