@@ -92,6 +92,7 @@ bool write_all(Writer* writer, Failure* failure, std::FILE* file, const GreyImag
 
 std::vector<png_bytep> rows_of(std::vector<std::uint16_t>* pixels, int width, int height) {
   std::vector<png_bytep> rows;
+  rows.reserve(static_cast<std::size_t>(height));
   for (int row = 0; row < height; ++row) {
     rows.push_back(reinterpret_cast<png_bytep>(pixels->data() + std::size_t{1} * row * width));
   }
