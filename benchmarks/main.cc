@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   add_dynamics_benchmarks();
+  add_footsteps_benchmarks();
   add_qp_benchmarks();
   add_layer_benchmarks();
   add_tick_benchmarks();

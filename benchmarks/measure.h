@@ -43,6 +43,7 @@ void add(const std::string& name, Function&& function) {
 
 // One of each file.
 void add_dynamics_benchmarks();
+void add_footsteps_benchmarks();
 void add_layer_benchmarks();
 void add_qp_benchmarks();
 void add_tick_benchmarks();

@@ -8,6 +8,7 @@
 #include "cli/daemon_commands.h"
 #include "cli/doctor/doctor_command.h"
 #include "cli/drive_command.h"
+#include "cli/goto_command.h"
 #include "cli/help.h"
 #include "cli/joint_commands.h"
 #include "cli/log_commands.h"
@@ -25,6 +26,7 @@ namespace gaitd::cli {
 void add_commands(CLI::App* app, Context* context) {
   add_daemon_commands(app, context);
   add_drive_command(app, context);
+  add_goto_command(app, context);
   add_teleop_command(app, context);
   add_plugin_commands(app, context);
   add_joint_commands(app, context);

@@ -27,7 +27,7 @@ const std::vector<Group>& groups() {
   static const std::vector<Group> kGroups = {
       {"Command the robot",
        {"status", "watch", "view", "arm", "disarm", "estop", "reset", "mode", "walk", "steps",
-        "drive", "teleop", "pose", "pause", "resume", "stop", "abort"}},
+        "drive", "goto", "teleop", "pose", "pause", "resume", "stop", "abort"}},
       {"Play scenarios", {"run", "campaign", "compare", "sim"}},
       {"Read logs", {"report", "log", "doctor"}},
       {"Set up", {"robot", "param", "plugin", "joint", "calibrate", "completion"}}};
@@ -48,6 +48,7 @@ const std::map<std::string, const char*>& examples() {
       {"walk", "gaitctl walk --steps 6 --length 0.3"},
       {"steps", "gaitctl steps footsteps.yaml --replace"},
       {"drive", "gaitctl drive --forward 0.3 --turn 0.2 --for 5"},
+      {"goto", "gaitctl goto 2.0 -0.5 1.57"},
       {"teleop", "gaitctl teleop"},
       {"pose pelvis", "gaitctl pose pelvis --z -0.05 --pitch 0.1 --duration 2"},
       {"pause", "gaitctl pause"},

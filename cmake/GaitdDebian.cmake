@@ -100,7 +100,7 @@ set(CPACK_DEBIAN_GAITD_PACKAGE_CONTROL_EXTRA
 set(CPACK_DEBIAN_GAITD-DEV_PACKAGE_NAME gaitd-dev)
 set(CPACK_DEBIAN_GAITD-DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_GAITD-DEV_PACKAGE_DEPENDS
-    "gaitd (= ${PROJECT_VERSION}-1), libeigen3-dev, nlohmann-json3-dev, g++, cmake")
+    "gaitd (= ${PROJECT_VERSION}-1), libeigen3-dev, libpng-dev, libyaml-cpp-dev, nlohmann-json3-dev, g++, cmake")
 set(CPACK_DEBIAN_GAITD-MUJOCO_PACKAGE_NAME gaitd-mujoco)
 set(CPACK_DEBIAN_GAITD-MUJOCO_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_GAITD-MUJOCO_DESCRIPTION "MuJoCo as a second physics engine of gaitd")

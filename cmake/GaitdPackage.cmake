@@ -1,6 +1,6 @@
 # What authors of plugins need, in the build tree and installed: the CMake package gaitd (headers,
 # static libraries without an ABI promise, gaitd_plugin()), and what `gaitctl plugin new` begins with.
-foreach(library interfaces dynamics qp walking json_reader sim)
+foreach(library interfaces dynamics qp terrain walking json_reader sim)
   if(NOT TARGET gaitd_${library})
     return()
   endif()
@@ -23,7 +23,7 @@ write_basic_package_version_file(${package}/gaitd-config-version.cmake
 install(FILES ${package}/gaitd-build.cmake ${package}/gaitd-config.cmake
         ${package}/gaitd-config-version.cmake ${package}/GaitdPlugin.cmake
         DESTINATION lib/cmake/gaitd COMPONENT dev)
-foreach(folder interfaces dynamics qp walking sim/plant)
+foreach(folder interfaces dynamics qp terrain walking sim/plant)
   install(DIRECTORY ${folder}/include/gaitd DESTINATION include COMPONENT dev)
 endforeach()
 

@@ -67,6 +67,7 @@ void Application::read_configuration(Issues* all) {
     }
   }
   config_ = read_daemon_config(&settings_, &issues);
+  read_height_map(&issues);
   read_backend(&issues);
   if (scenario_ && options_.robot.empty()) config_.robot = scenario_->robot;
   if (options_.require_rt) config_.realtime.require = true;
@@ -302,7 +303,8 @@ int Application::run() {
                                  .estop = &estop_,
                                  .bridge = bridge_.get(),
                                  .scenario = player_.get(),
-                                 .swaps = &swaps_->port()};
+                                 .swaps = &swaps_->port(),
+                                 .plans = &plans_->port()};
   loop_ = std::make_unique<ControlLoop>(options, parts);
   status_->set_pulse(&loop_->pulse());
   running_loop_ = loop_.get();
@@ -323,6 +325,7 @@ int Application::run() {
   watch.join();
   manager.reset();
   swaps_->stop();
+  plans_->stop();
   live_->stop();
   server_.reset();
   const double simulated = static_cast<double>(report.ticks) * config_.period;

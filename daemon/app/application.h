@@ -15,6 +15,7 @@
 #include "daemon/config/scenario.h"
 #include "daemon/control/control_loop.h"
 #include "daemon/control/signals.h"
+#include "daemon/goto/plan_service.h"
 #include "daemon/host/loaded_plugin.h"
 #include "daemon/host/plugin_directory.h"
 #include "daemon/live/live_feed.h"
@@ -69,6 +70,7 @@ class Application {
   bool load_backend();
   bool start_telemetry();
   void prepare_swaps();
+  void read_height_map(Issues* issues);
   void prepare_status();
   nlohmann::json describe_robot() const;
   bool start_server();
@@ -102,6 +104,8 @@ class Application {
   EstopFlag estop_;
   std::unique_ptr<CommandBridge> bridge_;
   std::unique_ptr<SwapService> swaps_;
+  std::shared_ptr<const terrain::HeightMap> height_map_;  // of goto.height_map; null: none
+  std::unique_ptr<PlanService> plans_;
   std::unique_ptr<Pipeline> pipeline_;
   std::unique_ptr<TickWatch> tick_watch_;
   RealtimeReport realtime_;

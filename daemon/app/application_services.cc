@@ -11,11 +11,13 @@
 #include "daemon/app/metadata.h"
 #include "daemon/app/terminal_log.h"
 #include "daemon/config/command_parse.h"
+#include "daemon/config/scenario_ground.h"
 #include "daemon/control/command_json.h"
 #include "daemon/control/parameter_methods.h"
 #include "daemon/host/layers.h"
 #include "daemon/host/plugin_json.h"
 #include "daemon/telemetry/input.h"
+#include "gaitd/terrain/height_map_file.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -137,6 +139,22 @@ void Application::prepare_swaps() {
   swaps_->start();
 }
 
+// A path is meant from the folder of the file that names it, where there is such a file.
+void Application::read_height_map(Issues* issues) {
+  constexpr const char* kKey = "goto.height_map";
+  if (config_.go_to.height_map.empty()) return;
+  const fs::path named = config_.go_to.height_map;
+  std::error_code failed;
+  const fs::path beside = fs::path(place_of(kKey).file).parent_path() / named;
+  const fs::path file = fs::is_regular_file(beside, failed) ? beside : named;
+  std::string error;
+  if (auto map = terrain::load_height_map(file.string(), &error)) {
+    height_map_ = std::make_shared<const terrain::HeightMap>(std::move(*map));
+  } else {
+    issues->add_text(place_of(kKey), kKey, error);
+  }
+}
+
 void Application::prepare_status() {
   const bool lockstep = config_.clock == GAITD_CLOCK_LOCKSTEP;
   const nlohmann::json scenario = scenario_ ? nlohmann::json(scenario_->name) : nlohmann::json();
@@ -183,6 +201,10 @@ bool Application::start_server() {
   add_parameter_methods(&methods, bridge_.get(), &parameters_);
   prepare_swaps();
   swaps_->add_methods(&methods);
+  auto map = height_map_ || !scenario_ ? height_map_ : ground_map(*scenario_);
+  plans_ = std::make_unique<PlanService>(PlanService::Parts{
+      &robot_->model, std::move(map), config_.go_to.planner, {config_.go_to.expansions}});
+  plans_->start();
   prepare_status();
   methods.add_snapshot("status", [this] { return status_->status(); });
   methods.add_snapshot("joint.list", [this] { return status_->joints(); });

@@ -32,6 +32,14 @@ enum class CommandType : std::uint8_t {
   kJointTest,  // one joint, a small motion there and back, while disarmed
   kPose,       // of the pelvis, while standing
   kDrive,      // walk at a velocity
+  kGoto,       // footsteps to a place are planned, and replace those ahead
+};
+
+// Where the middle of the feet is to be, W.
+struct GotoTarget {
+  double x = 0.0, y = 0.0;  // m
+  double yaw = 0.0;         // rad
+  bool has_yaw = false;     // false: as it comes
 };
 
 struct JointTest {
@@ -55,6 +63,7 @@ struct Command {
   GaitdDisturbance push;
   JointTest joint_test;
   walking::PoseCommand pose;
+  GotoTarget target;
   int parameter_index = -1;  // into the rows of LiveParameters
   double parameter_value = 0.0;
   int swap_layer = -1;              // GAITD_LAYER_*

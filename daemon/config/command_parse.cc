@@ -102,6 +102,15 @@ void read_drive(MapReader* map, bool holds, walking::VelocityCommand* drive) {
   }
 }
 
+void read_goto(MapReader* map, GotoTarget* target) {
+  map->require({"x", "y"});
+  target->x = map->number("x", kPositionBounds).value_or(0.0);
+  target->y = map->number("y", kPositionBounds).value_or(0.0);
+  const auto yaw = map->number("yaw", {-100.0, 100.0, "rad"});
+  target->has_yaw = yaw.has_value();
+  target->yaw = yaw.value_or(0.0);
+}
+
 void read_contact_polygon(MapReader* map, GaitdFootstep* footstep) {
   const std::vector<NodePtr> nodes = map->list("contact_polygon", 3, GAITD_MAX_FOOT_POINTS);
   const std::string path = map->path_of("contact_polygon");
@@ -232,8 +241,8 @@ void read_pose(MapReader* map, walking::PoseCommand* pose) {
 
 const std::vector<std::string>& command_methods() {
   static const std::vector<std::string> kMethods = [] {
-    std::vector<std::string> names = {"mode",    "walk", "drive",    "velocity",  "footsteps",
-                                      "replace", "pose", "sim.push", "joint.test"};
+    std::vector<std::string> names = {"mode",      "walk",    "drive", "velocity", "goto",
+                                      "footsteps", "replace", "pose",  "sim.push", "joint.test"};
     for (const PlainMethod& plain : kPlainMethods) names.emplace_back(plain.name);
     std::sort(names.begin(), names.end());
     return names;
@@ -262,6 +271,9 @@ std::optional<Command> parse_command(std::string_view method, const NodePtr& par
   } else if (method == "drive" || method == "velocity") {
     command.type = CommandType::kDrive;
     read_drive(&map, method == "velocity", &command.drive);
+  } else if (method == "goto") {
+    command.type = CommandType::kGoto;
+    read_goto(&map, &command.target);
   } else if (method == "footsteps" || method == "replace") {
     command.type = CommandType::kFootsteps;
     read_footsteps(&map, method == "replace", &command);

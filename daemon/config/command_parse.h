@@ -21,6 +21,7 @@ const std::vector<std::string>& command_methods();
 //   walk       {steps, length, lateral, width, turn, swing, transfer, first}   (steps required)
 //   footsteps  {footsteps: [{side, x, y, z, yaw, pitch, roll, swing, transfer, swing_height,
 //               contact_polygon, landing_region}, ...], replace}
+//   goto       {x, y, yaw}
 //   replace    footsteps with replace: true
 //   sim.push   {link, force: [x, y, z], duration, point: [x, y, z]}
 //   joint.test {joint, amplitude, duration}

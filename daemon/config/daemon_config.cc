@@ -16,6 +16,7 @@ constexpr std::array<std::string_view, 2> kClocks = {"realtime", "lockstep"};
 constexpr std::array<std::string_view, 3> kProfiles = {"simulation", "hardware", "auto"};
 constexpr std::array<std::string_view, 3> kOverrunPolicies = {"skip", "catch_up", "stop"};
 constexpr std::array<std::string_view, 2> kCompressions = {"none", "zstd"};
+constexpr std::array<std::string_view, 3> kPlanners = {"auto", "lattice", "turn_walk_turn"};
 constexpr std::array<const char*, 4> kOwnKeys = {"plugins.folders", "log.file", "log.directory",
                                                  "socket"};
 constexpr int kMaxProcessor = 1023;
@@ -155,6 +156,9 @@ DaemonConfig read_daemon_config(Settings* settings, Issues* issues) {
   read_log(&reader, &config.log);
   reader.text("socket", true, &config.socket);
   read_plugin_folders(&reader, issues, &config.plugin_folders);
+  config.go_to.planner = kPlanners[reader.choice("goto.planner", kPlanners, 0)];
+  reader.integer("goto.expansions", 100, 1000000, &config.go_to.expansions);
+  reader.text("goto.height_map", true, &config.go_to.height_map);
   return config;
 }
 

@@ -48,6 +48,13 @@ struct LogConfig {
   int keep = 10;            // files of one run, the oldest are deleted; 0: all
 };
 
+// How footsteps to a place are planned.
+struct GotoConfig {
+  std::string planner = "auto";  // auto | lattice | turn_walk_turn
+  int expansions = 20000;        // of a search, at most
+  std::string height_map;        // YAML file of a map of the ground; "": of the scenario, or level
+};
+
 // etc/gaitd.yaml with everything laid over it.
 struct DaemonConfig {
   std::string backend = "simbody";
@@ -63,6 +70,7 @@ struct DaemonConfig {
   std::string socket;  // "": the default place for the user
   // From where plugin.swap may load a file by its path, besides the installed plugin folders.
   std::vector<std::string> plugin_folders;
+  GotoConfig go_to;
 };
 
 // Where gaitd writes, listens and finds plugins: not for the files of others, scenarios, robots and

@@ -60,17 +60,28 @@ std::string read_name(MapReader* root) {
   return name;
 }
 
-// Without a height the robot starts on the ground.
-GaitdStart read_start(MapReader map, const nlohmann::json& terrain, const Location& where,
+// Without a height the robot starts on the height map where there is one, else on the ground.
+GaitdStart read_start(MapReader map, const Scenario& scenario, const Location& where,
                       nlohmann::json* hoist) {
+  const nlohmann::json& terrain = scenario.terrain;
   GaitdStart start{};
   start.position[0] = map.number("x", kPositionBounds).value_or(0.0);
   start.position[1] = map.number("y", kPositionBounds).value_or(0.0);
-  start.position[2] = map.number("z", kPositionBounds).value_or(terrain.value("ground_z", 0.0));
-  if (!map.has("z") && !terrain.contains("ground_z")) {
+  std::optional<double> ground;
+  if (terrain.contains("ground_z")) ground = terrain["ground_z"].get<double>();
+  if (scenario.height_map) {
+    if (const auto s = scenario.height_map->surface({start.position[0], start.position[1]})) {
+      ground = s->height;
+    }
+  }
+  start.position[2] = map.number("z", kPositionBounds).value_or(ground.value_or(0.0));
+  if (!map.has("z") && !ground) {
     map.issues()->add(map.valid() ? map.where() : where, "start.z",
-                      "the height of the soles, as there is no terrain.ground_z", "nothing",
-                      "add it");
+                      scenario.height_map
+                          ? "the height of the soles, as neither terrain.height_map nor "
+                            "terrain.ground_z has one there"
+                          : "the height of the soles, as there is no terrain.ground_z",
+                      "nothing", "add it");
   }
   start.yaw = map.number("yaw", {-100.0, 100.0, "rad"}).value_or(0.0);
   if (map.has("hoist")) {
@@ -144,8 +155,8 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
   scenario.duration = root.number("duration", {0.001, 86400.0, "s"}).value_or(86400.0);
   scenario.seed = static_cast<std::uint64_t>(root.integer("seed", 0, 4294967295).value_or(1));
   scenario.mode = root.choice("mode", kModeNames).value_or(GAITD_MODE_STAND);
-  scenario.terrain = read_terrain(root.map("terrain"));
-  scenario.start = read_start(root.map("start"), scenario.terrain, root.where(), &scenario.hoist);
+  scenario.terrain = read_terrain(root.map("terrain"), file, &scenario.height_map);
+  scenario.start = read_start(root.map("start"), scenario, root.where(), &scenario.hoist);
   scenario.start_where = root.where(root.has("start") ? "start" : "");
   scenario.sensors = read_sensors(root.map("sensors"));
   scenario.actuators = read_actuators(root.map("actuators"));

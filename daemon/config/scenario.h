@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "daemon/verdict/expectations.h"
 #include "gaitd/abi/plugin.h"
 #include "gaitd/abi/types.h"
+#include "gaitd/terrain/height_map.h"
 
 namespace gaitd::daemon {
 
@@ -54,6 +56,7 @@ struct Scenario {
   int mode = GAITD_MODE_STAND;
   // Of the simulator's configuration, as written there.
   nlohmann::json terrain;
+  std::shared_ptr<const terrain::HeightMap> height_map;  // of the terrain; null: none
   nlohmann::json sensors;
   nlohmann::json actuators;
   nlohmann::json model_error;

@@ -2,7 +2,9 @@
 // The sections of a scenario file, one function each. Errors go to the issues of the reader.
 #pragma once
 
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "daemon/config/scenario.h"
@@ -10,7 +12,9 @@
 
 namespace gaitd::daemon {
 
-nlohmann::json read_terrain(MapReader map);
+// A height map is read too, its file being meant from the folder of the scenario.
+nlohmann::json read_terrain(MapReader map, const std::string& scenario_file,
+                            std::shared_ptr<const terrain::HeightMap>* height_map);
 nlohmann::json read_sensors(MapReader map);
 nlohmann::json read_actuators(MapReader map);
 nlohmann::json read_model_error(MapReader map);
@@ -32,7 +36,7 @@ Expectations read_expectations(MapReader map);
 // Reports what the commanded steps can never fulfil.
 void check_expectations(const Expectations& expect, const CommandedSteps& steps, double duration,
                         MapReader* map);
-// Reports a start inside a box or the ground.
+// Reports a start inside a box, the ground or the height map.
 void check_start(const Scenario& scenario, const GaitdModel& model, Issues* issues);
 
 }  // namespace gaitd::daemon

@@ -2,6 +2,7 @@
 // Does the robot of a scenario start where it can stand?
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "daemon/config/scenario_sections.h"
@@ -49,6 +50,17 @@ std::vector<Vector3d> points_of(const GaitdStart& start, const GaitdModel& model
   return points;
 }
 
+// m, of the soles in the height map where they are deepest; minus infinity without a map.
+double depth_in_map(const Scenario& scenario, const GaitdModel& model) {
+  double deepest = -INFINITY;
+  if (!scenario.height_map) return deepest;
+  for (const Vector3d& point : points_of(scenario.start, model, 0.0)) {
+    const auto surface = scenario.height_map->surface(point.head<2>());
+    if (surface) deepest = std::max(deepest, surface->height - point.z());
+  }
+  return deepest;
+}
+
 }  // namespace
 
 void check_start(const Scenario& scenario, const GaitdModel& model, Issues* issues) {
@@ -72,6 +84,12 @@ void check_start(const Scenario& scenario, const GaitdModel& model, Issues* issu
                 "move the start, the box, or start.z to the top of the box");
     return;
   }
+  if (const double deepest = depth_in_map(scenario, model); deepest > kDepth) {
+    issues->add(where, "start.z", "a height on or above terrain.height_map",
+                format("%g m, with a sole %.3f m inside it", z, deepest),
+                "raise it, or start where it is level");
+    return;
+  }
   const bool has_ground = scenario.terrain.contains("ground_z");
   const double ground = has_ground ? scenario.terrain["ground_z"].get<double>() : 0.0;
   if (has_ground && z < ground - kDepth) {
@@ -81,12 +99,12 @@ void check_start(const Scenario& scenario, const GaitdModel& model, Issues* issu
   }
   // Boxes are looked at just below the soles: a drop of a robot may be meant, so it is a warning.
   const std::vector<Vector3d> below = points_of(scenario.start, model, -0.5 * kDrop);
-  const bool stands = (has_ground && z <= ground + kDrop) ||
-                      std::any_of(boxes.begin(), boxes.end(), [&](const nlohmann::json& box) {
-                        return std::any_of(below.begin(), below.end(), [&](const Vector3d& point) {
-                          return is_inside(box, point);
-                        });
-                      });
+  const bool stands =
+      (has_ground && z <= ground + kDrop) || depth_in_map(scenario, model) > -kDrop ||
+      std::any_of(boxes.begin(), boxes.end(), [&](const nlohmann::json& box) {
+        return std::any_of(below.begin(), below.end(),
+                           [&](const Vector3d& point) { return is_inside(box, point); });
+      });
   if (!stands) {
     issues->warn(where, "start.z",
                  "there is nothing to stand on just below the soles, the robot "

@@ -12,7 +12,7 @@ namespace {
 
 // No footstep is done sooner: the shortest transfer and swing that a command may ask for (s).
 constexpr double kShortestStep = 0.1;
-// A velocity asks for as many as there is time for.
+// A velocity asks for as many as there is time for, a goto for as many as it takes.
 constexpr long long kStepsOfDrive = 10000;
 
 std::string at_time(double time) {
@@ -60,6 +60,7 @@ class Story {
         tell_footsteps(command);
         break;
       case CommandType::kDrive:
+      case CommandType::kGoto:
         check_armed();
         check_mode();
         last_.reset();
@@ -179,7 +180,9 @@ CommandedSteps check_commands(const std::vector<ScenarioCommand>& commands, int 
       steps.advancing += command->walk.steps;
       ++steps.closing;
     }
-    if (command->type == CommandType::kDrive) steps.advancing += kStepsOfDrive;
+    if (command->type == CommandType::kDrive || command->type == CommandType::kGoto) {
+      steps.advancing += kStepsOfDrive;
+    }
     if (command->type == CommandType::kFootsteps) steps.advancing += command->footstep_count;
   }
   return steps;

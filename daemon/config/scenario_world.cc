@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scenario says about the simulated world, as configuration of the simulator.
 #include <array>
+#include <filesystem>
+#include <utility>
 
 #include "daemon/config/scenario_sections.h"
+#include "gaitd/terrain/height_map_file.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -75,6 +78,23 @@ nlohmann::json read_box(MapReader map, double friction) {
   return {{"center", center}, {"size", size}, {"rpy", rpy}, {"friction", own_friction}};
 }
 
+// Its file, from the folder of the scenario where there is such a one.
+std::string read_height_map(MapReader* map, const std::string& scenario_file,
+                            const std::string& name,
+                            std::shared_ptr<const terrain::HeightMap>* height_map) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  const fs::path beside = fs::path(scenario_file).parent_path() / name;
+  const fs::path file = fs::is_regular_file(beside, failed) ? beside : fs::path(name);
+  std::string error;
+  if (auto read = terrain::load_height_map(file.string(), &error)) {
+    *height_map = std::make_shared<const terrain::HeightMap>(std::move(*read));
+  } else {
+    map->issues()->add_text(map->where("height_map"), map->path_of("height_map"), error);
+  }
+  return fs::absolute(file, failed).lexically_normal().string();
+}
+
 nlohmann::json read_scales(MapReader map) {
   nlohmann::json result = nlohmann::json::object();
   for (const Node::Entry& entry : map.entries()) {
@@ -87,7 +107,8 @@ nlohmann::json read_scales(MapReader map) {
 
 }  // namespace
 
-nlohmann::json read_terrain(MapReader map) {
+nlohmann::json read_terrain(MapReader map, const std::string& scenario_file,
+                            std::shared_ptr<const terrain::HeightMap>* height_map) {
   if (!map.valid()) {
     return {{"friction", kDefaultFriction}, {"ground_z", 0.0}, {"boxes", nlohmann::json::array()}};
   }
@@ -99,8 +120,11 @@ nlohmann::json read_terrain(MapReader map) {
     const std::string path = map.path_of("boxes") + "[" + std::to_string(i) + "]";
     result["boxes"].push_back(read_box(MapReader(boxes[i], path, map.issues()), friction));
   }
-  if (!map.has("ground_z") && !map.has("boxes")) {
-    map.fail("", "ground_z or boxes", "neither",
+  if (const auto file = map.text("height_map")) {
+    result["height_map"] = read_height_map(&map, scenario_file, *file, height_map);
+  }
+  if (!map.has("ground_z") && !map.has("boxes") && !map.has("height_map")) {
+    map.fail("", "ground_z, boxes or height_map", "none of them",
              "add 'ground_z: 0.0': there is nothing to stand on");
   }
   map.finish();

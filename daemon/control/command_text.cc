@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kNames[] = {"arm",        "disarm",    "estop",    "reset",     "mode",
                                   "walk",       "footsteps", "pause",    "resume",    "stop",
                                   "abort",      "param.set", "sim.push", "sim.reset", "plugin.swap",
-                                  "joint.test", "pose",      "drive"};
+                                  "joint.test", "pose",      "drive",    "goto"};
 
 class Writer {
  public:
@@ -59,6 +59,10 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
     w.add(R"(,"forward":%.17g,"lateral":%.17g,"turn":%.17g,"renew":%s)", c.drive.velocity.forward,
           c.drive.velocity.lateral, c.drive.velocity.turn, c.drive.renewal ? "true" : "false");
     if (c.drive.ends) w.add(R"(,"end":true)");
+  }
+  if (c.type == CommandType::kGoto) {
+    w.add(R"(,"x":%.17g,"y":%.17g)", c.target.x, c.target.y);
+    if (c.target.has_yaw) w.add(R"(,"yaw":%.17g)", c.target.yaw);
   }
   if (c.type == CommandType::kFootsteps) {
     w.add(R"(,"count":%d,"replace":%s)", c.footstep_count, c.replace ? "true" : "false");

@@ -60,6 +60,7 @@ ControlLoop::ControlLoop(const LoopOptions& options, const Parts& parts)
       bridge_(parts.bridge),
       scenario_(parts.scenario),
       swaps_(parts.swaps),
+      goto_(parts.plans),
       command_(std::make_unique<Command>()),
       pace_(options.period, options.overrun, options.overrun_run) {
   if (swaps_ != nullptr) swaps_->publish(pipeline_->swap_right());
@@ -81,6 +82,7 @@ LoopReport ControlLoop::run() {
     pulse_.beat();
     take_estop();
     take_commands();
+    take_plan();
     take_swaps();
     if (ended_) break;
     const Outcome outcome = tick();
@@ -179,6 +181,7 @@ void ControlLoop::take_commands() {
 }
 
 void ControlLoop::execute(const Command& command, bool from_client) {
+  if (command.type == CommandType::kGoto) return begin_goto(command, from_client);
   const bool simulation =
       command.type == CommandType::kPush || command.type == CommandType::kSimReset;
   const bool clears = command.type == CommandType::kReset || command.type == CommandType::kSimReset;
@@ -203,6 +206,7 @@ void ControlLoop::execute(const Command& command, bool from_client) {
     telemetry_->push_event(EventKind::kCommand, tick_, time,
                            command_text(command, reply, text, sizeof(text)));
   }
+  if (reply.accepted) give_up_goto(command);
   if (!outdated) telemetry_->push_input(tick_, time, command, owner, place);
   if (from_client) bridge_->push(reply);
 }

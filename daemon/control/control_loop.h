@@ -8,6 +8,7 @@
 
 #include "daemon/command/estop_flag.h"
 #include "daemon/config/daemon_config.h"
+#include "daemon/control/goto_task.h"
 #include "daemon/control/loop_pulse.h"
 #include "daemon/control/pace.h"
 #include "daemon/control/pipeline.h"
@@ -43,7 +44,7 @@ struct LoopReport {
 // simulation has made the next sensors.
 class ControlLoop {
  public:
-  // What it brings together; all of it outlives the loop. The last three may be null.
+  // What it brings together; all of it outlives the loop. The last four may be null.
   struct Parts {
     const GaitdModel* model;
     Pipeline* pipeline;
@@ -54,6 +55,7 @@ class ControlLoop {
     CommandBridge* bridge = nullptr;
     ScenarioPlayer* scenario = nullptr;
     SwapPort* swaps = nullptr;
+    PlanPort* plans = nullptr;
   };
   ControlLoop(const LoopOptions& options, const Parts& parts);
 
@@ -72,6 +74,11 @@ class ControlLoop {
   void take_swaps();
   void tell_swaps();
   void execute(const Command& command, bool from_client);
+  void begin_goto(const Command& command, bool from_client);
+  void give_up_goto(const Command& command);
+  void tell_goto(const Command& command, bool from_client, CommandReply reply);
+  void take_plan();
+  CommandReply take_footsteps(const Command& command);
   static CommandReply refuse_outdated(const Command& command);
   CommandReply simulate(const Command& command);
   CommandReply request_swap(const Command& command);
@@ -97,6 +104,7 @@ class ControlLoop {
   SwapPort* swaps_;
 
   LoopPulse pulse_;
+  GotoTask goto_;
   std::atomic<bool> stop_{false};
   std::unique_ptr<Command> command_;  // scratch: too large for the stack
   LoopReport report_;

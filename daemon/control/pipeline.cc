@@ -236,7 +236,7 @@ CommandReply Pipeline::execute(const Command& command) {
   const bool needs_control =
       command.type == CommandType::kWalk || command.type == CommandType::kFootsteps ||
       command.type == CommandType::kPause || command.type == CommandType::kResume ||
-      command.type == CommandType::kPose ||
+      command.type == CommandType::kPose || command.type == CommandType::kGoto ||
       (command.type == CommandType::kDrive && !command.drive.ends);
   const char* why = needs_control ? safety_.refusal(kRequestWalk, data_) : nullptr;
   if (why != nullptr) return refused(command, data_.time.tick, why);
@@ -281,6 +281,11 @@ CommandReply Pipeline::execute(const Command& command) {
       break;
     case CommandType::kFootsteps:
       refusal = gait_.footsteps(command.footsteps.data(), command.footstep_count, command.replace);
+      break;
+    case CommandType::kGoto:  // whether it may; the footsteps come as such
+      if (gait_.mode() == GAITD_MODE_STAND) {
+        why = "goto: the gait mode is stand; choose one to walk in: gaitctl mode walk-bent";
+      }
       break;
     case CommandType::kPose:
       refusal = pose_.command(command.pose, gait_.state());

@@ -13,6 +13,7 @@ constexpr MethodRight kRights[] = {
     {"drive", Role::kCommand},
     {"estop", Role::kObserve},
     {"footsteps", Role::kCommand},
+    {"goto", Role::kCommand},
     {"joint.list", Role::kObserve},
     {"joint.test", Role::kAdminister},
     {"mode", Role::kCommand},

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
+#include <stdexcept>
 #include <vector>
 
 #include "gaitd/sim/body_spheres.h"
@@ -197,6 +198,11 @@ class Document {
 }  // namespace
 
 std::string mujoco_document(const GaitdModel& model, const Terrain& terrain, double time_step) {
+  if (terrain.height_field() != nullptr) {
+    throw std::invalid_argument(
+        "terrain.height_map: this backend, mujoco, knows ground and boxes only; take --backend "
+        "simbody");
+  }
   return Document(model, terrain, time_step).text();
 }
 

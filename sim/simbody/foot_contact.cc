@@ -59,6 +59,9 @@ void FootContact::detect(const BodyMotion& motion, const Terrain& terrain, Conta
   terrain.find_near(motion.point(p_BS_), radius_, &near_);
   detect_points(motion, terrain, memory, contacts);
   for (const int box : near_) detect_edges(motion, terrain, box, memory, contacts);
+  if (terrain.height_field() != nullptr) {
+    detect_ridges(motion, *terrain.height_field(), memory, contacts);
+  }
 }
 
 void FootContact::detect_points(const BodyMotion& motion, const Terrain& terrain,
@@ -89,6 +92,13 @@ void FootContact::detect_points(const BodyMotion& motion, const Terrain& terrain
       const int entry = memory->touch(contact_key(ContactKind::kPoint, owner, Terrain::kGround, 0));
       add(p, Eigen::Vector3d::UnitZ(), terrain.ground_z() - p.z(), terrain.ground_friction(),
           entry);
+    }
+    if (const HeightField* field = terrain.height_field()) {
+      const HeightField::Depth below = field->depth(p);
+      if (below.depth > 0) {
+        add(p, below.normal, below.depth, field->friction(),
+            memory->touch(contact_key(ContactKind::kPoint, owner, Terrain::kHeightField, 0)));
+      }
     }
     for (const int index : near_) {
       const Box& box = terrain.boxes()[static_cast<size_t>(index)];
@@ -215,6 +225,40 @@ void FootContact::detect_edges(const BodyMotion& motion, const Terrain& terrain,
       const Side& side = sides_[static_cast<size_t>(choice) - 1];
       add(middle, side.offset - side.normal.dot(middle.head<2>()), 2);
     }
+  }
+}
+
+// A ridge inside the foot pushes it out by the way it came in: through the sole, or one of its
+// sides.
+void FootContact::detect_ridges(const BodyMotion& motion, const HeightField& field,
+                                ContactMemory* memory, std::vector<Contact>* contacts) {
+  const Eigen::Vector3d p_WS = motion.point(p_BS_);
+  const Eigen::Matrix3d R_WS = motion.R_WB * R_BS_;
+  field.find_ridges(p_WS, radius_, &ridges_);
+  for (const HeightField::Ridge& ridge : ridges_) {
+    const Eigen::Vector3d p = R_WS.transpose() * (ridge.p_W - p_WS);
+    if (p.z() <= 0 || p.z() >= kThickness) continue;
+    const auto depth_of = [&](int choice) {
+      if (choice == kBottom) return p.z();
+      const Side& side = sides_[static_cast<size_t>(choice) - 1];
+      return side.offset - side.normal.dot(p.head<2>());
+    };
+    int nearest = kBottom;
+    for (int choice = kBottom; choice <= static_cast<int>(sides_.size()); ++choice) {
+      if (depth_of(choice) < depth_of(nearest)) nearest = choice;
+    }
+    if (depth_of(nearest) <= 0) continue;
+    const int entry =
+        memory->touch(contact_key(ContactKind::kEdge, side_,
+                                  Terrain::kHeightField + 1 + (ridge.id >> 16), ridge.id & 0xffff));
+    int& choice = memory->entry(entry).choice;
+    if (choice < 0) choice = nearest;
+    Contact contact = make_contact(motion, ridge.p_W);
+    contact.normal = R_WS * push(choice);
+    contact.depth = std::min(depth_of(choice), kDeepestEdge);
+    contact.friction = field.friction();
+    contact.memory = entry;
+    contacts->push_back(contact);
   }
 }
 

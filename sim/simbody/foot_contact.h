@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a foot touches the terrain: points of its sole in the solids, and edges of boxes in it.
+// Where a foot touches the terrain: points of its sole in the solids, and edges of boxes and ridges
+// of the height map in it.
 #ifndef GAITD_SIM_FOOT_CONTACT_H_
 #define GAITD_SIM_FOOT_CONTACT_H_
 
@@ -43,6 +44,8 @@ class FootContact {
                      std::vector<Contact>* contacts) const;
   void detect_edges(const BodyMotion& motion, const Terrain& terrain, int box,
                     ContactMemory* memory, std::vector<Contact>* contacts) const;
+  void detect_ridges(const BodyMotion& motion, const HeightField& field, ContactMemory* memory,
+                     std::vector<Contact>* contacts);
   bool clip(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Interval* interval) const;
   // Direction (sole frame) in which a box edge pushes the foot that it leaves by `choice`.
   Eigen::Vector3d push(int choice) const;
@@ -59,6 +62,7 @@ class FootContact {
   std::vector<Side> sides_;
   double radius_;  // m, of the sphere around the foot, about the sole origin
   std::vector<int> near_;
+  std::vector<HeightField::Ridge> ridges_;
 };
 
 }  // namespace gaitd::sim

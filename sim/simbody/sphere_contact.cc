@@ -40,6 +40,12 @@ void SphereContact::detect(const Multibody& multibody, const Terrain& terrain,
       add(Terrain::kGround, Eigen::Vector3d::UnitZ(),
           terrain.ground_z() - center.z() + sphere.radius, terrain.ground_friction());
     }
+    if (const HeightField* field = terrain.height_field()) {
+      const HeightField::Depth below = field->depth(center);
+      const HeightField::Depth lowest = field->depth(center - sphere.radius * below.normal);
+      if (lowest.depth > 0)
+        add(Terrain::kHeightField, below.normal, lowest.depth, field->friction());
+    }
     for (const int index : near_) {
       const Box& box = terrain.boxes()[static_cast<size_t>(index)];
       const Eigen::Vector3d local = box.R_WB.transpose() * (center - box.center);

@@ -6,6 +6,7 @@
 
 #include "block_model.h"
 #include "gaitd/sim/config.h"
+#include "gaitd/terrain/height_map_file.h"
 
 namespace gaitd::sim {
 namespace {
@@ -47,6 +48,24 @@ TEST(Config, EverythingIsRead) {
   EXPECT_EQ(config.body_errors[0].com_offset.z(), 0.1);
   EXPECT_EQ(config.body_errors[0].inertia_scale, 2);
   EXPECT_EQ(config.friction_scale, 0.5);
+}
+
+TEST(Config, AHeightMapIsReadFromItsFile) {
+  terrain::HeightMap map(terrain::Grid{5, 4, 0.1, {0, 0}});
+  map.set(1, 2, 0.25);
+  const std::string file = ::testing::TempDir() + "config-test-map.yaml";
+  ASSERT_EQ(terrain::save_height_map(map, file), "");
+  std::vector<std::string> errors;
+  const Config config =
+      parse_config(R"({"terrain": {"ground_z": 0, "height_map": ")" + file + R"("}})",
+                   test::block_model(), 0.001, &errors);
+  ASSERT_TRUE(errors.empty()) << errors[0];
+  ASSERT_NE(config.terrain.height_map, nullptr);
+  EXPECT_NEAR(config.terrain.height_map->height(1, 2), 0.25, 1e-9);
+  const auto wrong = errors_of(R"({"terrain": {"ground_z": 0, "height_map": "/no/map.yaml"}})");
+  ASSERT_EQ(wrong.size(), 1u);
+  EXPECT_NE(wrong[0].find("terrain.height_map: /no/map.yaml: expected"), std::string::npos);
+  EXPECT_EQ(errors_of(R"({"terrain": {"ground_z": 0, "height_map": 3}})").size(), 1u);
 }
 
 TEST(Config, EveryMistakeIsNamedAtOnce) {

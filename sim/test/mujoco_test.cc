@@ -76,6 +76,19 @@ TEST(Mujoco, APushLeavesItsImpulseAlsoWhereItEndsWithinAStep) {
   EXPECT_NEAR(truth_of(plant).com_velocity[0], 100 * 0.0103 / kBlockMass, 2e-4);
 }
 
+TEST(Mujoco, AHeightMapIsRefusedAndNotLeftOut) {
+  Config config = block_config();
+  config.terrain.height_map =
+      std::make_shared<const terrain::HeightMap>(terrain::Grid{10, 10, 0.1, {0, 0}});
+  try {
+    MujocoPlant plant(block_model(), config);
+    ADD_FAILURE() << "it was taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("terrain.height_map"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("--backend simbody"), std::string::npos);
+  }
+}
+
 TEST(Mujoco, JointInertiaIsThatOfSimbody) {
   const GaitdModel model = atlas_model();
   const Terrain flat(test::flat_config(model).terrain, 1);

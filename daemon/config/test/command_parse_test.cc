@@ -52,6 +52,22 @@ TEST(CommandParse, Mode) {
   EXPECT_FALSE(parse("mode", nullptr, &error));
 }
 
+TEST(CommandParse, Goto) {
+  std::string error;
+  const auto there = parse("goto", {{"x", 2.0}, {"y", -0.5}, {"yaw", 1.57}}, &error);
+  ASSERT_TRUE(there) << error;
+  EXPECT_EQ(there->type, CommandType::kGoto);
+  EXPECT_EQ(there->target.x, 2.0);
+  EXPECT_EQ(there->target.y, -0.5);
+  EXPECT_TRUE(there->target.has_yaw);
+  EXPECT_EQ(there->target.yaw, 1.57);
+  EXPECT_FALSE(parse("goto", {{"x", 2.0}, {"y", 0.0}}, &error)->target.has_yaw);
+  EXPECT_FALSE(parse("goto", {{"x", 2.0}}, &error));
+  EXPECT_NE(error.find("goto.y"), std::string::npos) << error;
+  EXPECT_FALSE(parse("goto", {{"x", 2.0}, {"y", 0.0}, {"z", 0.0}}, &error));
+  EXPECT_FALSE(parse("goto", {{"x", 1e6}, {"y", 0.0}}, &error));
+}
+
 TEST(CommandParse, Walk) {
   std::string error;
   const auto command = parse("walk",

@@ -241,7 +241,8 @@ TEST(Scenario, RefusesContradictions) {
   EXPECT_PART(errors_of(kHead + "disturbances: [{link: a, force: [1, 0, 0], duration: 1, when: "
                                 "{time: 12}}]\n"),
               "when.time: expected a time before the end");
-  EXPECT_PART(errors_of(kHead + "terrain: {friction: 1}\n"), "ground_z or boxes, got neither");
+  EXPECT_PART(errors_of(kHead + "terrain: {friction: 1}\n"),
+              "ground_z, boxes or height_map, got none of them");
   EXPECT_PART(errors_of(kHead + "commands: [{at: 1, pause: false}]\n"), "expected true, got false");
   EXPECT_PART(errors_of(kHead + "commands: [{at: 1, swap: {layer: toe_of, to: x}}]\n"),
               "did you mean 'toe_off'?");

@@ -33,7 +33,7 @@ nlohmann::json parsed(const Command& command, const CommandReply& reply, std::si
   return json;
 }
 
-constexpr int kTypes = static_cast<int>(CommandType::kJointTest) + 1;
+constexpr int kTypes = static_cast<int>(CommandType::kGoto) + 1;
 
 TEST(CommandText, IsAnObjectWithItsOwnNameForEveryCommand) {
   std::set<std::string> names;

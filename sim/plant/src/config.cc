@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "gaitd/terrain/height_map_file.h"
 #include "json_reader.h"
 #include "read_sensor_figures.h"
 
@@ -34,11 +36,29 @@ void read_start(const json& value, std::vector<std::string>* errors, StartConfig
   hoist.number("height", kHoist, &start->hoist.emplace().height);
 }
 
+void read_height_map(const JsonReader& reader, std::vector<std::string>* errors,
+                     TerrainConfig* terrain) {
+  const json& file = reader.at("height_map");
+  if (!file.is_string()) {
+    errors->push_back("terrain.height_map: expected the YAML file of a height map, got " +
+                      file.dump());
+    return;
+  }
+  std::string error;
+  auto map = terrain::load_height_map(file.get<std::string>(), &error);
+  if (!map) {
+    errors->push_back("terrain.height_map: " + error);
+    return;
+  }
+  terrain->height_map = std::make_shared<const terrain::HeightMap>(std::move(*map));
+}
+
 void read_terrain(const json& value, std::vector<std::string>* errors, TerrainConfig* terrain) {
   JsonReader reader(value, "terrain", errors);
-  reader.allow({"friction", "ground_z", "boxes"});
+  reader.allow({"friction", "ground_z", "boxes", "height_map"});
   reader.number("friction", kFriction, &terrain->friction);
   reader.number("ground_z", kPlace, &terrain->ground_z);
+  if (reader.has("height_map")) read_height_map(reader, errors, terrain);
   if (!reader.has("boxes")) return;
   if (!reader.at("boxes").is_array()) {
     reader.error("terrain.boxes", "a list of boxes", reader.at("boxes"));

@@ -59,10 +59,12 @@ Terrain::Terrain(const TerrainConfig& config, double friction_scale)
       ground_z_(config.ground_z.value_or(0)),
       ground_friction_(config.friction * friction_scale) {
   for (const BoxConfig& box : config.boxes) boxes_.push_back(make_box(box, friction_scale));
+  if (config.height_map) field_.emplace(config.height_map, ground_friction_);
 }
 
 bool Terrain::covered(const Eigen::Vector3d& p_W, int except, double margin) const {
   if (has_ground_ && p_W.z() < ground_z_ - margin) return true;
+  if (field_ && field_->depth(p_W).depth > margin) return true;
   for (size_t i = 0; i < boxes_.size(); ++i) {
     const Box& box = boxes_[i];
     if (static_cast<int>(i) == except ||

@@ -56,6 +56,9 @@ class GaitMachine {
   // Swing: where the swing foot left the ground (W).
   const GaitdPose& lift_off() const { return lift_off_; }
   bool walking() const { return state_.phase != GAITD_PHASE_STAND; }
+  int mode() const { return pending_mode_; }  // of the next step
+  // m, by which footholds are higher than their footsteps said.
+  double height_offset() const { return height_offset_; }
 
  private:
   static constexpr int kQueueCapacity = 1024;

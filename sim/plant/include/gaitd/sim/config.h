@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "gaitd/sim/drive_figures.h"
 #include "gaitd/sim/sensor_faults.h"
 #include "gaitd/sim/sensor_figures.h"
+#include "gaitd/terrain/height_map.h"
 
 namespace gaitd::sim {
 
@@ -27,6 +29,7 @@ struct TerrainConfig {
   double friction = 0.8;           // of the ground, and of boxes that name none
   std::optional<double> ground_z;  // m; none: no ground
   std::vector<BoxConfig> boxes;
+  std::shared_ptr<const terrain::HeightMap> height_map;  // null: none
 };
 
 // Of drives that have no faults of their own. Zero means ideal for every figure.

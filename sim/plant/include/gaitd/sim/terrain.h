@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shape of the terrain: an optional ground plane and solid boxes.
+// The shape of the terrain: an optional ground plane, solid boxes, and an optional height map.
 #ifndef GAITD_SIM_TERRAIN_H_
 #define GAITD_SIM_TERRAIN_H_
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "gaitd/sim/config.h"
+#include "gaitd/terrain/height_map.h"
 
 namespace gaitd::sim {
 
@@ -32,9 +35,43 @@ struct Box {
   std::array<double, kFaces> depths(const Eigen::Vector3d& p_W) const;
 };
 
+// The ground below a height map, solid down to any depth.
+class HeightField {
+ public:
+  HeightField(std::shared_ptr<const terrain::HeightMap> map, double friction);
+
+  double friction() const { return friction_; }
+  // m, below the surface at `p_W` across it, and the normal there (unit, W); not positive above it
+  // and where the map knows nothing. On the flank of a riser, which is one cell wide, the normal is
+  // nearly level. Never deeper than kDeepest: beyond that nobody can tell by which way it came in.
+  struct Depth {
+    double depth;
+    Eigen::Vector3d normal;
+  };
+  Depth depth(const Eigen::Vector3d& p_W) const;
+  static constexpr double kDeepest = 0.03;  // m
+
+  // Tops of ridges (m, W): centres of cells that stand out from those beside them, as do the rims
+  // of steps. Only these of the map can touch a sole between the points of its outline.
+  struct Ridge {
+    Eigen::Vector3d p_W;
+    int id;  // of its cell
+  };
+  // Those within `radius` (m) of `center`, seen from above. Clears `near` first.
+  void find_ridges(const Eigen::Vector3d& center, double radius, std::vector<Ridge>* near) const;
+
+ private:
+  bool is_ridge(int i, int j) const;
+
+  std::shared_ptr<const terrain::HeightMap> map_;
+  double friction_;
+  std::vector<bool> ridges_;  // by cell, row by row
+};
+
 class Terrain {
  public:
   static constexpr int kGround = -1;  // index of the ground among the solids; boxes count from 0
+  static constexpr int kHeightField = 1 << 20;  // likewise; its ridges take those after it
 
   // `friction_scale` multiplies every friction coefficient.
   Terrain(const TerrainConfig& config, double friction_scale);
@@ -43,6 +80,7 @@ class Terrain {
   double ground_z() const { return ground_z_; }
   double ground_friction() const { return ground_friction_; }
   const std::vector<Box>& boxes() const { return boxes_; }
+  const HeightField* height_field() const { return field_ ? &*field_ : nullptr; }  // null: none
 
   // Is `p_W` inside a solid other than the box `except`, by more than `depth` (m)?
   bool covered(const Eigen::Vector3d& p_W, int except, double depth) const;
@@ -63,6 +101,7 @@ class Terrain {
   double ground_z_;
   double ground_friction_;
   std::vector<Box> boxes_;
+  std::optional<HeightField> field_;
 };
 
 }  // namespace gaitd::sim

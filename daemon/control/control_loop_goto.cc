@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of the control loop that walks to a place: footsteps are planned on a thread of their
+// own and taken as those of a client are.
+#include <time.h>
+
+#include <cstdio>
+
+#include "daemon/control/command_text.h"
+#include "daemon/control/control_loop.h"
+
+namespace gaitd::daemon {
+namespace {
+
+// What takes the place of footsteps that are being planned.
+bool replaces_goto(const Command& command) {
+  switch (command.type) {
+    case CommandType::kArm:
+    case CommandType::kPause:
+    case CommandType::kResume:
+    case CommandType::kSetParameter:
+    case CommandType::kPush:
+    case CommandType::kSwap:
+    case CommandType::kJointTest:
+    case CommandType::kPose:
+      return false;
+    case CommandType::kMode:
+      return command.mode == GAITD_MODE_STAND;
+    case CommandType::kDrive:
+      return !command.drive.ends;
+    default:
+      return true;
+  }
+}
+
+}  // namespace
+
+void ControlLoop::begin_goto(const Command& command, bool from_client) {
+  const CommandReply reply = pipeline_->execute(command);
+  if (!reply.accepted) return tell_goto(command, from_client, reply);
+  give_up_goto(command);
+  goto_.begin(command, from_client, pipeline_->gait());
+}
+
+void ControlLoop::give_up_goto(const Command& command) {
+  if (!goto_.active() || !replaces_goto(command)) return;
+  CommandReply reply;
+  std::snprintf(reply.message.data(), reply.message.size(), "another command has taken its place");
+  tell_goto(goto_.command(), goto_.from_client(), reply);
+  goto_.drop();
+}
+
+// To the log, and to the client if there is one.
+void ControlLoop::tell_goto(const Command& command, bool from_client, CommandReply reply) {
+  reply.request = command.request;
+  reply.tick = tick_;
+  char text[kMaxEventText];
+  telemetry_->push_event(EventKind::kCommand, tick_, static_cast<double>(tick_) * options_.period,
+                         command_text(command, reply, text, sizeof(text)));
+  if (from_client) bridge_->push(reply);
+}
+
+// In lockstep simulated time stands still while footsteps are planned, so that their tick is known.
+void ControlLoop::take_plan() {
+  const bool waits = options_.clock == GAITD_CLOCK_LOCKSTEP;
+  GotoTask::Step step = goto_.step(pipeline_->gait(), command_.get());
+  while (waits && goto_.awaits_plan() && !stop_.load(std::memory_order_relaxed)) {
+    const timespec pause{0, 200'000};
+    nanosleep(&pause, nullptr);
+    step = goto_.step(pipeline_->gait(), command_.get());
+  }
+  CommandReply reply;
+  if (step == GotoTask::Step::kFootsteps) {
+    if (const CommandReply taken = take_footsteps(*command_); taken.accepted) {
+      goto_.taken();
+    } else {
+      std::snprintf(reply.message.data(), reply.message.size(), "%s", taken.message.data());
+      tell_goto(goto_.command(), goto_.from_client(), reply);
+      goto_.drop();
+    }
+  } else if (step != GotoTask::Step::kWait) {
+    reply.accepted = step == GotoTask::Step::kDone;
+    std::snprintf(reply.message.data(), reply.message.size(), "%s", goto_.message());
+    tell_goto(goto_.command(), goto_.from_client(), reply);
+  }
+}
+
+// They are what a replay needs to know.
+CommandReply ControlLoop::take_footsteps(const Command& command) {
+  const CommandReply reply = pipeline_->execute(command);
+  const double time = static_cast<double>(tick_) * options_.period;
+  if (reply.accepted) {
+    char text[kMaxEventText];
+    telemetry_->push_event(EventKind::kCommand, tick_, time,
+                           command_text(command, reply, text, sizeof(text)));
+  }
+  telemetry_->push_input(tick_, time, command, -1, -1);
+  return reply;
+}
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <queue>
+#include <unordered_set>
+#include <utility>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
+#include "step_costs.h"
+
+namespace gaitd::footsteps {
+namespace {
+
+using walking::Gait;
+using walking::other_side;
+using walking::side_sign;
+
+// Of the lattice, in pelvis heights and parts of a turn.
+constexpr double kCell = 0.043;
+constexpr int kHeadings = 24;
+constexpr double kHeading = 2.0 * M_PI / kHeadings;
+// Strides: ahead, and outwards beyond the distance of the feet in the nominal posture; pelvis
+// heights.
+constexpr double kAhead[] = {-0.22, -0.11, 0.0, 0.11, 0.22, 0.33, 0.43, 0.54};
+constexpr double kOutwards[] = {-0.02, 0.05, 0.13, 0.22};
+// What a pelvis height of uneven ground costs in the estimate.
+constexpr double kUneven = 8.0;
+// By which the estimate is inflated, search by search.
+constexpr double kInflations[] = {3.0, 2.0, 1.5};
+// Once there is a way: so much more is spent on a better one, over what it took.
+constexpr int kImprove = 2;
+constexpr int kLeastImprove = 6000;
+constexpr double kGoalReach = 0.15;  // m, by which footholds at the goal may be beside it
+
+constexpr double kLongestGoal = 0.45;  // pelvis heights, of the steps to the goal itself
+
+double wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
+
+}  // namespace
+
+Lattice::Lattice(std::shared_ptr<StepMaker> steps, const PlannerOptions& options)
+    : steps_(std::move(steps)), options_(options) {
+  const double unit = steps_->unit();
+  const double apart = steps_->model().nominal_foot_separation;
+  for (const double ahead : kAhead) {
+    for (const double outwards : kOutwards) {
+      for (int turn = -1; turn <= 2; ++turn) {
+        // Long steps are straight ones.
+        if (std::abs(ahead) > 0.4 && (turn != 0 || outwards > 0.15)) continue;
+        if (std::abs(turn) > 1 && std::abs(ahead) > 0.25) continue;
+        strides_.push_back({ahead * unit, apart + outwards * unit, turn,
+                            stride_cost(ahead, outwards, std::abs(turn))});
+      }
+    }
+  }
+  per_metre_ = std::numeric_limits<double>::infinity();
+  for (const Stride& s : strides_) {
+    if (s.ahead > 0.0) per_metre_ = std::min(per_metre_, s.cost / s.ahead);
+  }
+  if (steps_->footholds().has_map()) {
+    way_ =
+        std::make_unique<WayEstimate>(steps_->footholds().map(), unit, per_metre_, kUneven / unit);
+  }
+}
+
+// One problem.
+class Lattice::Search {
+ public:
+  Search(const Lattice& lattice, const Start& start, const Goal& goal,
+         const walking::GaitParameters& parameters)
+      : lattice_(lattice),
+        steps_(*lattice.steps_),
+        start_(start),
+        parameters_(parameters),
+        cell_(kCell * steps_.unit()) {
+    const Place from = middle_of(start.feet[GAITD_LEFT], start.feet[GAITD_RIGHT]);
+    const double dx = goal.x - from.x, dy = goal.y - from.y;
+    const bool near = std::hypot(dx, dy) < steps_.unit();
+    goal_ = {goal.x, goal.y, goal.yaw.value_or(near ? from.yaw : std::atan2(dy, dx))};
+  }
+
+  Plan run() {
+    Plan plan;
+    if (!find_goal(&plan.refusal)) return plan;
+    int budget = lattice_.options_.expansions;
+    for (const double inflation : kInflations) {
+      if (!search(inflation, budget)) break;
+      budget = std::min(lattice_.options_.expansions,
+                        std::max(kImprove * expansions_, expansions_ + kLeastImprove));
+      if (expansions_ >= budget) break;
+    }
+    plan.expansions = expansions_;
+    plan.footsteps = best_;
+    if (best_.empty()) plan.refusal = why_not();
+    return plan;
+  }
+
+ private:
+  Place goal_place(int side) const {
+    const double y = 0.5 * steps_.model().nominal_foot_separation * side_sign(side);
+    return {goal_.x - std::sin(goal_.yaw) * y, goal_.y + std::cos(goal_.yaw) * y, goal_.yaw};
+  }
+
+  Foothold look(int side, const Place& place) const {
+    return steps_.footholds().at(side, place, parameters_[Gait::kMaxStepTilt]);
+  }
+
+  // Footholds for both feet at the goal, or as near to it as there are any.
+  bool find_goal(std::string* refusal) {
+    const Place wanted = goal_;
+    const int reach = static_cast<int>(kGoalReach / cell_);
+    double nearest = std::numeric_limits<double>::infinity();
+    Place best = wanted;
+    FootholdState problem = FootholdState::kGood;
+    for (int i = -reach; i <= reach; ++i) {
+      for (int j = -reach; j <= reach; ++j) {
+        const double distance = cell_ * std::hypot(i, j);
+        if (distance > kGoalReach || distance >= nearest) continue;
+        goal_ = {wanted.x + cell_ * i, wanted.y + cell_ * j, wanted.yaw};
+        const Foothold left = look(GAITD_LEFT, goal_place(GAITD_LEFT));
+        const Foothold right = look(GAITD_RIGHT, goal_place(GAITD_RIGHT));
+        if (i == 0 && j == 0) {
+          problem = left.state != FootholdState::kGood ? left.state : right.state;
+        }
+        if (left.state != FootholdState::kGood || right.state != FootholdState::kGood) continue;
+        if (std::abs(left.z - right.z) > steps_.highest_step()) continue;
+        nearest = distance;
+        best = goal_;
+        goal_footholds_ = {left, right};
+      }
+    }
+    goal_ = best;
+    if (nearest <= kGoalReach) return true;
+    char text[200];
+    std::snprintf(text, sizeof(text),
+                  "no foothold within %.2f m of the goal (%.2f, %.2f): the ground there is %s",
+                  kGoalReach, wanted.x, wanted.y,
+                  problem == FootholdState::kUnknown   ? "not known"
+                  : problem == FootholdState::kSteep   ? "too steep"
+                  : problem == FootholdState::kBlocked ? "beside a riser"
+                                                       : "not flat enough for a sole");
+    *refusal = text;
+    return false;
+  }
+
+  double estimate(const Node& node) const {
+    const Place& p = node.place;
+    const Place end = goal_place(node.side);
+    const double distance = std::hypot(end.x - p.x, end.y - p.y);
+    const double turn = std::abs(wrapped(end.yaw - p.yaw));
+    // Each step takes one foot on, past the other one; the turn goes on meanwhile.
+    const double way = lattice_.way_ ? lattice_.way_->between({p.x, p.y}, {end.x, end.y}) : 0.0;
+    return std::max({lattice_.per_metre_ * distance, way, turn / (1.5 * kHeading)});
+  }
+
+  std::uint64_t key_of(int side, int i, int j, int heading) const {
+    return (static_cast<std::uint64_t>(i + (1 << 24)) << 32) ^
+           (static_cast<std::uint64_t>(j + (1 << 24)) << 6) ^
+           static_cast<std::uint64_t>(heading << 1 | side);
+  }
+
+  const Foothold& foothold(std::uint64_t key, int side, const Place& place) {
+    const auto [entry, fresh] = footholds_.try_emplace(key);
+    if (fresh) entry->second = look(side, place);
+    return entry->second;
+  }
+
+  void push(Node node, double inflation) {
+    const double rank = node.cost + inflation * estimate(node);
+    queue_.push({rank, order_++, std::move(node)});
+  }
+
+  GaitdPose pose_of(int node) const {
+    return Footholds::pose_of(nodes_[node].place, nodes_[node].foothold);
+  }
+  // Where the foot of `side` stands when `node`, of the other foot, is the last footstep.
+  GaitdPose stands(int node, int side) const {
+    const int before = nodes_[node].parent;
+    return before < 0 || is_start(before) ? start_.feet[side] : pose_of(before);
+  }
+  bool is_start(int node) const { return nodes_[node].parent < 0; }
+  GaitdPose stance_of(int node) const {
+    return is_start(node) ? start_.feet[nodes_[node].side] : pose_of(node);
+  }
+
+  // Whether the queued step can be taken; its footstep.
+  StepState step_to(const Node& node, GaitdFootstep* step) const {
+    return steps_.make(node.side, Footholds::pose_of(node.place, node.foothold),
+                       stance_of(node.parent), stands(node.parent, node.side), parameters_, step);
+  }
+
+  void begin(double inflation) {
+    queue_ = {};
+    nodes_.clear();
+    closed_.clear();
+    order_ = 0;
+    for (int stance = 0; stance < GAITD_MAX_FEET; ++stance) {
+      if (start_.first_side == stance) continue;  // it has to step, not to stand
+      const GaitdPose& foot = start_.feet[stance];
+      Node node{
+          stance,
+          {foot.position[0], foot.position[1], sdk::yaw_of(sdk::quaternion(foot.orientation))},
+          ~std::uint64_t{0} - static_cast<std::uint64_t>(stance),
+          {},
+          -1,
+          0.0,
+          false};
+      node.foothold.z = foot.position[2];
+      push(node, inflation);
+    }
+  }
+
+  // False: no way with a cost below that of the best so far.
+  bool search(double inflation, int budget) {
+    begin(inflation);
+    bool found = false;
+    while (!queue_.empty() && expansions_ < budget) {
+      const Node node = queue_.top().node;
+      queue_.pop();
+      if (closed_.contains(node.key) || node.cost >= best_cost_) continue;
+      GaitdFootstep step;
+      if (node.parent >= 0) {
+        const StepState state = step_to(node, &step);
+        tally_.count(state);
+        if (state != StepState::kGood) continue;
+        if (const double more = node.weighed ? 0.0
+                                             : swing_cost(step, stands(node.parent, node.side),
+                                                          steps_.unit(), parameters_);
+            more > 0.0) {
+          Node weighed = node;
+          weighed.weighed = true;
+          weighed.cost += more;
+          push(std::move(weighed), inflation);
+          continue;
+        }
+      }
+      closed_.insert(node.key);
+      nodes_.push_back(node);
+      const int at = static_cast<int>(nodes_.size()) - 1;
+      if (node.goal && nodes_[node.parent].goal) {
+        best_cost_ = node.cost;
+        take(at);
+        found = true;
+        break;
+      }
+      expand(at, inflation);
+    }
+    return found;
+  }
+
+  void expand(int at, double inflation) {
+    ++expansions_;
+    const Node node = nodes_[at];
+    const double distance = std::hypot(goal_.x - node.place.x, goal_.y - node.place.y);
+    if (distance < nearest_) {
+      nearest_ = distance;
+      nearest_place_ = node.place;
+      tally_ = {};
+    }
+    const int side = other_side(node.side);
+    add_goal(at, side, inflation);
+    if (node.goal) return;
+    const double outwards = side_sign(side);
+    const double c = std::cos(node.place.yaw), s = std::sin(node.place.yaw);
+    for (const Stride& stride : lattice_.strides_) {
+      const double y = outwards * stride.outwards;
+      const double x = node.place.x + c * stride.ahead - s * y - goal_.x;
+      const double v = node.place.y + s * stride.ahead + c * y - goal_.y;
+      const double yaw = node.place.yaw + outwards * stride.turn * kHeading - goal_.yaw;
+      const int i = static_cast<int>(std::lround(x / cell_));
+      const int j = static_cast<int>(std::lround(v / cell_));
+      int heading = static_cast<int>(std::lround(yaw / kHeading)) % kHeadings;
+      if (heading < 0) heading += kHeadings;
+      const std::uint64_t key = key_of(side, i, j, heading);
+      if (closed_.contains(key)) continue;
+      const Place place{goal_.x + cell_ * i, goal_.y + cell_ * j,
+                        wrapped(goal_.yaw + heading * kHeading)};
+      const Foothold& found = foothold(key, side, place);
+      tally_.count(found.state);
+      if (found.state == FootholdState::kGood) {
+        add({side, place, key, found, at, stride.cost, false}, inflation);
+      }
+    }
+  }
+
+  // The last footstep but one, or the last one. How the first of the two is reached decides whether
+  // the second can be taken, so that there may be many of it.
+  void add_goal(int at, int side, double inflation) {
+    const Node& node = nodes_[at];
+    const Place place = goal_place(side);
+    const double unit = steps_.unit();
+    const double c = std::cos(node.place.yaw), s = std::sin(node.place.yaw);
+    const double dx = place.x - node.place.x, dy = place.y - node.place.y;
+    const double ahead = (c * dx + s * dy) / unit;
+    const double outwards =
+        (side_sign(side) * (c * dy - s * dx) - steps_.model().nominal_foot_separation) / unit;
+    const double turn = side_sign(side) * wrapped(place.yaw - node.place.yaw) / kHeading;
+    if (ahead < kAhead[0] || ahead > kLongestGoal || outwards < kOutwards[0] - 0.5 * kCell ||
+        outwards > std::end(kOutwards)[-1] || turn < -1.2 || turn > 2.2) {
+      return;
+    }
+    const std::uint64_t key = node.goal ? ~std::uint64_t{0} - 2
+                                        : (std::uint64_t{1} << 63) + static_cast<std::uint64_t>(at);
+    add({side, place, key, goal_footholds_[static_cast<std::size_t>(side)], at,
+         stride_cost(ahead, outwards, std::abs(turn)), true},
+        inflation);
+  }
+
+  void add(Node node, double inflation) {
+    const Node& from = nodes_[node.parent];
+    const double height = node.foothold.z - from.foothold.z;
+    if (std::abs(height) > steps_.highest_step()) {
+      tally_.count(StepState::kReach);
+      return;
+    }
+    node.cost += from.cost + node.foothold.cost + height_cost(height / steps_.unit());
+    if (node.cost < best_cost_) push(std::move(node), inflation);
+  }
+
+  void take(int last) {
+    best_.clear();
+    for (int at = last; !is_start(at); at = nodes_[at].parent) {
+      best_.emplace_back();
+      step_to(nodes_[at], &best_.back());
+    }
+    std::reverse(best_.begin(), best_.end());
+  }
+
+  std::string why_not() const {
+    std::string text = queue_.empty() ? "no way"
+                                      : "no way found in " + std::to_string(expansions_) +
+                                            " expansions (goto.expansions)";
+    char place[160];
+    std::snprintf(place, sizeof(place), " to (%.2f, %.2f): footsteps get as far as (%.2f, %.2f); ",
+                  goal_.x, goal_.y, nearest_place_.x, nearest_place_.y);
+    const std::string reasons = tally_.text();
+    return text + place +
+           (reasons.empty() ? "nothing leads on from there" : "beyond it: " + reasons);
+  }
+
+  const Lattice& lattice_;
+  const StepMaker& steps_;
+  const Start& start_;
+  const walking::GaitParameters& parameters_;
+  const double cell_;  // m
+  Place goal_;
+  std::array<Foothold, GAITD_MAX_FEET> goal_footholds_;
+
+  struct Later {
+    bool operator()(const Queued& a, const Queued& b) const {
+      return a.rank != b.rank ? a.rank > b.rank : a.order > b.order;
+    }
+  };
+  std::priority_queue<Queued, std::vector<Queued>, Later> queue_;
+  std::uint32_t order_ = 0;
+  std::vector<Node> nodes_;  // that were expanded
+  std::unordered_set<std::uint64_t> closed_;
+  std::unordered_map<std::uint64_t, Foothold> footholds_;
+  int expansions_ = 0;
+  double best_cost_ = std::numeric_limits<double>::infinity();
+  std::vector<GaitdFootstep> best_;
+  double nearest_ = std::numeric_limits<double>::infinity();  // m, to the goal
+  Place nearest_place_;
+  Tally tally_;  // since it came so near
+};
+
+Plan Lattice::plan(const Start& start, const Goal& goal,
+                   const walking::GaitParameters& parameters) {
+  Search search(*this, start, goal, parameters);
+  Plan plan = search.run();
+  if (plan.refusal.empty()) steps_->finish(start, parameters, &plan);
+  return plan;
+}
+
+}  // namespace gaitd::footsteps

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef GAITD_FOOTSTEPS_LATTICE_H_
+#define GAITD_FOOTSTEPS_LATTICE_H_
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "gaitd/footsteps/planner.h"
+#include "step_maker.h"
+#include "tally.h"
+#include "way_estimate.h"
+
+namespace gaitd::footsteps {
+
+// A* over footsteps whose soles are on a lattice of places and headings, aligned with the goal. The
+// estimate of what is left is inflated at first, for a way soon, and less so in each search after
+// it, for a better one (ARA*). A step is checked, and its swing weighed, when it is taken out of
+// the queue, not for each of the thousands that are put in. The same problem has the same answer,
+// whatever the machine.
+class Lattice : public FootstepPlanner {
+ public:
+  Lattice(std::shared_ptr<StepMaker> steps, const PlannerOptions& options);
+  Plan plan(const Start& start, const Goal& goal,
+            const walking::GaitParameters& parameters) override;
+
+ private:
+  // From one foot to where the other one may step, in the frame of the first as if it were the
+  // right one: outwards is to the left.
+  struct Stride {
+    double ahead, outwards;  // m
+    int turn;                // bins, outwards
+    double cost;             // steps
+  };
+  // Where a sole is. Index `kExact`: not on the lattice but at the start or at the goal.
+  struct Node {
+    int side;
+    Place place;
+    std::uint64_t key;
+    Foothold foothold;
+    int parent;            // the foot that it steps from; -1: where the plan begins
+    double cost;           // steps, up to here
+    bool goal;             // a sole of the goal, exactly
+    bool weighed = false;  // the cost of its swing is in it
+  };
+  struct Queued {
+    double rank;
+    std::uint32_t order;  // of equals the first
+    Node node;
+  };
+  class Search;
+
+  std::vector<Stride> strides_;
+  double per_metre_;                  // least cost of a stride over what it leads on
+  std::unique_ptr<WayEstimate> way_;  // null: without a map
+  std::shared_ptr<StepMaker> steps_;
+  const PlannerOptions options_;
+};
+
+}  // namespace gaitd::footsteps
+
+#endif  // GAITD_FOOTSTEPS_LATTICE_H_

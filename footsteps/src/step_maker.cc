@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "step_maker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
+#include "gaitd/walking/swing_trajectory.h"
+
+namespace gaitd::footsteps {
+namespace {
+
+using walking::Gait;
+
+// Where footholds are higher or lower than this apart, or steeper, or there is something to step
+// over, steps take the times of the cinder blocks: 1.0 s and 0.35 s with the parameters of Atlas.
+constexpr double kLevel = 0.03;        // m
+constexpr double kSteep = 0.06;        // rad
+constexpr double kSlowSwing = 1.67;    // times the parameter of the gait
+constexpr double kSlowTransfer = 1.4;  // likewise
+constexpr double kEven = 0.015;        // m, of the ground on the way above the lower foothold
+constexpr double kClearance = 0.02;    // m, of the sole above the ground on the way
+constexpr double kTouches = 0.012;     // m, by which the ground may be rough where the foot stands
+constexpr double kRaise = 0.04;        // pelvis heights, by which a swing is raised at a time
+constexpr int kRaises = 6;
+constexpr int kSamples = 24;  // of a swing
+// Pelvis heights, from the lower foot to what is beside the legs, and beside the arms.
+constexpr double kLegClearance = 0.4;
+constexpr double kArmClearance = 0.7;
+
+double tilt_of(const GaitdPose& pose) {
+  const Eigen::Vector3d up = sdk::quaternion(pose.orientation) * Eigen::Vector3d::UnitZ();
+  return std::acos(std::clamp(up.z(), -1.0, 1.0));
+}
+
+}  // namespace
+
+Place middle_of(const GaitdPose& left, const GaitdPose& right) {
+  const GaitdPose middle = walking::middle_pose(left, right);
+  return {middle.position[0], middle.position[1], sdk::yaw_of(sdk::quaternion(middle.orientation))};
+}
+
+StepMaker::StepMaker(const GaitdModel& model, std::shared_ptr<const terrain::HeightMap> map)
+    : model_(model),
+      footholds_(model, std::move(map)),
+      rules_(model),
+      unit_(model.nominal_pelvis_height) {}
+
+StepState StepMaker::make(int side, const GaitdPose& pose, const GaitdPose& stance,
+                          const GaitdPose& from, const walking::GaitParameters& parameters,
+                          GaitdFootstep* step) const {
+  *step = {};
+  step->side = side;
+  step->pose = pose;
+  const double height = pose.position[2] - stance.position[2];
+  const double rise = pose.position[2] - from.position[2];
+  if (std::abs(height) > highest_step() || std::abs(rise) > highest_rise()) {
+    return StepState::kReach;
+  }
+  const double lower_end = std::min(pose.position[2], from.position[2]);
+  const bool even = footholds_.highest_between(from, pose) < lower_end + kEven;
+  const bool level = std::abs(height) < kLevel && std::abs(rise) < kLevel && even &&
+                     tilt_of(pose) < kSteep && tilt_of(stance) < kSteep;
+  const double way = (sdk::view(pose.position) - sdk::view(from.position)).head<2>().norm();
+  if (!level && way > longest_way()) return StepState::kReach;
+  step->swing_duration = parameters[Gait::kSwingDuration] * (level ? 1.0 : kSlowSwing);
+  step->transfer_duration = parameters[Gait::kTransferDuration] * (level ? 1.0 : kSlowTransfer);
+  step->swing_height = parameters[Gait::kSwingHeight];
+  const Eigen::Vector2d middle =
+      0.5 * (sdk::view(pose.position) + sdk::view(stance.position)).head<2>();
+  const double lower = std::min(pose.position[2], stance.position[2]);
+  if (footholds_.highest_near_legs(middle) - lower > kLegClearance * unit_ ||
+      footholds_.highest_near_arms(middle) - lower > kArmClearance * unit_) {
+    return StepState::kBody;
+  }
+  if (rules_.check(*step, stance, from, 1, parameters).refused()) return StepState::kReach;
+  if (even) return StepState::kGood;
+  const double usual = step->swing_height;
+  for (int i = 0; i <= kRaises; ++i) {
+    step->swing_height = usual + i * kRaise * unit_;
+    if (i > 0 && rules_.check(*step, stance, from, 1, parameters).refused()) break;
+    if (swings_clear(*step, from)) return StepState::kGood;
+  }
+  return StepState::kSwing;
+}
+
+// Whether the outline of the sole passes over the ground in the swing that the footstep will get,
+// with the clearance that it has gained by then.
+bool StepMaker::swings_clear(const GaitdFootstep& step, const GaitdPose& from) const {
+  const walking::SwingParameters parameters(walking::kSwingParameters);
+  walking::SwingTrajectory swing;
+  swing.begin(from, sdk::Vector6d::Zero(), from.position[2], step, step.swing_duration, parameters);
+  const GaitdFoot& foot = model_.feet[step.side];
+  for (int k = 1; k < kSamples; ++k) {
+    const walking::SwingTrajectory::Sample sole =
+        swing.evaluate(step.swing_duration * k / kSamples);
+    const double end = 2 * k < kSamples ? from.position[2] : step.pose.position[2];
+    const double clearance =
+        std::min(kClearance, 0.5 * std::max(0.0, sole.position.z() - end)) - kTouches;
+    for (int i = 0; i < foot.point_count; ++i) {
+      const Eigen::Vector2d a(foot.points[i]), b(foot.points[(i + 1) % foot.point_count]);
+      for (const Eigen::Vector2d& p : {a, Eigen::Vector2d(0.5 * (a + b))}) {
+        const Eigen::Vector3d point =
+            sole.position + sole.orientation * Eigen::Vector3d(p.x(), p.y(), 0.0);
+        const double ground = footholds_.height(point.head<2>());
+        if (ground + clearance > point.z()) return false;
+      }
+    }
+  }
+  return true;
+}
+
+void StepMaker::finish(const Start& start, const walking::GaitParameters& parameters,
+                       Plan* plan) const {
+  if (plan->footsteps.empty()) return;
+  for (GaitdFootstep& step : plan->footsteps) footholds_.add_landing_region(&step);
+  plan->footsteps.back().closing = 1;
+  const walking::Refusal refusal = rules_.finish(start, parameters, &plan->footsteps);
+  if (!refusal.refused()) return;
+  plan->footsteps.clear();
+  plan->refusal = refusal.message;
+}
+
+}  // namespace gaitd::footsteps
