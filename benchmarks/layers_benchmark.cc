@@ -8,11 +8,11 @@
 #include "daemon/config/paths.h"
 #include "daemon/host/loaded_plugin.h"
 #include "gaitd/sdk/layer.h"
-#include "step_plan.h"
 #include "measure.h"
 #include "never.h"
 #include "nullspace_qp.h"
 #include "recorded_ticks.h"
+#include "step_plan.h"
 #include "walking/test/atlas.h"
 
 namespace gaitd::benchmarks {

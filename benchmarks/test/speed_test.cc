@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "step_plan.h"
 #include "interior_point.h"
 #include "recorded_problems.h"
 #include "recorded_ticks.h"
+#include "step_plan.h"
 #include "timing.h"
 #include "walk_problems.h"
 #include "walking/test/atlas.h"

@@ -130,7 +130,7 @@ TEST(Settings, AValueForAVariantHoldsOnlyForThatVariant) {
 TEST(Settings, AVariantThatIsThereMayWaitAndOneThatIsNotIsAnError) {
   Settings settings;
   set(&settings, SettingSource::kRobot, "step_adjuster/step_plan.anything", "1", 2);
-  set(&settings, SettingSource::kRobot, "step_adjuster/icp_pq.dead_band", "1", 3);
+  set(&settings, SettingSource::kRobot, "step_adjuster/step_paln.dead_band", "1", 3);
   set(&settings, SettingSource::kRobot, "step_adjuster/fixed_steps.nonsense", "1", 4);
   settings.declare_variant("step_adjuster", "step_plan");
   Issues issues;
@@ -138,7 +138,7 @@ TEST(Settings, AVariantThatIsThereMayWaitAndOneThatIsNotIsAnError) {
   settings.report_unknown(&issues);
   EXPECT_EQ(issues.error_count(), 2u) << issues.error_text();
   EXPECT_NE(
-      issues.error_text().find("file.yaml:3: step_adjuster/icp_pq.dead_band: no such variant; "
+      issues.error_text().find("file.yaml:3: step_adjuster/step_paln.dead_band: no such variant; "
                                "did you mean 'step_adjuster/step_plan'?"),
       std::string::npos)
       << issues.error_text();
