@@ -242,7 +242,7 @@ enum class Objective {
 };
 inline constexpr std::array<GaitdParameter, 52> kObjectiveParameters = {
     real_parameter("friction", "", 0.05, 2, 0.7, "coefficient that the controller counts on"),
-    real_parameter("com_height", "", 0.75, 1.2, 1.0,
+    real_parameter("com_height", "", 0.75, 1.15, 1.0,
                    "CoM height when standing, over the height in the nominal posture"),
     real_parameter("reach_length", "", 0.5, 1.2, 1.0,
                    "hip to ankle of a trailing leg, over the length in the nominal posture"),
