@@ -5,7 +5,7 @@ source "$(dirname "$0")/common.sh"
 # share EXCURSION: of the single support in the second after the push, in per cent, in which the
 # CMP is more than 5 mm outside the sole and the CoP inside.
 share() {
-  gaitctl run push-bent-inward --log "$scratch/walk.mcap" --set step_adjuster.excursion="$1" \
+  gaitctl run push-bent-diagonal --log "$scratch/walk.mcap" --set step_adjuster.excursion="$1" \
     >"$scratch/verdict" 2>&1 || [[ $1 == 0 ]] || fail "$(cat "$scratch/verdict")"
   gaitctl log export "$scratch/walk.mcap" -o "$scratch/walk.csv" \
     --signals 'time,gait/phase,gait/support,step_adjust/dy,cmp/desired/*,cop/*,foot/*/x,foot/*/y,foot/*/yaw'
