@@ -23,14 +23,9 @@ double square(double x) { return x * x; }
 // Extent of the two soles together, along and across (m).
 Eigen::Vector2d soles_apart(const GaitdModel& model) {
   Eigen::Vector2d sum = Eigen::Vector2d::Constant(kClearance);
-  for (const GaitdFoot& foot : model.feet) {
-    Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();
-    for (int i = 0; i < foot.point_count; ++i) {
-      const Eigen::Vector2d point(foot.points[i][0], foot.points[i][1]);
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
-    }
-    sum += 0.5 * (high - low);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const walking::SoleExtent e = walking::sole_extent(walking::whole_sole(model, side, {}));
+    sum += 0.5 * Eigen::Vector2d(e.x_max - e.x_min, e.y_max - e.y_min);
   }
   return sum;
 }
@@ -189,7 +184,12 @@ StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
     c.icp_end = both.inset(kRestMargin).closest_point(coming) - (made - start_shift_);
     c.gamma = 1.0;
   }
+  return c;
+}
 
+void StepPlan::add_limits(const GaitdStepAdjusterInput& in, StepProblem& c) const {
+  const GaitdGaitState& gait = *in.gait;
+  const GaitdFootstep& step = gait.commanded[0];
   const GaitdPose& stance = gait.footholds[gait.support].pose;
   const Eigen::Vector2d origin = view(stance.position).head<2>();
   const double yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
@@ -211,15 +211,15 @@ StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
   c.shortest = std::max(time_ * p_[P::kShortestSwing] - gait.time_in_phase, kLeastLeft * time_);
   c.longest = p_[P::kLongestSwing] * duration - gait.time_in_phase;
   c.foot_speed = p_[P::kFootSpeed] * length_ / time_;
-  return c;
 }
 
 void StepPlan::adjust(const GaitdStepAdjusterInput& in) {
   const GaitdGaitState& gait = *in.gait;
-  const StepProblem step = problem(in);
+  StepProblem step = problem(in);
   const double now = gait.time_remaining;
   const double dead_band = p_[P::kDeadBand] * length_;
   if (step.missed(shift_, now).norm() < dead_band * step.gamma) return;
+  add_limits(in, step);
   // What a step leaves to the next costs the shift that the next will need for it, and so on:
   // E^2 - 1 of the Riccati equation of x' = E x - u, for steps of the commanded pace.
   const GaitdFootstep& next = gait.adjusted[std::min(1, gait.footstep_count - 1)];

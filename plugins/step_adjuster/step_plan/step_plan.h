@@ -68,7 +68,9 @@ class StepPlan {
 
  private:
   void begin_phase(const GaitdGaitState& gait);
+  // What the step as it stands misses, and then what binds a better one.
   StepProblem problem(const GaitdStepAdjusterInput& in) const;
+  void add_limits(const GaitdStepAdjusterInput& in, StepProblem& problem) const;
   // Footholds of foot `side` in the frame of the other one: as far as legs reach, and not across.
   walking::ConvexPolygon reach(int side, double inward) const;
   HalfPlane clear(const Eigen::Vector2d& foot, const Eigen::Vector2d& goal, int side) const;
