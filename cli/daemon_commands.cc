@@ -8,6 +8,7 @@
 
 #include "cli/ask.h"
 #include "cli/failure.h"
+#include "cli/pose_command.h"
 #include "cli/sim_commands.h"
 #include "cli/steps_file.h"
 
@@ -91,27 +92,6 @@ void add_steps(CLI::App* app, Context* context) {
   });
 }
 
-void add_pose(CLI::App* app, Context* context) {
-  auto* pose = app->add_subcommand("pose", "Hold the body of a standing robot somewhere else");
-  pose->require_subcommand(1);
-  auto* command = pose->add_subcommand(
-      "pelvis", "Centre of mass and pelvis against where they are by themselves; nothing: back");
-  auto params = std::make_shared<json>(json{{"pelvis", json::object()}});
-  const auto number = [&](const std::string& name, const std::string& description) {
-    add_number(command, "--" + name, params, "/pelvis/" + name, description);
-  };
-  number("x", "Centre of mass forwards, m");
-  number("y", "Centre of mass to the left, m");
-  number("z", "Its height, m, 0 or below; not with straight legs");
-  number("roll", "Of the pelvis, rad");
-  number("pitch", "Likewise");
-  number("yaw", "Likewise, to the left");
-  add_number(command, "--duration", params, "/duration", "Of the way there, s");
-  command->callback([context, params] {
-    context->action = [context, params] { return ask(*context, "pose pelvis", "pose", *params); };
-  });
-}
-
 }  // namespace
 
 void add_daemon_commands(CLI::App* app, Context* context) {
@@ -123,7 +103,7 @@ void add_daemon_commands(CLI::App* app, Context* context) {
   add_mode(app, context);
   add_walk(app, context);
   add_steps(app, context);
-  add_pose(app, context);
+  add_pose_command(app, context);
   add_plain(app, context, "pause", "pause", "Pause after the present step; footsteps are kept");
   add_plain(app, context, "resume", "resume", "Go on after a pause");
   add_plain(app, context, "stop", "stop", "Finish the present step, close the feet and stand");

@@ -25,13 +25,14 @@ struct Base {
   const char* output;
 };
 
-const std::array<Base, 6> kBases = {{
+const std::array<Base, 7> kBases = {{
     {"state_estimator", "kinematic_inertial", "GaitdStateEstimatorInput", "GaitdRobotState"},
     {"icp_planner", "single_cmp", "GaitdIcpPlannerInput", "GaitdIcpPlan"},
     {"step_adjuster", "fixed_steps", "GaitdStepAdjusterInput", "GaitdStepAdjustment"},
     {"toe_off", "icp_criteria", "GaitdToeOffInput", "GaitdToeOff"},
     {"whole_body_controller", "com_height_qp", "GaitdWholeBodyControllerInput",
      "GaitdWholeBodyControllerOutput"},
+    {"task_source", "trajectory_player", "GaitdTaskSourceInput", "GaitdTaskReferences"},
     {"backend", "mujoco", "GaitdJointCommands", "GaitdSensors"},
 }};
 

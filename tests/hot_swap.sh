@@ -50,9 +50,9 @@ done
 echo "bad libraries are refused, the robot walks on"
 
 # What fails later is taken back, and the layer before goes on in the same tick.
-swaps=() layers=(state_estimator icp_planner step_adjuster toe_off whole_body_controller)
+swaps=() layers=(state_estimator icp_planner step_adjuster toe_off whole_body_controller task_source)
 for layer in "${layers[@]}"; do swaps+=("at: 2.0, swap: {layer: $layer, to: $bad/$layer.so}"); done
-scenario rolled_back 4 5 "${swaps[@]}"
+scenario rolled_back 4 6 "${swaps[@]}"
 for fault in 1 3; do # NaN, exception
   GAITD_TEST_FAULT=$fault GAITD_TEST_FAULT_TIME=2.6 play rolled_back
   for layer in "${layers[@]}"; do
@@ -60,7 +60,7 @@ for fault in 1 3; do # NaN, exception
       fail "fault $fault: $layer was not taken back"
   done
 done
-scenario diverging 4 3 "${swaps[@]:1:2}" "${swaps[4]}"
+scenario diverging 4 4 "${swaps[@]:1:2}" "${swaps[@]:4:2}"
 GAITD_TEST_FAULT=7 GAITD_TEST_FAULT_TIME=1.5 play diverging
 grep -q 'too far from that of the layer in use' diverging.out || fail "$(cat diverging.out)"
 scenario drifting 4 1 "${swaps[1]}"

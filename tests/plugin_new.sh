@@ -3,7 +3,7 @@
 source "$(dirname "$0")/common.sh"
 cd "$scratch"
 
-for layer in state_estimator icp_planner step_adjuster toe_off whole_body_controller; do
+for layer in state_estimator icp_planner step_adjuster toe_off whole_body_controller task_source; do
   expect 0 gaitctl plugin new "$layer" my_variant -o "$layer"
   for file in CMakeLists.txt README.md adapter.cc my_variant.cc my_variant.h \
     test/my_variant_test.cc test/walk.yaml.in; do

@@ -80,7 +80,7 @@ for text in 'state +walking' 'state +standing' 'state +fault' 'faults +none' 'fa
   'whole tick +[0-9.]+ +[0-9.]+'; do
   wait_for_text contents "$text"
 done
-for layer in state_estimator icp_planner step_adjuster toe_off whole_body_controller; do
+for layer in state_estimator icp_planner step_adjuster toe_off whole_body_controller task_source; do
   wait_for_text contents "$layer +[a-z_]+ +[0-9]+\\.[0-9] +[0-9]+\\.[0-9]"
 done
 kill -INT "$(cat "$scratch/pid")"

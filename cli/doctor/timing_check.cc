@@ -32,7 +32,7 @@ Findings check_timing(const LogCase& log) {
   if (late < kFewest) return {};
   const char* slowest = "waking up";
   double longest = (*jitter)[worst];
-  for (const char* layer : {"estimator", "planner", "adjuster", "toe_off", "wbc"}) {
+  for (const char* layer : {"estimator", "planner", "adjuster", "toe_off", "wbc", "tasks"}) {
     const daemon::Column* time = log.find("tick/" + std::string(layer) + "_us");
     if (time == nullptr || (*time)[worst] <= longest) continue;
     longest = (*time)[worst];

@@ -8,7 +8,6 @@
 #include "gaitd/abi/types.h"
 #include "gaitd/walking/commands.h"
 #include "gaitd/walking/refusal.h"
-#include "gaitd/walking/stance_pose.h"
 
 namespace gaitd::daemon {
 
@@ -30,7 +29,7 @@ enum class CommandType : std::uint8_t {
   kSimReset,   // simulation only: back to the start pose
   kSwap,       // of a layer, by a scenario
   kJointTest,  // one joint, a small motion there and back, while disarmed
-  kPose,       // of the pelvis, while standing
+  kPose,       // of pelvis, chest, an arm or a hand
   kDrive,      // walk at a velocity
   kGoto,       // footsteps to a place are planned, and replace those ahead
 };
@@ -62,7 +61,7 @@ struct Command {
   std::array<GaitdFootstep, walking::kMaxFootstepsPerCommand> footsteps;
   GaitdDisturbance push;
   JointTest joint_test;
-  walking::PoseCommand pose;
+  walking::MotionCommand pose;
   GotoTarget target;
   int parameter_index = -1;  // into the rows of LiveParameters
   double parameter_value = 0.0;

@@ -11,6 +11,7 @@
 
 #include "daemon/config/leg_kinematics.h"
 #include "daemon/config/names.h"
+#include "daemon/config/pose_parse.h"
 #include "daemon/config/yaml_reader.h"
 
 namespace gaitd::daemon {
@@ -222,21 +223,6 @@ void read_joint_test(MapReader* map, const GaitdModel* model, JointTest* test) {
   test->duration = map->number("duration", {0.5, 20.0, "s"}).value_or(test->duration);
 }
 
-void read_pose(MapReader* map, walking::PoseCommand* pose) {
-  constexpr Bounds kShift = {-1.0, 1.0, "m"};
-  constexpr Bounds kTurn = {-1.0, 1.0, "rad"};
-  map->require({"pelvis"});
-  MapReader pelvis = map->map("pelvis");
-  pose->shift[0] = pelvis.number("x", kShift).value_or(0.0);
-  pose->shift[1] = pelvis.number("y", kShift).value_or(0.0);
-  pose->shift[2] = pelvis.number("z", kShift).value_or(0.0);
-  pose->turn[0] = pelvis.number("roll", kTurn).value_or(0.0);
-  pose->turn[1] = pelvis.number("pitch", kTurn).value_or(0.0);
-  pose->turn[2] = pelvis.number("yaw", kTurn).value_or(0.0);
-  pelvis.finish();
-  pose->duration = map->number("duration", {0.5, 20.0, "s"}).value_or(pose->duration);
-}
-
 }  // namespace
 
 const std::vector<std::string>& command_methods() {
@@ -282,7 +268,7 @@ std::optional<Command> parse_command(std::string_view method, const NodePtr& par
     read_push(&map, model, &command.push);
   } else if (method == "pose") {
     command.type = CommandType::kPose;
-    read_pose(&map, &command.pose);
+    read_pose(&map, model, &command.pose);
   } else if (method == "joint.test") {
     command.type = CommandType::kJointTest;
     read_joint_test(&map, model, &command.joint_test);

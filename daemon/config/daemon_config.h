@@ -63,8 +63,9 @@ struct DaemonConfig {
   int clock = GAITD_CLOCK_REALTIME;
   double period = 0.001;           // s
   std::optional<Profile> profile;  // none: that of the backend
-  std::array<std::string, GAITD_LAYER_COUNT> variants = {
-      "kinematic_inertial", "heel_to_toe", "step_plan", "icp_criteria", "nullspace_qp"};
+  std::array<std::string, GAITD_LAYER_COUNT> variants = {"kinematic_inertial", "heel_to_toe",
+                                                         "step_plan",          "icp_criteria",
+                                                         "nullspace_qp",       "trajectory_player"};
   RealtimeConfig realtime;
   LogConfig log;
   std::string socket;  // "": the default place for the user

@@ -260,6 +260,8 @@ std::optional<Robot> read_robot(const NodePtr& document, const std::string& file
   geometry.read_chest(&root);
   geometry.read_imus(&root);
   geometry.read_feet(&root);
+  geometry.read_hands(&root);
+  geometry.read_capsules(&root);
   geometry.read_legs(&root);
   geometry.read_posture(&root);
   std::array<double, GAITD_MAX_JOINTS> rotor_inertia{};

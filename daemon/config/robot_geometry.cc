@@ -11,6 +11,7 @@
 #include "daemon/config/joint_names.h"
 #include "daemon/config/names.h"
 #include "daemon/config/outline.h"
+#include "gaitd/sdk/chain.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -89,6 +90,51 @@ void RobotGeometry::read_imus(MapReader* root) {
     read_frame(&map, link(&map, "link"), name, &model_->imus[i]);
     map.finish();
   }
+}
+
+// Where a robot has hands they hang on the chest, by joints that a motion can name.
+void RobotGeometry::read_hands(MapReader* root) {
+  MapReader hands = root->map("hands");
+  for (int side = 0; side < GAITD_MAX_HANDS; ++side) {
+    model_->hands[side].orientation[3] = 1.0;
+    if (!hands.has(kSideNames[side])) continue;
+    MapReader map = hands.map(kSideNames[side]);
+    map.require({"link"});
+    const dynamics::UrdfLink* hand = link(&map, "link");
+    read_frame(&map, hand, std::string(kSideNames[side]) + "_hand", &model_->hands[side]);
+    if (hand && sdk::arm_of(*model_, side).count == 0) {
+      map.fail("link",
+               "a link that hangs on the chest by 1 to " + std::to_string(GAITD_MAX_MOTION_AXES) +
+                   " joints",
+               hand->name, "name the link of the hand, and under chest: the one the arms hang on");
+    }
+    map.finish();
+  }
+  hands.finish();
+}
+
+void RobotGeometry::read_capsules(MapReader* root) {
+  if (!root->has("capsules")) return;
+  const std::vector<NodePtr> nodes = root->list("capsules", 1, GAITD_MAX_CAPSULES);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    MapReader map(nodes[i], "capsules[" + std::to_string(i) + "]", issues_);
+    map.require({"link", "from", "radius"});
+    const dynamics::UrdfLink* of = link(&map, "link");
+    std::array<std::array<double, 3>, 2> ends{};
+    map.numbers("from", ends[0], kLength);
+    ends[1] = ends[0];
+    map.numbers("to", ends[1], kLength);
+    GaitdCapsule& capsule = model_->capsules[i];
+    capsule.radius = map.number("radius", {1e-3, 1.0, "m"}).value_or(1e-3);
+    map.finish();
+    if (!of) continue;
+    capsule.body = of->body;
+    for (int k = 0; k < 2; ++k) {
+      Eigen::Map<Eigen::Vector3d>(capsule.ends[k]) =
+          of->p_BL + of->R_BL * Eigen::Map<const Eigen::Vector3d>(ends[k].data());
+    }
+  }
+  model_->capsule_count = static_cast<int>(nodes.size());
 }
 
 void RobotGeometry::read_feet(MapReader* root) {

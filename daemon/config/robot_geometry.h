@@ -29,6 +29,8 @@ class RobotGeometry {
   void read_chest(MapReader* root);
   void read_imus(MapReader* root);
   void read_feet(MapReader* root);
+  void read_hands(MapReader* root);
+  void read_capsules(MapReader* root);
   void read_legs(MapReader* root);
   // Positions of joints by name: missing ones are 0. Checked against the limits.
   void read_posture(MapReader* root);

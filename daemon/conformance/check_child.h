@@ -97,6 +97,8 @@ void with_layer(int layer, Function&& function) {
       return function(std::integral_constant<int, GAITD_LAYER_STEP_ADJUSTER>());
     case GAITD_LAYER_TOE_OFF:
       return function(std::integral_constant<int, GAITD_LAYER_TOE_OFF>());
+    case GAITD_LAYER_TASK_SOURCE:
+      return function(std::integral_constant<int, GAITD_LAYER_TASK_SOURCE>());
     case GAITD_LAYER_WHOLE_BODY_CONTROLLER:
       return function(std::integral_constant<int, GAITD_LAYER_WHOLE_BODY_CONTROLLER>());
     default:

@@ -36,6 +36,9 @@ GaitdToeOffInput InputSet::toe_off_input() const {
 GaitdWholeBodyControllerInput InputSet::controller() const {
   return {sizeof(GaitdWholeBodyControllerInput), 0, time, &robot, &gait, &toe_off, &objectives};
 }
+GaitdTaskSourceInput InputSet::task_source() const {
+  return {sizeof(GaitdTaskSourceInput), 0, time, &robot, &gait, &motions};
+}
 
 void InputSet::spoil(double value) {
   for (GaitdJointSensor& joint : sensors.joints) {

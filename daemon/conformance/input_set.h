@@ -17,6 +17,7 @@ struct InputSet {
   GaitdStepAdjustment adjustment{};
   GaitdToeOff toe_off{};
   GaitdObjectives objectives{};
+  GaitdMotions motions{};
 
   // The input of one layer; it points into this object.
   GaitdStateEstimatorInput estimator() const;
@@ -24,6 +25,7 @@ struct InputSet {
   GaitdStepAdjusterInput adjuster() const;
   GaitdToeOffInput toe_off_input() const;
   GaitdWholeBodyControllerInput controller() const;
+  GaitdTaskSourceInput task_source() const;
 
   // Puts `value` where a sensor or a layer before could have left a number that is none. Counts,
   // indices and durations stay: the daemon makes those.
@@ -38,6 +40,7 @@ auto input_of(const InputSet& set) {
   if constexpr (kLayer == GAITD_LAYER_STEP_ADJUSTER) return set.adjuster();
   if constexpr (kLayer == GAITD_LAYER_TOE_OFF) return set.toe_off_input();
   if constexpr (kLayer == GAITD_LAYER_WHOLE_BODY_CONTROLLER) return set.controller();
+  if constexpr (kLayer == GAITD_LAYER_TASK_SOURCE) return set.task_source();
 }
 
 }  // namespace gaitd::daemon

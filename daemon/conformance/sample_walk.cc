@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gaitd/sdk/chain.h"
 #include "gaitd/sdk/views.h"
 
 namespace gaitd::daemon {
@@ -15,6 +16,7 @@ constexpr double kStandFirst = 0.3;  // s
 constexpr double kStandLast = 0.2;   // s
 constexpr double kLongest = 20.0;    // s, of everything
 constexpr double kSinkTime = 1.0;    // s, from the beginning, in which the knees bend for the walk
+constexpr double kMotion = 1.0;      // s, of the motions of the body
 constexpr double kSink = 0.06;       // of the pelvis height: no leg is ever stretched
 
 }  // namespace
@@ -47,10 +49,35 @@ SampleWalk::SampleWalk(const GaitdModel& model)
   com_ = kinematics_.com().head<2>() - middle.head<2>();
   offset_ = pelvis_.head<2>() - com_;
   feel(qd_, pelvis_velocity_);
+  ask_for_motions();
   gait_.reset(set_.robot);
   set_.gait = gait_.state();
   objectives_.reset(set_.robot, set_.gait);
   planner_.update(kPeriod, set_.robot, set_.gait, {}, 4.0, 0.08, set_.plan);
+}
+
+// Every kind of motion that the robot is able to.
+void SampleWalk::ask_for_motions() {
+  set_.motions.size = sizeof(set_.motions);
+  const auto ask = [this](int part, int kind, std::uint32_t mask) -> GaitdMotionPoint& {
+    GaitdMotion& motion = set_.motions.parts[part];
+    motion.id = static_cast<std::uint32_t>(part + 1);
+    motion.kind = kind;
+    motion.axis_mask = mask;
+    motion.point_count = 1;
+    motion.points[0].time = kMotion;
+    return motion.points[0];
+  };
+  ask(GAITD_PART_PELVIS, GAITD_MOTION_PELVIS, 0b111111).value[1] = 0.02;
+  ask(GAITD_PART_CHEST, GAITD_MOTION_CHEST, 0b111000).value[5] = 0.1;
+  if (sdk::arm_of(model_, GAITD_LEFT).count == 0 || sdk::arm_of(model_, GAITD_RIGHT).count == 0) {
+    return;
+  }
+  ask(GAITD_PART_LEFT_ARM, GAITD_MOTION_ARM, 0b1).value[0] =
+      model_.nominal_position[sdk::arm_of(model_, GAITD_LEFT).joints[0]];
+  // Perhaps out of reach.
+  ask(GAITD_PART_RIGHT_ARM, GAITD_MOTION_HAND, 0b000111).value[0] = 0.3 * model_.nominal_com_height;
+  set_.motions.parts[GAITD_PART_RIGHT_ARM].frame = GAITD_RELATIVE_TO_PELVIS;
 }
 
 Eigen::Vector3d SampleWalk::sole(int side) {

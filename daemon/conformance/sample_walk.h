@@ -28,6 +28,7 @@ class SampleWalk {
   const InputSet& inputs() const { return set_; }
 
  private:
+  void ask_for_motions();
   void move();
   void feel(const Eigen::VectorXd& last_velocity, const Eigen::Vector3d& last_pelvis_velocity);
   void decide();

@@ -31,11 +31,17 @@ void visit_joint_test(Test& test, Field&& field) {
   field("duration", test.duration);
 }
 
-template <class Pose, class Field>
-void visit_pose(Pose& pose, Field&& field) {
-  field("shift", pose.shift);
-  field("turn", pose.turn);
-  field("duration", pose.duration);
+template <class Motion, class Field>
+void visit_motion(Motion& motion, Field&& field) {
+  field("kind", motion.kind);
+  field("frame", motion.frame);
+  field("axis_mask", motion.axis_mask);
+}
+
+template <class Point, class Field>
+void visit_point(Point& point, Field&& field) {
+  field("time", point.time);
+  field("value", point.value);
 }
 
 template <class Walk, class Field>
@@ -113,7 +119,14 @@ std::string input_text(const Command& c, int parameter_owner, int parameter_plac
       visit_joint_test(c.joint_test, Write{&out});
       break;
     case CommandType::kPose:
-      visit_pose(c.pose, Write{&out});
+      out["part"] = c.pose.part;
+      visit_motion(c.pose.motion, Write{&out});
+      out["points"] = json::array();
+      for (int i = 0; i < c.pose.motion.point_count; ++i) {
+        json point;
+        visit_point(c.pose.motion.points[i], Write{&point});
+        out["points"].push_back(std::move(point));
+      }
       break;
     case CommandType::kDrive:
       visit_drive(c.drive, Write{&out});
@@ -137,7 +150,15 @@ bool read_input(const json& in, Command* c, int* parameter_owner, int* parameter
     if (c->type == CommandType::kMode) c->mode = in.at("mode").get<int>();
     if (c->type == CommandType::kWalk) visit_walk(c->walk, Read{&in});
     if (c->type == CommandType::kJointTest) visit_joint_test(c->joint_test, Read{&in});
-    if (c->type == CommandType::kPose) visit_pose(c->pose, Read{&in});
+    if (c->type == CommandType::kPose) {
+      GaitdMotion& motion = c->pose.motion;
+      c->pose.part = in.at("part").get<int>();
+      visit_motion(motion, Read{&in});
+      for (const json& point : in.at("points")) {
+        if (motion.point_count >= GAITD_MAX_MOTION_POINTS) return false;
+        visit_point(motion.points[motion.point_count++], Read{&point});
+      }
+    }
     if (c->type == CommandType::kDrive) {
       visit_drive(c->drive, Read{&in});
       c->drive.ends = in.value("ends", false);

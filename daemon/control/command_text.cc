@@ -41,6 +41,23 @@ class Writer {
   std::size_t length_ = 0;
 };
 
+// The last point of the way: where it leads.
+void add_motion(Writer& w, const walking::MotionCommand& command) {
+  constexpr const char* kParts[] = {"pelvis", "chest", "left arm", "right arm"};
+  constexpr const char* kFrames[] = {"world", "chest", "pelvis"};
+  const GaitdMotion& motion = command.motion;
+  w.add(R"(,"part":"%s")", kParts[std::clamp<int>(command.part, 0, GAITD_PART_COUNT - 1)]);
+  if (motion.kind == GAITD_MOTION_HAND) {
+    w.add(R"(,"frame":"%s")", kFrames[std::clamp<int>(motion.frame, 0, 2)]);
+  }
+  if (motion.point_count < 1) return;
+  const GaitdMotionPoint& end = motion.points[motion.point_count - 1];
+  w.add(R"(,"points":%d,"duration":%.17g,"to":[)", motion.point_count, end.time);
+  const int axes = motion.kind == GAITD_MOTION_ARM ? GAITD_MAX_MOTION_AXES : 6;
+  for (int i = 0; i < axes; ++i) w.add(i == 0 ? "%.6g" : ",%.6g", end.value[i]);
+  w.add("]");
+}
+
 }  // namespace
 
 std::string_view command_text(const Command& c, const CommandReply& reply, char* buffer,
@@ -80,9 +97,7 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
           c.joint_test.amplitude, c.joint_test.duration);
   }
   if (c.type == CommandType::kPose) {
-    w.add(R"(,"shift":[%.17g,%.17g,%.17g],"turn":[%.17g,%.17g,%.17g],"duration":%.17g)",
-          c.pose.shift[0], c.pose.shift[1], c.pose.shift[2], c.pose.turn[0], c.pose.turn[1],
-          c.pose.turn[2], c.pose.duration);
+    add_motion(w, c.pose);
   }
   if (!reply.accepted) {
     w.add(R"(,"reason":)");

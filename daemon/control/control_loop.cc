@@ -336,11 +336,29 @@ void ControlLoop::report_changes() {
     telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
                            dropped_text(pipeline_->monitor(), i, text, sizeof(text)));
   }
+  report_hands();
   if (d.safety == last_state_ && d.faults == last_faults_) return;
   last_state_ = d.safety;
   last_faults_ = d.faults;
   telemetry_->push_event(d.safety == SafetyState::kFault ? EventKind::kFault : EventKind::kState,
                          d.time.tick, d.time.time, state_text(*pipeline_, text, sizeof(text)));
+}
+
+// A motion is over, and its hand is not where it should be.
+void ControlLoop::report_hands() {
+  constexpr double kFar = 0.01;     // m
+  constexpr double kTurned = 0.03;  // rad
+  const TickData& d = pipeline_->data();
+  for (int hand = 0; hand < GAITD_MAX_HANDS; ++hand) {
+    const GaitdHandReference& reference = d.references.hands[hand];
+    const bool moves = reference.active != 0 && reference.on_its_way != 0;
+    const bool moved = std::exchange(hand_moved_[hand], moves);
+    if (!moved || moves || reference.active == 0) continue;
+    if (reference.position_error < kFar && reference.turn_error < kTurned) continue;
+    char text[kMaxEventText];
+    telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
+                           hand_text(hand, reference, text, sizeof(text)));
+  }
 }
 
 void ControlLoop::tell_overrun() {

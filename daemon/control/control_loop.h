@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -89,6 +90,7 @@ class ControlLoop {
   void end(RunEnd how, const std::string& problem = "");
   void record();
   void report_changes();
+  void report_hands();
   void wait_for_next_period();
   void tell_overrun();
 
@@ -118,6 +120,7 @@ class ControlLoop {
   SafetyState last_state_ = SafetyState::kDisarmed;
   std::uint32_t last_faults_ = 0;
   JointMask last_dropped_ = 0;
+  std::array<bool, GAITD_MAX_HANDS> hand_moved_{};
 };
 
 }  // namespace gaitd::daemon

@@ -15,7 +15,8 @@ LayerChain::LayerChain(Layers l, const GaitdModel& model)
              LayerSlot<1>(std::move(l[1]), model, rules_),
              LayerSlot<2>(std::move(l[2]), model, rules_),
              LayerSlot<3>(std::move(l[3]), model, rules_),
-             LayerSlot<4>(std::move(l[4]), model, rules_)} {}
+             LayerSlot<4>(std::move(l[4]), model, rules_),
+             LayerSlot<5>(std::move(l[5]), model, rules_)} {}
 
 template <class Self, class Function>
 auto LayerChain::with_slot(Self& self, int layer, Function&& function) {
@@ -28,6 +29,8 @@ auto LayerChain::with_slot(Self& self, int layer, Function&& function) {
       return function(std::get<GAITD_LAYER_STEP_ADJUSTER>(self.slots_));
     case GAITD_LAYER_TOE_OFF:
       return function(std::get<GAITD_LAYER_TOE_OFF>(self.slots_));
+    case GAITD_LAYER_TASK_SOURCE:
+      return function(std::get<GAITD_LAYER_TASK_SOURCE>(self.slots_));
     default:
       return function(std::get<GAITD_LAYER_WHOLE_BODY_CONTROLLER>(self.slots_));
   }
@@ -119,6 +122,11 @@ bool LayerChain::estimate(const GaitdStart& start, TickData& d) {
   in.gait = &d.gait;
   in.commands = &d.commands;
   return run<GAITD_LAYER_STATE_ESTIMATOR>(in, d.robot, d.times);
+}
+
+bool LayerChain::source_tasks(TickData& d) {
+  const GaitdTaskSourceInput in{sizeof(in), 0, d.time, &d.robot, &d.gait, &d.motions};
+  return run<GAITD_LAYER_TASK_SOURCE>(in, d.references, d.times);
 }
 
 bool LayerChain::plan(TickData& d) {

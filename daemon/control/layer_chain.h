@@ -12,7 +12,7 @@
 
 namespace gaitd::daemon {
 
-// The five layers, the check of what each wrote, and their hot swaps. A layer that fails or writes
+// The six layers, the check of what each wrote, and their hot swaps. A layer that fails or writes
 // something that is not finite or out of range leaves its last good output in place; the caller
 // decides what follows.
 class LayerChain {
@@ -30,6 +30,7 @@ class LayerChain {
 
   // Each runs one layer on `data`. False: failed, the output is the last good one.
   bool estimate(const GaitdStart& start, TickData& data);
+  bool source_tasks(TickData& data);
   bool plan(TickData& data);
   bool adjust(TickData& data);
   bool toe_off(TickData& data);
@@ -71,7 +72,7 @@ class LayerChain {
   SwapRules rules_;
   std::tuple<LayerSlot<GAITD_LAYER_STATE_ESTIMATOR>, LayerSlot<GAITD_LAYER_ICP_PLANNER>,
              LayerSlot<GAITD_LAYER_STEP_ADJUSTER>, LayerSlot<GAITD_LAYER_TOE_OFF>,
-             LayerSlot<GAITD_LAYER_WHOLE_BODY_CONTROLLER>>
+             LayerSlot<GAITD_LAYER_WHOLE_BODY_CONTROLLER>, LayerSlot<GAITD_LAYER_TASK_SOURCE>>
       slots_;
   Failure failure_;
   double icp_error_before_ = 0.0;  // m, without any swap, its slow mean

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace gaitd::daemon {
 namespace {
@@ -15,6 +16,8 @@ constexpr double kAngle = 0.1;      // rad, of the pelvis; all three of the esti
 constexpr double kVelocity = 0.5;   // m/s, of the CoM: 0.15 m of the ICP
 constexpr double kIcpReference = 0.25;  // m, one length of a foot (0.04 m)
 constexpr double kCmp = 0.4;     // m, from edge to edge of both feet when they stand together
+constexpr double kShift = 0.05;  // m, of the CoM that a task source asks for
+constexpr double kJoint = 1.0;   // rad, of a joint that it has a reference for: a swing of the arms
 constexpr double kTorque = 1.5;  // effort limits, of one joint: nearly its range (0.6)
 
 template <std::size_t kSize>
@@ -28,6 +31,11 @@ double angle(const double (&a)[4], const double (&b)[4]) {
   double dot = 0.0;
   for (int i = 0; i < 4; ++i) dot += a[i] * b[i];
   return 2.0 * std::acos(std::min(1.0, std::abs(dot)));
+}
+
+double joint_goal(const GaitdModel& model, const GaitdTaskReferences& r, int joint) {
+  return (r.joint_mask >> joint & 1u) != 0 ? r.joint_position[joint]
+                                           : model.nominal_position[joint];
 }
 
 void mix(double from, double share, double& to) { to = from + share * (to - from); }
@@ -67,6 +75,16 @@ double output_difference(const GaitdModel& model, const GaitdWholeBodyController
   return largest / kTorque;
 }
 
+double output_difference(const GaitdModel& model, const GaitdTaskReferences& a,
+                         const GaitdTaskReferences& b) {
+  double largest = 0.0;
+  for (int i = 0; i < model.joint_count; ++i) {
+    largest = std::max(largest, std::abs(joint_goal(model, a, i) - joint_goal(model, b, i)));
+  }
+  return std::max({largest / kJoint, distance(a.com_shift, b.com_shift) / kShift,
+                   angle(a.pelvis_turn, b.pelvis_turn) / kAngle});
+}
+
 void cross_fade(const GaitdIcpPlan& from, double share, GaitdIcpPlan& to) {
   mix(from.icp, share, to.icp);
   mix(from.icp_velocity, share, to.icp_velocity);
@@ -98,6 +116,20 @@ void cross_fade(const GaitdWholeBodyControllerOutput& from, double share,
     mix(a.stiffness, share, b.stiffness);
     mix(a.damping, share, b.damping);
     mix(a.acceleration, share, b.acceleration);
+  }
+}
+
+// Joints that only one of the two has a reference for go by the objectives' own filters.
+void cross_fade(const GaitdTaskReferences& from, double share, GaitdTaskReferences& to) {
+  mix(from.com_shift, share, to.com_shift);
+  mix(from.com_shift_velocity, share, to.com_shift_velocity);
+  mix(from.com_shift_acceleration, share, to.com_shift_acceleration);
+  const std::uint64_t both = from.joint_mask & to.joint_mask;
+  for (int i = 0; both >> i != 0 && i < GAITD_MAX_JOINTS; ++i) {
+    if ((both >> i & 1u) == 0) continue;
+    mix(from.joint_position[i], share, to.joint_position[i]);
+    mix(from.joint_velocity[i], share, to.joint_velocity[i]);
+    mix(from.joint_acceleration[i], share, to.joint_acceleration[i]);
   }
 }
 

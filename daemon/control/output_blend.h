@@ -15,6 +15,8 @@ double output_difference(const GaitdModel& model, const GaitdStepAdjustment& a,
 double output_difference(const GaitdModel& model, const GaitdToeOff& a, const GaitdToeOff& b);
 double output_difference(const GaitdModel& model, const GaitdWholeBodyControllerOutput& a,
                          const GaitdWholeBodyControllerOutput& b);
+double output_difference(const GaitdModel& model, const GaitdTaskReferences& a,
+                         const GaitdTaskReferences& b);
 
 // Cross-fades what acts on the robot at once: `to` becomes the mix of both, with `share` (0..1) of
 // its own. Outputs that carry their continuity in the state of the layer stay as they are. [rt]
@@ -22,6 +24,7 @@ void cross_fade(const GaitdIcpPlan& from, double share, GaitdIcpPlan& to);
 void cross_fade(const GaitdStepAdjustment& from, double share, GaitdStepAdjustment& to);
 void cross_fade(const GaitdWholeBodyControllerOutput& from, double share,
                 GaitdWholeBodyControllerOutput& to);
+void cross_fade(const GaitdTaskReferences& from, double share, GaitdTaskReferences& to);
 template <class Output>
 void cross_fade(const Output&, double, Output&) {}
 

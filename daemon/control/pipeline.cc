@@ -16,6 +16,10 @@
 namespace gaitd::daemon {
 namespace {
 
+// What a hand may miss without a word.
+constexpr double kHandMiss = 0.005;      // m
+constexpr double kHandTurnMiss = 0.015;  // rad
+
 CommandReply refused(const Command& command, std::int64_t tick, const char* why) {
   CommandReply reply;
   reply.tick = tick;
@@ -36,7 +40,7 @@ Pipeline::Pipeline(const GaitdModel& model, const Calibration& calibration,
       layers_(std::move(layers), model_),
       gait_(model),
       objectives_(model),
-      pose_(model),
+      motions_(model),
       safety_(model),
       monitor_(model),
       compensation_(model, calibration) {
@@ -179,7 +183,7 @@ void Pipeline::reset(bool arm) {
 
 void Pipeline::begin_control() {
   gait_.reset(data_.robot);
-  pose_.reset();
+  motions_.reset();
   data_.gait = gait_.state();
   objectives_.reset(data_.robot, data_.gait);
   layers_.reset_controllers();
@@ -211,21 +215,40 @@ bool Pipeline::control(double dt) {
   const walking::VelocityWalk& drive = gait_.velocity_walk();
   d.icp_margin = walking::support_polygon(model_, d.gait).inside_distance(sdk::view(d.robot.icp));
   d.drive = drive.active() ? Drive{true, drive.target(), drive.step().velocity} : Drive{};
-  pose_.update(dt, d.gait);
+  d.motions = motions_.state();
+  const bool moved = layers_.source_tasks(d);
   const bool planned = layers_.plan(d);
-  pose_.shift_plan(d.gait, d.plan);
-  const bool sound = planned & layers_.adjust(d) & layers_.toe_off(d);
+  walking::shift_plan(d.gait, d.references, d.plan);
+  const bool sound = moved & planned & layers_.adjust(d) & layers_.toe_off(d);
   if (!sound) {
     safety_.raise(kFaultLayer);
     return false;
   }
-  objectives_.set_pose(pose_.height(), pose_.turn(), pose_.turn_rate());
+  objectives_.set_references(d.references);
   objectives_.update(dt, d.robot, d.gait, gait_.lift_off(), d.adjustment, d.toe_off, d.objectives);
+  d.clearance = objectives_.clearance();
   for (int side = 0; side < GAITD_MAX_FEET; ++side) d.legs[side] = objectives_.leg(side);
   const bool solved = layers_.control(d);
   layers_.watch_icp_error(
       std::hypot(d.robot.icp[0] - d.plan.icp[0], d.robot.icp[1] - d.plan.icp[1]), dt);
   return solved;
+}
+
+CommandReply Pipeline::move(const Command& command) {
+  const walking::Refusal refusal =
+      motions_.command(command.pose, data_.robot, gait_.state(), data_.references);
+  if (refusal.refused()) return refused(command, data_.time.tick, refusal.message);
+  CommandReply reply;
+  reply.request = command.request;
+  reply.tick = data_.time.tick;
+  reply.accepted = true;
+  const walking::JointChain::Miss miss = motions_.last_miss();
+  if (miss.position > kHandMiss || miss.turn > kHandTurnMiss) {
+    std::snprintf(reply.message.data(), reply.message.size(),
+                  "out of reach: the hand will miss by %.3f m and %.3f rad, its arm at its limits",
+                  miss.position, miss.turn);
+  }
+  return reply;
 }
 
 CommandReply Pipeline::execute(const Command& command) {
@@ -288,8 +311,7 @@ CommandReply Pipeline::execute(const Command& command) {
       }
       break;
     case CommandType::kPose:
-      refusal = pose_.command(command.pose, gait_.state());
-      break;
+      return move(command);
     case CommandType::kPause:
       refusal = gait_.pause();
       break;

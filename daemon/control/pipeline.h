@@ -9,6 +9,7 @@
 #include "daemon/control/tick_data.h"
 #include "daemon/parameters/live_parameters.h"
 #include "gaitd/walking/gait_machine.h"
+#include "gaitd/walking/motions.h"
 #include "gaitd/walking/objectives.h"
 
 namespace gaitd::daemon {
@@ -49,6 +50,7 @@ class Pipeline {
  private:
   CommandReply set_parameter(const Command& command);
   bool apply(int owner, int index, double value);
+  CommandReply move(const Command& command);
   void begin_control();
   bool control(double dt);
 
@@ -59,7 +61,7 @@ class Pipeline {
   LayerChain layers_;
   walking::GaitMachine gait_;
   walking::ObjectiveBuilder objectives_;
-  walking::StancePose pose_;
+  walking::Motions motions_;
   Safety safety_;
   SensorMonitor monitor_;
   Compensation compensation_;

@@ -17,8 +17,8 @@ using Kind = SignalDescription::Kind;
 
 constexpr const char* kSides[] = {"left", "right"};
 constexpr const char* kAxes[] = {"x", "y", "z"};
-constexpr const char* kLayerTimes[] = {"estimator_us", "planner_us", "adjuster_us", "toe_off_us",
-                                       "wbc_us"};
+constexpr const char* kLayerTimes[] = {"estimator_us", "planner_us", "adjuster_us",
+                                       "toe_off_us",   "wbc_us",     "tasks_us"};
 
 // Two visitors walk the same enumeration below: one writes down the names, the other the values.
 // A name comes in parts, so that recording does not have to put any together.
@@ -121,6 +121,8 @@ void visit_balance(V& v, const TickData& d) {
   v.real(d.objectives.height_target, "m", "com/height_target");
   axes(v, d.robot.icp, 2, "m", "icp/");
   v.real(d.icp_margin, "m", "icp/margin");
+  v.real(std::hypot(d.robot.icp[0] - d.plan.icp[0], d.robot.icp[1] - d.plan.icp[1]), "m",
+         "icp/error");
   axes(v, d.plan.icp, 2, "m", "icp/desired/");
   axes(v, d.plan.ecmp, 2, "m", "ecmp/reference/");
   axes(v, d.adjustment.ecmp, 2, "m", "ecmp/desired/");
@@ -199,6 +201,32 @@ void visit_layers(V& v, const TickData& d) {
 }
 
 template <class V>
+void visit_tasks(V& v, const GaitdModel& model, const TickData& d) {
+  const GaitdTaskReferences& r = d.references;
+  pose(v, r.com_shift, r.pelvis_turn, "pose/pelvis/");
+  const Eigen::Vector3d chest = sdk::roll_pitch_yaw(sdk::quaternion(r.chest_turn));
+  v.real(chest.x(), "rad", "pose/chest/roll");
+  v.real(chest.y(), "rad", "pose/chest/pitch");
+  v.real(chest.z(), "rad", "pose/chest/yaw");
+  if (model.capsule_count > 0) v.real(d.clearance, "m", "pose/clearance");
+  for (int side = 0; side < GAITD_MAX_HANDS; ++side) {
+    if (model.hands[side].body <= 0) continue;
+    const GaitdHandReference& hand = r.hands[side];
+    const char* name = kSides[side];
+    v.boolean(hand.active != 0, "hand/", name, "/active");
+    axes(v, hand.goal.position, 3, "m", "hand/", name, "/goal/");
+    v.real(hand.position_error, "m", "hand/", name, "/error");
+    v.real(hand.turn_error, "rad", "hand/", name, "/turn_error");
+    // Once it is there.
+    const double rest = hand.active != 0 && hand.on_its_way == 0 ? 1.0 : 0.0;
+    v.real(rest * hand.position_error, "m", "hand/", name, "/rest_error");
+    v.real(rest * hand.turn_error, "rad", "hand/", name, "/rest_turn_error");
+    v.real(hand.reach_error[0], "m", "hand/", name, "/reach_error");
+    v.real(hand.reach_error[1], "rad", "hand/", name, "/reach_turn_error");
+  }
+}
+
+template <class V>
 void visit_joints(V& v, const GaitdModel& model, const TickData& d) {
   for (int i = 0; i < model.joint_count; ++i) {
     const char* name = model.joints[i].name;
@@ -251,6 +279,7 @@ void visit(V&& v, const GaitdModel& model, const TickData& d, bool truth) {
   visit_balance(v, d);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) visit_foot(v, d, side);
   visit_layers(v, d);
+  visit_tasks(v, model, d);
   visit_joints(v, model, d);
   if (truth) {
     visit_truth(v, d.truth);

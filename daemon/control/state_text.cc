@@ -69,4 +69,14 @@ std::string_view dropped_text(const SensorMonitor& monitor, int index, char* buf
   return text.view();
 }
 
+std::string_view hand_text(int hand, const GaitdHandReference& reference, char* buffer,
+                           std::size_t size) {
+  Text text(buffer, size);
+  text.add(R"({"hand":"%s","what":"stops %.3f m and %.3f rad off its goal",)",
+           hand == GAITD_LEFT ? "left" : "right", reference.position_error, reference.turn_error);
+  text.add(R"("of_it_out_of_reach":[%.3f,%.3f]})", reference.reach_error[0],
+           reference.reach_error[1]);
+  return text.view();
+}
+
 }  // namespace gaitd::daemon

@@ -8,12 +8,16 @@
 
 namespace gaitd::daemon {
 
-// Texts (JSON) of events about the safety machine, written to `text`. [rt]
+// Texts (JSON) of events about what became of the robot, written to `text`. [rt]
 
 // The state, the faults and what is behind them.
 std::string_view state_text(const Pipeline& pipeline, char* text, std::size_t size);
 // A joint that was dropped, and why.
 std::string_view dropped_text(const SensorMonitor& monitor, int joint, char* text,
                               std::size_t size);
+
+// How far a hand is from where its motion should have brought it.
+std::string_view hand_text(int hand, const GaitdHandReference& reference, char* text,
+                           std::size_t size);
 
 }  // namespace gaitd::daemon

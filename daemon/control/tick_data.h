@@ -69,9 +69,11 @@ struct TickData {
   std::uint32_t health = 0;  // GAITD_HEALTH_* that the backend reports
   GaitdRobotState robot{};
   GaitdGaitState gait{};
+  GaitdMotions motions{};
   Drive drive{};
   // m, of the estimated ICP inside the support polygon, negative outside; NaN unless under control.
   double icp_margin = std::numeric_limits<double>::quiet_NaN();
+  GaitdTaskReferences references{};
   GaitdIcpPlan plan{};
   GaitdStepAdjustment adjustment{};
   GaitdToeOff toe_off{};
@@ -80,6 +82,8 @@ struct TickData {
   GaitdJointCommands commands{};  // after safety and calibration: what the backend gets
   SafetyState safety = SafetyState::kDisarmed;
   std::uint32_t faults = 0;
+  // m, between the capsules of arms and body that are nearest; infinite where none could touch.
+  double clearance = std::numeric_limits<double>::infinity();
   std::array<walking::LegConfiguration::Reference, GAITD_MAX_FEET> legs{};
   std::array<int, GAITD_LAYER_COUNT> variants{};  // in use, by their place in the signal table
   bool has_truth = false;

@@ -137,4 +137,30 @@ const char* output_error(const GaitdWholeBodyControllerOutput& w, int joint_coun
   return nullptr;
 }
 
+const char* output_error(const GaitdTaskReferences& r, int joint_count) {
+  if (r.size != sizeof(r)) return kWrongSize;
+  if (!finite(r.com_shift)) return "com_shift: is not finite";
+  if (!finite(r.com_shift_velocity) || !finite(r.com_shift_acceleration)) {
+    return "com_shift: velocity or acceleration is not finite";
+  }
+  if (!unit(r.pelvis_turn)) return "pelvis_turn: is no unit quaternion";
+  if (!finite(r.pelvis_turn_rate)) return "pelvis_turn_rate: is not finite";
+  if (!unit(r.chest_turn)) return "chest_turn: is no unit quaternion";
+  if (!finite(r.chest_turn_rate)) return "chest_turn_rate: is not finite";
+  if (joint_count < GAITD_MAX_JOINTS && r.joint_mask >> joint_count != 0) {
+    return "joint_mask: has joints beyond those of the model";
+  }
+  if (!finite(r.joint_position, joint_count)) return "joint_position: is not finite";
+  if (!finite(r.joint_velocity, joint_count)) return "joint_velocity: is not finite";
+  if (!finite(r.joint_acceleration, joint_count)) return "joint_acceleration: is not finite";
+  for (const GaitdHandReference& hand : r.hands) {
+    if (!finite(hand.goal.position)) return "hands.goal: is not finite";
+    if (!unit(hand.goal.orientation)) return "hands.goal: has no unit quaternion";
+    if (!std::isfinite(hand.position_error + hand.turn_error) || !finite(hand.reach_error)) {
+      return "hands: an error is not finite";
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace gaitd::daemon

@@ -14,5 +14,6 @@ const char* output_error(const GaitdIcpPlan& plan, int joint_count);
 const char* output_error(const GaitdStepAdjustment& adjustment, int joint_count);
 const char* output_error(const GaitdToeOff& toe_off, int joint_count);
 const char* output_error(const GaitdWholeBodyControllerOutput& wbc, int joint_count);
+const char* output_error(const GaitdTaskReferences& references, int joint_count);
 
 }  // namespace gaitd::daemon

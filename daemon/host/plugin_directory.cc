@@ -14,9 +14,10 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr int kAllLayers[] = {GAITD_LAYER_STATE_ESTIMATOR,       GAITD_LAYER_ICP_PLANNER,
-                              GAITD_LAYER_STEP_ADJUSTER,         GAITD_LAYER_TOE_OFF,
-                              GAITD_LAYER_WHOLE_BODY_CONTROLLER, GAITD_LAYER_BACKEND};
+constexpr int kAllLayers[] = {
+    GAITD_LAYER_STATE_ESTIMATOR, GAITD_LAYER_ICP_PLANNER,           GAITD_LAYER_STEP_ADJUSTER,
+    GAITD_LAYER_TOE_OFF,         GAITD_LAYER_WHOLE_BODY_CONTROLLER, GAITD_LAYER_TASK_SOURCE,
+    GAITD_LAYER_BACKEND};
 
 std::optional<std::filesystem::path> find_in(const std::vector<std::filesystem::path>& roots,
                                              int layer, const std::string& variant) {

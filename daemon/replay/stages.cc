@@ -14,12 +14,13 @@ struct Rule {
 constexpr SignalStage kNone{};
 constexpr SignalStage kEstimator{"state_estimator", 1};
 constexpr SignalStage kGait{"gait machine", 2};
-constexpr SignalStage kPlanner{"icp_planner", 3};
-constexpr SignalStage kAdjuster{"step_adjuster", 4};
-constexpr SignalStage kToeOff{"toe_off", 5};
-constexpr SignalStage kObjectives{"objectives", 6};
-constexpr SignalStage kController{"whole_body_controller", 7};
-constexpr SignalStage kSafety{"safety", 8};
+constexpr SignalStage kTasks{"task_source", 3};
+constexpr SignalStage kPlanner{"icp_planner", 4};
+constexpr SignalStage kAdjuster{"step_adjuster", 5};
+constexpr SignalStage kToeOff{"toe_off", 6};
+constexpr SignalStage kObjectives{"objectives", 7};
+constexpr SignalStage kController{"whole_body_controller", 8};
+constexpr SignalStage kSafety{"safety", 9};
 
 // The first that fits.
 constexpr Rule kRules[] = {
@@ -33,6 +34,10 @@ constexpr Rule kRules[] = {
     {"foot/*/contact", kGait},
     {"icp/margin", kGait},
     {"drive/*", kGait},
+    {"icp/error", kPlanner},
+    {"pose/clearance", kObjectives},
+    {"pose/*", kTasks},
+    {"hand/*", kTasks},
     {"icp/desired/*", kPlanner},
     {"ecmp/reference/*", kPlanner},
     {"ecmp/desired/*", kAdjuster},

@@ -13,7 +13,8 @@
   X(GaitdFrame, 128) \
   X(GaitdFoot, 448) \
   X(GaitdLeg, 128) \
-  X(GaitdModel, 26504) \
+  X(GaitdCapsule, 80) \
+  X(GaitdModel, 29328) \
   X(GaitdSignalInfo, 24) \
   X(GaitdJointSensor, 64) \
   X(GaitdImuSensor, 144) \
@@ -25,12 +26,18 @@
   X(GaitdFootstep, 488) \
   X(GaitdFoothold, 224) \
   X(GaitdGaitState, 16160) \
+  X(GaitdMotionPoint, 104) \
+  X(GaitdMotion, 1720) \
+  X(GaitdMotions, 6888) \
+  X(GaitdHandReference, 128) \
+  X(GaitdTaskReferences, 1992) \
   X(GaitdIcpPlan, 264) \
   X(GaitdStepAdjustment, 128) \
   X(GaitdToeOff, 104) \
   X(GaitdContactPoint, 136) \
   X(GaitdTask, 232) \
-  X(GaitdObjectives, 12864) \
+  X(GaitdSeparation, 112) \
+  X(GaitdObjectives, 15560) \
   X(GaitdJointCommand, 72) \
   X(GaitdJointCommands, 4656) \
   X(GaitdWbcInfo, 688) \
@@ -47,11 +54,14 @@
   X(GaitdToeOffInput, 64) \
   X(GaitdWholeBodyControllerInput, 64) \
   X(GaitdWholeBodyControllerOutput, 5352) \
+  X(GaitdTaskSourceInput, 56) \
   X(GaitdStateEstimatorState, 208) \
   X(GaitdIcpPlannerState, 64) \
   X(GaitdStepAdjusterState, 80) \
   X(GaitdToeOffState, 24) \
   X(GaitdWholeBodyControllerState, 2168) \
+  X(GaitdMotionProgress, 304) \
+  X(GaitdTaskSourceState, 2248) \
   X(GaitdLayerVtable, 88) \
   X(GaitdInstance, 16) \
   X(GaitdDisturbance, 64) \
@@ -106,6 +116,11 @@
   X(GaitdLeg, hip_pitch_bend_sign, 80) \
   X(GaitdLeg, ankle_pitch_bend_sign, 88) \
   X(GaitdLeg, reserve, 96) \
+  X(GaitdCapsule, body, 0) \
+  X(GaitdCapsule, reserved, 4) \
+  X(GaitdCapsule, ends, 8) \
+  X(GaitdCapsule, radius, 56) \
+  X(GaitdCapsule, reserve, 64) \
   X(GaitdModel, size, 0) \
   X(GaitdModel, body_count, 4) \
   X(GaitdModel, joint_count, 8) \
@@ -124,6 +139,10 @@
   X(GaitdModel, nominal_pelvis_height, 26480) \
   X(GaitdModel, nominal_com_height, 26488) \
   X(GaitdModel, nominal_foot_separation, 26496) \
+  X(GaitdModel, hands, 26504) \
+  X(GaitdModel, capsule_count, 26760) \
+  X(GaitdModel, reserved_capsules, 26764) \
+  X(GaitdModel, capsules, 26768) \
   X(GaitdSignalInfo, stamp_ns, 0) \
   X(GaitdSignalInfo, age, 8) \
   X(GaitdSignalInfo, sequence, 16) \
@@ -221,6 +240,40 @@
   X(GaitdGaitState, footholds, 96) \
   X(GaitdGaitState, commanded, 544) \
   X(GaitdGaitState, adjusted, 8352) \
+  X(GaitdMotionPoint, time, 0) \
+  X(GaitdMotionPoint, value, 8) \
+  X(GaitdMotion, id, 0) \
+  X(GaitdMotion, kind, 4) \
+  X(GaitdMotion, frame, 8) \
+  X(GaitdMotion, axis_mask, 12) \
+  X(GaitdMotion, point_count, 16) \
+  X(GaitdMotion, reserved, 20) \
+  X(GaitdMotion, points, 24) \
+  X(GaitdMotion, reserve, 1688) \
+  X(GaitdMotions, size, 0) \
+  X(GaitdMotions, reserved, 4) \
+  X(GaitdMotions, parts, 8) \
+  X(GaitdHandReference, active, 0) \
+  X(GaitdHandReference, on_its_way, 4) \
+  X(GaitdHandReference, goal, 8) \
+  X(GaitdHandReference, position_error, 64) \
+  X(GaitdHandReference, turn_error, 72) \
+  X(GaitdHandReference, reach_error, 80) \
+  X(GaitdHandReference, reserve, 96) \
+  X(GaitdTaskReferences, size, 0) \
+  X(GaitdTaskReferences, reserved, 4) \
+  X(GaitdTaskReferences, com_shift, 8) \
+  X(GaitdTaskReferences, com_shift_velocity, 32) \
+  X(GaitdTaskReferences, com_shift_acceleration, 56) \
+  X(GaitdTaskReferences, pelvis_turn, 80) \
+  X(GaitdTaskReferences, pelvis_turn_rate, 112) \
+  X(GaitdTaskReferences, chest_turn, 136) \
+  X(GaitdTaskReferences, chest_turn_rate, 168) \
+  X(GaitdTaskReferences, joint_mask, 192) \
+  X(GaitdTaskReferences, joint_position, 200) \
+  X(GaitdTaskReferences, joint_velocity, 712) \
+  X(GaitdTaskReferences, joint_acceleration, 1224) \
+  X(GaitdTaskReferences, hands, 1736) \
   X(GaitdIcpPlan, size, 0) \
   X(GaitdIcpPlan, reserved, 4) \
   X(GaitdIcpPlan, icp, 8) \
@@ -269,6 +322,12 @@
   X(GaitdTask, acceleration, 72) \
   X(GaitdTask, weight, 120) \
   X(GaitdTask, reserve, 168) \
+  X(GaitdSeparation, body, 0) \
+  X(GaitdSeparation, point, 8) \
+  X(GaitdSeparation, normal, 56) \
+  X(GaitdSeparation, acceleration, 80) \
+  X(GaitdSeparation, weight, 88) \
+  X(GaitdSeparation, reserve, 96) \
   X(GaitdObjectives, size, 0) \
   X(GaitdObjectives, contact_count, 4) \
   X(GaitdObjectives, task_count, 8) \
@@ -288,6 +347,9 @@
   X(GaitdObjectives, joint_damping, 2752) \
   X(GaitdObjectives, contacts, 3264) \
   X(GaitdObjectives, tasks, 5440) \
+  X(GaitdObjectives, separation_count, 12864) \
+  X(GaitdObjectives, reserved, 12868) \
+  X(GaitdObjectives, separations, 12872) \
   X(GaitdJointCommand, mode, 0) \
   X(GaitdJointCommand, reserved, 4) \
   X(GaitdJointCommand, torque, 8) \
@@ -398,6 +460,12 @@
   X(GaitdWholeBodyControllerOutput, reserved, 4) \
   X(GaitdWholeBodyControllerOutput, commands, 8) \
   X(GaitdWholeBodyControllerOutput, info, 4664) \
+  X(GaitdTaskSourceInput, size, 0) \
+  X(GaitdTaskSourceInput, reserved, 4) \
+  X(GaitdTaskSourceInput, time, 8) \
+  X(GaitdTaskSourceInput, robot, 32) \
+  X(GaitdTaskSourceInput, gait, 40) \
+  X(GaitdTaskSourceInput, motions, 48) \
   X(GaitdStateEstimatorState, size, 0) \
   X(GaitdStateEstimatorState, initialised, 4) \
   X(GaitdStateEstimatorState, pelvis_position, 8) \
@@ -435,6 +503,17 @@
   X(GaitdWholeBodyControllerState, contact_body, 1080) \
   X(GaitdWholeBodyControllerState, position_reference, 1144) \
   X(GaitdWholeBodyControllerState, velocity_reference, 1656) \
+  X(GaitdMotionProgress, id, 0) \
+  X(GaitdMotionProgress, kind, 4) \
+  X(GaitdMotionProgress, elapsed, 8) \
+  X(GaitdMotionProgress, value, 16) \
+  X(GaitdMotionProgress, velocity, 112) \
+  X(GaitdMotionProgress, acceleration, 208) \
+  X(GaitdTaskSourceState, size, 0) \
+  X(GaitdTaskSourceState, reserved, 4) \
+  X(GaitdTaskSourceState, parts, 8) \
+  X(GaitdTaskSourceState, joint_position, 1224) \
+  X(GaitdTaskSourceState, joint_velocity, 1736) \
   X(GaitdLayerVtable, size, 0) \
   X(GaitdLayerVtable, reserved, 4) \
   X(GaitdLayerVtable, init, 8) \

@@ -18,8 +18,8 @@
 namespace gaitd {
 namespace {
 
-constexpr const char* kLayers[] = {"state_estimator", "icp_planner", "step_adjuster", "toe_off",
-                                   "whole_body_controller"};
+constexpr const char* kLayers[] = {"state_estimator", "icp_planner",           "step_adjuster",
+                                   "toe_off",         "whole_body_controller", "task_source"};
 
 struct File {
   int layer;

@@ -156,12 +156,27 @@ class Robot:
         """``"walk-straight"``, ``"walk-bent"`` or ``"stand"``; while walking from the next step on."""
         return dict(self.call("mode", mode=mode))
 
-    def pose(self, *, duration: float = 1.5, **pelvis: float) -> Dict[str, Any]:
-        """Holds the pelvis of a standing robot elsewhere: x, y, z (m), roll, pitch, yaw (rad); nothing: back.
+    def pose(
+        self,
+        part: str = "pelvis",
+        side: Optional[str] = None,
+        *,
+        duration: float = 1.5,
+        points: Optional[Sequence[Mapping[str, Any]]] = None,
+        **where: Any,
+    ) -> Dict[str, Any]:
+        """Moves ``"pelvis"``, ``"chest"``, or ``"arm"`` or ``"hand"`` of a side (``"left"``, ``"right"``).
 
-        duration: s of the way there.
+        where: x, y, z (m), roll, pitch, yaw (rad); of a hand also frame (``"world"``, ``"chest"``, ``"pelvis"``), of an
+        arm ``joints={name: rad}``; nothing: back. duration: s of the way there. points: a way in place of one point,
+        dicts with time (s) and the same keys. The answer has a ``note`` where a hand cannot get there.
         """
-        return dict(self.call("pose", pelvis=pelvis, duration=duration))
+        if side is not None:
+            where["side"] = side
+        if points is not None:
+            where["points"] = [dict(point) for point in points]
+            return dict(self.call("pose", **{part: where}))
+        return dict(self.call("pose", **{part: where}, duration=duration))
 
     def arm(self) -> Dict[str, Any]:
         """Enables the drives and stands up; ``wait("standing")`` waits for it."""

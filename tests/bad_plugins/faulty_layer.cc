@@ -71,6 +71,7 @@ class FaultyLayer : public FAULTY_CLASS {
   static void spoil(GaitdStepAdjustment& out) { out.linear_momentum_rate[0] = kNan; }
   static void spoil(GaitdToeOff& out) { out.criterion[2] = kNan; }
   static void spoil(GaitdWholeBodyControllerOutput& out) { out.commands.joints[2].torque = kNan; }
+  static void spoil(GaitdTaskReferences& out) { out.com_shift[0] = kNan; }
   static void drift(double time, GaitdRobotState& out) { out.pelvis_position[0] += time; }
   static void drift(double time, GaitdIcpPlan& out) { out.icp[0] -= time; }
   static void drift(double time, GaitdStepAdjustment& out) {
@@ -78,6 +79,7 @@ class FaultyLayer : public FAULTY_CLASS {
     out.cmp[1] -= time;
   }
   static void drift(double, GaitdToeOff&) {}
+  static void drift(double time, GaitdTaskReferences& out) { out.com_shift[1] += time; }
   static void drift(double time, GaitdWholeBodyControllerOutput& out) {
     out.commands.joints[0].torque += 1000.0 * time;
   }

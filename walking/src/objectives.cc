@@ -43,7 +43,8 @@ ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
     : model_(model),
       weight_(model.total_mass * model.gravity),
       omega_(std::sqrt(model.gravity / model.nominal_com_height)),
-      kinematics_(model) {
+      kinematics_(model),
+      self_collision_(model) {
   kinematics_.update(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(), sdk::Vector6d::Zero(),
                      sdk::head(model_.nominal_position, model_.joint_count),
                      Eigen::VectorXd::Zero(model_.joint_count));
@@ -117,6 +118,7 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
   update_feet(robot, gait, toe_off, out);
   update_privileged(dt, robot, gait, out);
   update_impedance(gait, out);
+  self_collision_.update(kinematics_, out);
 }
 
 void ObjectiveBuilder::update_impedance(const GaitdGaitState& gait, GaitdObjectives& out) const {
@@ -163,7 +165,7 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
       .trailing_share = parameters_[Objective::kReachShare],
       .nominal_separation = model_.nominal_foot_separation,
       .largest_drop = parameters_[Objective::kReachDrop] * model_.nominal_com_height};
-  out.height_target = com_height_target(gait, reach) + pose_height_;
+  out.height_target = com_height_target(gait, reach) + references_.com_shift[2];
   const bool straight = gait.mode == GAITD_MODE_WALK_STRAIGHT;
   bool descends = false;
   if (gait.phase == GAITD_PHASE_SWING && !straight) {
@@ -247,28 +249,32 @@ void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot
   if (gait.phase != GAITD_PHASE_STAND) tilt_ *= std::max(0.0, 1.0 - kLevelRate * dt);
   const Eigen::Quaterniond goal = sdk::from_yaw(yaw_.value()) * sdk::exp_so3(tilt_);
   const Eigen::Vector3d rate(0.0, 0.0, yaw_.velocity());
-  Eigen::Quaterniond pelvis = goal;
-  Eigen::Vector3d pelvis_rate = rate;
-  if (pose_turn_.w() != 1.0) {
-    const Eigen::Quaterniond facing = sdk::from_yaw(yaw_.value());
-    pelvis = facing * pose_turn_ * facing.conjugate() * goal;
-    pelvis_rate += facing * pose_rate_;
-  }
-  add_orientation_task(0, pelvis, pelvis_rate, parameters_[Objective::kPelvisStiffness],
-                       parameters_[Objective::kPelvisDampingRatio], pelvis_weight(dt, gait, pelvis),
-                       out);
+  const Eigen::Quaterniond facing = sdk::from_yaw(yaw_.value());
+  const auto turned = [&](const double(&turn)[4]) {
+    const Eigen::Quaterniond q = sdk::quaternion(turn);
+    return q.vec().isZero(0.0) ? goal : facing * q * facing.conjugate() * goal;
+  };
+  const GaitdTaskReferences& r = references_;
+  const Eigen::Quaterniond pelvis = turned(r.pelvis_turn);
+  add_orientation_task(
+      0, pelvis, rate + facing * view(r.pelvis_turn_rate), parameters_[Objective::kPelvisStiffness],
+      parameters_[Objective::kPelvisDampingRatio], pelvis_weight(dt, gait, pelvis), out);
   if (model_.chest_body > 0) {
     add_orientation_task(
-        model_.chest_body, goal * chest_in_pelvis_, rate, parameters_[Objective::kChestStiffness],
+        model_.chest_body, turned(r.chest_turn) * chest_in_pelvis_,
+        rate + facing * view(r.chest_turn_rate), parameters_[Objective::kChestStiffness],
         parameters_[Objective::kChestDampingRatio], parameters_[Objective::kChestWeight], out);
   }
   const double stiffness = parameters_[Objective::kPostureStiffness];
   const double rate_gain = damping(stiffness, parameters_[Objective::kPostureDampingRatio]);
   for (int i = 0; i < model_.joint_count; ++i) {
     out.posture_weight[i] = posture_joint_[i] ? parameters_[Objective::kPostureWeight] : 0.0;
+    const bool told = (r.joint_mask >> i & 1u) != 0;
+    const double position = told ? r.joint_position[i] : model_.nominal_position[i];
     out.posture_acceleration[i] =
-        stiffness * (model_.nominal_position[i] - robot.joint_position[i]) -
-        rate_gain * robot.joint_velocity[i];
+        stiffness * (position - robot.joint_position[i]) - rate_gain * robot.joint_velocity[i];
+    if (told)
+      out.posture_acceleration[i] += r.joint_acceleration[i] + rate_gain * r.joint_velocity[i];
   }
 }
 

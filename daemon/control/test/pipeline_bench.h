@@ -17,8 +17,9 @@ namespace gaitd::daemon {
 
 using testing::atlas;
 inline constexpr double kPipelinePeriod = 0.001;  // s
-inline constexpr const char* kVariants[] = {"kinematic_inertial", "heel_to_toe", "step_plan",
-                                            "icp_criteria", "nullspace_qp"};
+inline constexpr const char* kVariants[] = {"kinematic_inertial", "heel_to_toe",
+                                            "step_plan",          "icp_criteria",
+                                            "nullspace_qp",       "trajectory_player"};
 
 inline std::vector<double> defaults(std::span<const GaitdParameter> table) {
   std::vector<double> values;

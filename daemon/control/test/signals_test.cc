@@ -23,7 +23,8 @@ const LayerVariants& variants() {
                                    {"heel_to_toe", "single_cmp"},
                                    {"step_plan", "fixed_steps"},
                                    {"icp_criteria", "never"},
-                                   {"nullspace_qp", "com_height_qp"}}};
+                                   {"nullspace_qp", "com_height_qp"},
+                                   {"trajectory_player"}}};
   return v;
 }
 
@@ -55,7 +56,7 @@ const char* const kNames[] = {
     "com/{x,y,z}",
     "com/velocity/{x,y,z}",
     "icp/{x,y}",
-    "icp/margin",
+    "icp/{margin,error}",
     "icp/desired/{x,y}",
     "ecmp/reference/{x,y}",
     "ecmp/desired/{x,y}",
@@ -71,8 +72,11 @@ const char* const kNames[] = {
     "step_adjust/{dx,dy,time_shift}",
     "footstep/{left,right}/{x,y,z,yaw}",
     "wbc/{status,iterations,solve_us,kkt_residual,null_trace,momentum_residual}",
-    "layer/{state_estimator,icp_planner,step_adjuster,toe_off,whole_body_controller}/variant",
-    "tick/{total_us,estimator_us,planner_us,adjuster_us,toe_off_us,wbc_us,jitter_us}"};
+    "layer/{state_estimator,icp_planner,step_adjuster,toe_off,whole_body_controller,task_source}/"
+    "variant",
+    "tick/{total_us,estimator_us,planner_us,adjuster_us,toe_off_us,wbc_us,tasks_us,jitter_us}",
+    "pose/{pelvis/x,pelvis/yaw,chest/roll,clearance}",
+    "hand/{left,right}/{active,goal/x,error,turn_error,rest_error,rest_turn_error,reach_error}"};
 const char* const kTruthNames[] = {"truth/pelvis/{x,y,z,roll,pitch,yaw}", "truth/com/{x,y,z}",
                                    "truth/com/velocity/{x,y,z}",
                                    "truth/foot/{left,right}/{slip,penetration,side_force}",

@@ -16,7 +16,7 @@
 namespace gaitd::daemon {
 namespace {
 
-const LayerVariants kVariants = {{{"a"}, {"b"}, {"c"}, {"d"}, {"e"}}};
+const LayerVariants kVariants = {{{"a"}, {"b"}, {"c"}, {"d"}, {"e"}, {"f"}}};
 
 TEST(Stages, EverySignalIsComparedButWallTimesAndWhatThePlantSays) {
   for (const SignalDescription& signal : make_signal_table(testing::atlas(), kVariants, true)) {
@@ -31,6 +31,7 @@ TEST(Stages, EverySignalIsComparedButWallTimesAndWhatThePlantSays) {
 TEST(Stages, NameWhatWritesASignalInTheOrderOfTheTick) {
   EXPECT_EQ(stage_of("pelvis/x").name, "state_estimator");
   EXPECT_EQ(stage_of("gait/phase").name, "gait machine");
+  EXPECT_EQ(stage_of("hand/left/error").name, "task_source");
   EXPECT_EQ(stage_of("icp/desired/x").name, "icp_planner");
   EXPECT_EQ(stage_of("cmp/desired/y").name, "step_adjuster");
   EXPECT_EQ(stage_of("toe_off/active").name, "toe_off");

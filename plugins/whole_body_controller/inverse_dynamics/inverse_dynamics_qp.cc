@@ -29,6 +29,7 @@ InverseDynamicsQp::InverseDynamicsQp(const GaitdModel& model)
       joints_(model.joint_count),
       dynamics_(model),
       solver_({nv_ + kMaxRho, 6, model.joint_count + 1}),
+      separations_(nv_),
       foot_feedback_(model) {
   const int n = nv_ + kMaxRho;
   rows_.resize(kMaxRows, nv_);
@@ -94,6 +95,7 @@ void InverseDynamicsQp::begin(const GaitdRobotState& robot, const GaitdObjective
   add_equalities(objectives);
   add_limits(robot, objectives, limits);
   add_rise_limit(robot, limits);
+  separations_.begin(dynamics_, objectives);
 }
 
 void InverseDynamicsQp::add_contacts(const GaitdObjectives& objectives) {
@@ -320,7 +322,10 @@ void InverseDynamicsQp::solve(double dt, int max_iterations) {
     for (int i = 0; i < nv_; ++i) acceleration_[i] = result.x[i];
     for (int i = 0; i < rho_count_; ++i) rho_[i] = result.x[nv_ + i];
     compute_torque();
-    if (!add_jumps(dt)) return;
+    const bool near = separations_.add_missed(
+        acceleration_,
+        [this](const auto& row, double target, double weight) { add_row(row, target, weight); });
+    if (!(add_jumps(dt) || near)) return;
   }
 }
 

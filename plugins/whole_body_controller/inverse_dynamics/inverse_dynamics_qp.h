@@ -10,6 +10,7 @@
 #include "gaitd/qp/dense_solver.h"
 #include "gaitd/sdk/parameter.h"
 #include "null_space_projector.h"
+#include "separation_rows.h"
 
 namespace gaitd::plugins {
 
@@ -56,7 +57,8 @@ inline constexpr GaitdParameter kFootFeedbackLimitParameter = sdk::real_paramete
 //              vdot_min <= vdot <= vdot_max,  rho_min <= rho <= rho_max
 // Torques that would jump from the tick before by more than the torque rate allows are solved for
 // once more, with the cost  weight (tau_i - tau_i,before -+ step)^2 / limit^2  for each of them. A
-// bound would do the same until it contradicts the contacts; a cost never does.
+// bound would do the same until it contradicts the contacts; a cost never does. So are separations
+// that the solution falls short of (SeparationRows).
 // Call begin(), add what is special to the variant, then solve() and write().
 class InverseDynamicsQp {
  public:
@@ -178,6 +180,7 @@ class InverseDynamicsQp {
   Eigen::VectorXd torque_;        // nv; of the joints with drag
   Eigen::VectorXd drag_;          // joints, N m, that their damping takes
   Eigen::VectorXd row_;           // size, scratch
+  SeparationRows separations_;
   std::array<bool, GAITD_MAX_JOINTS> jumps_{};
   Limits limits_{};
   Eigen::VectorXd last_torque_;  // joints, N m, of the tick before

@@ -31,7 +31,8 @@ enum {
   GAITD_LAYER_STEP_ADJUSTER = 2,
   GAITD_LAYER_TOE_OFF = 3,
   GAITD_LAYER_WHOLE_BODY_CONTROLLER = 4,
-  GAITD_LAYER_COUNT = 5,
+  GAITD_LAYER_TASK_SOURCE = 5,
+  GAITD_LAYER_COUNT = 6,
   GAITD_LAYER_BACKEND = 100
 };
 
@@ -98,6 +99,7 @@ typedef struct GaitdHost {
  *  step_adjuster           RobotState, GaitState, IcpPlan, ToeOff*      StepAdjustment
  *  toe_off                 RobotState, GaitState, IcpPlan, StepAdj.     ToeOff
  *  whole_body_controller   RobotState, GaitState, ToeOff, Objectives    WbcOutput
+ *  task_source             RobotState, GaitState, Motions               TaskReferences
  *  (* of the tick before)
  */
 typedef struct GaitdLayerTime {
@@ -168,6 +170,15 @@ typedef struct GaitdWholeBodyControllerOutput {
   GaitdWbcInfo info;
 } GaitdWholeBodyControllerOutput;
 
+typedef struct GaitdTaskSourceInput {
+  uint32_t size;
+  uint32_t reserved;
+  GaitdLayerTime time;
+  const GaitdRobotState* robot;
+  const GaitdGaitState* gait;
+  const GaitdMotions* motions;
+} GaitdTaskSourceInput;
+
 /* Canonical state of each layer: what any variant needs to continue from any other. */
 typedef struct GaitdStateEstimatorState {
   uint32_t size;
@@ -220,6 +231,27 @@ typedef struct GaitdWholeBodyControllerState {
   double position_reference[GAITD_MAX_JOINTS];
   double velocity_reference[GAITD_MAX_JOINTS];
 } GaitdWholeBodyControllerState;
+
+/* How far a part is on the way of its motion: the way from there through the points that are left
+ * is the way that it was on. */
+typedef struct GaitdMotionProgress {
+  uint32_t id;
+  int32_t kind;   /* GAITD_MOTION_NONE: the robot holds the part by itself */
+  double elapsed; /* s, since it began */
+  /* Of the joints of an arm, else 0-2: position, 3-6: orientation, and 0-2: linear, 3-5: angular.
+   */
+  double value[GAITD_MAX_MOTION_AXES];
+  double velocity[GAITD_MAX_MOTION_AXES];
+  double acceleration[GAITD_MAX_MOTION_AXES];
+} GaitdMotionProgress;
+
+typedef struct GaitdTaskSourceState {
+  uint32_t size;
+  int32_t reserved;
+  GaitdMotionProgress parts[GAITD_PART_COUNT];
+  double joint_position[GAITD_MAX_JOINTS]; /* references of the last tick */
+  double joint_velocity[GAITD_MAX_JOINTS];
+} GaitdTaskSourceState;
 
 /* input and output point to the structs of the layer. Every function returns a GaitdStatus. */
 typedef struct GaitdLayerVtable {

@@ -33,6 +33,11 @@ enum {
   GAITD_MAX_REGION_POINTS = 8,
   GAITD_MAX_TASKS = 32,
   GAITD_MAX_TASK_ROWS = 6,
+  GAITD_MAX_HANDS = 2,
+  GAITD_MAX_CAPSULES = 32,
+  GAITD_MAX_SEPARATIONS = 24,
+  GAITD_MAX_MOTION_AXES = 12,
+  GAITD_MAX_MOTION_POINTS = 16,
   GAITD_NAME_SIZE = 48
 };
 
@@ -108,6 +113,15 @@ typedef struct GaitdLeg {
   double reserve[4];            /* 0 */
 } GaitdLeg;
 
+/* Part of the shape of a body: every point within `radius` of the line between the ends. */
+typedef struct GaitdCapsule {
+  int32_t body;
+  int32_t reserved;
+  double ends[2][3]; /* m, body frame; the same twice: a sphere */
+  double radius;     /* m, > 0 */
+  double reserve[2]; /* 0 */
+} GaitdCapsule;
+
 typedef struct GaitdModel {
   uint32_t size;
   int32_t body_count;
@@ -127,6 +141,10 @@ typedef struct GaitdModel {
   double nominal_pelvis_height;              /* m, pelvis origin above the soles in that posture */
   double nominal_com_height;                 /* m, CoM above the soles in that posture */
   double nominal_foot_separation;            /* m, distance of the soles in y in that posture */
+  GaitdFrame hands[GAITD_MAX_HANDS];         /* left, right; body 0: the robot has none there */
+  int32_t capsule_count;                     /* 0: nothing is known of the shape */
+  int32_t reserved_capsules;
+  GaitdCapsule capsules[GAITD_MAX_CAPSULES]; /* that are not to touch each other */
 } GaitdModel;
 
 /* -------------------------------------------------------------------------------- sensors -- */
@@ -272,6 +290,80 @@ typedef struct GaitdGaitState {
   GaitdFootstep adjusted[GAITD_MAX_FOOTSTEPS]; /* commanded + shifts: what everybody uses */
 } GaitdGaitState;
 
+/* -------------------------------------------------------------------------------- motions -- */
+
+/* What moves. An arm and its hand are one part: the later motion holds. */
+enum {
+  GAITD_PART_PELVIS = 0,
+  GAITD_PART_CHEST = 1,
+  GAITD_PART_LEFT_ARM = 2,
+  GAITD_PART_RIGHT_ARM = 3,
+  GAITD_PART_COUNT = 4
+};
+enum {
+  GAITD_MOTION_NONE = 0,   /* as the robot holds the part by itself */
+  GAITD_MOTION_PELVIS = 1, /* axes 0-2: shift of the CoM, m; 3-5: turn of the pelvis */
+  GAITD_MOTION_CHEST = 2,  /* axes 3-5: turn of the chest */
+  GAITD_MOTION_ARM = 3,    /* axis i: joint i of the arm, from the chest to the hand, rad */
+  GAITD_MOTION_HAND = 4    /* axes 0-2: place of the hand in `frame`, m; 3-5: turn in it */
+};
+enum { GAITD_RELATIVE_TO_WORLD = 0, GAITD_RELATIVE_TO_CHEST = 1, GAITD_RELATIVE_TO_PELVIS = 2 };
+
+/* Turns are roll, pitch and yaw, rad: R = Rz(yaw) Ry(pitch) Rx(roll). Shift and turns of pelvis and
+ * chest are against where the robot holds them by itself, in the axes of its heading. */
+typedef struct GaitdMotionPoint {
+  double time; /* s, since the motion began; they increase */
+  double value[GAITD_MAX_MOTION_AXES];
+} GaitdMotionPoint;
+
+/* A way through points, from where the part is to rest at the last of them. */
+typedef struct GaitdMotion {
+  uint32_t id; /* another one: a motion that begins now; 0: none has begun yet */
+  int32_t kind;
+  int32_t frame;      /* GAITD_RELATIVE_TO_*, of a hand */
+  uint32_t axis_mask; /* the others stay where they are when the motion begins */
+  int32_t point_count;
+  int32_t reserved;
+  GaitdMotionPoint points[GAITD_MAX_MOTION_POINTS];
+  double reserve[4]; /* 0 */
+} GaitdMotion;
+
+/* Everything that was asked of the body beyond its steps. */
+typedef struct GaitdMotions {
+  uint32_t size;
+  uint32_t reserved;
+  GaitdMotion parts[GAITD_PART_COUNT];
+} GaitdMotions;
+
+/* Where a hand is to be, and how far it is from there. */
+typedef struct GaitdHandReference {
+  int32_t active;        /* 0: nobody asked for a pose of this hand */
+  int32_t on_its_way;    /* 1: until a moment after the last point of its motion */
+  GaitdPose goal;        /* W, now */
+  double position_error; /* m, of the robot as it is */
+  double turn_error;     /* rad, likewise */
+  double reach_error[2]; /* m, rad: what the arm misses by its limits */
+  double reserve[4];     /* 0 */
+} GaitdHandReference;
+
+/* Where the parts of the body that take no steps are to be now. */
+typedef struct GaitdTaskReferences {
+  uint32_t size;
+  int32_t reserved;
+  double com_shift[3]; /* m, of the plan; axes of the heading */
+  double com_shift_velocity[3];
+  double com_shift_acceleration[3];
+  double pelvis_turn[4]; /* of the pelvis, against where it would be; axes of the heading */
+  double pelvis_turn_rate[3];
+  double chest_turn[4]; /* of the chest, likewise */
+  double chest_turn_rate[3];
+  uint64_t joint_mask; /* joints with a reference; the others go to their nominal position */
+  double joint_position[GAITD_MAX_JOINTS];
+  double joint_velocity[GAITD_MAX_JOINTS];
+  double joint_acceleration[GAITD_MAX_JOINTS];
+  GaitdHandReference hands[GAITD_MAX_HANDS];
+} GaitdTaskReferences;
+
 /* -------------------------------------------------------------------------------- planner -- */
 
 typedef struct GaitdIcpPlan {
@@ -353,6 +445,16 @@ typedef struct GaitdTask {
   double reserve[8]; /* 0 */
 } GaitdTask;
 
+/* Two points of bodies that are close: their distance, against its own speed. */
+typedef struct GaitdSeparation {
+  int32_t body[2];
+  double point[2][3];  /* m, body frames */
+  double normal[3];    /* unit, W, from the second to the first */
+  double acceleration; /* m/s^2, that the distance has at least */
+  double weight;       /* of what is missing, squared */
+  double reserve[2];   /* 0 */
+} GaitdSeparation;
+
 typedef struct GaitdObjectives {
   uint32_t size;
   int32_t contact_count;
@@ -373,6 +475,9 @@ typedef struct GaitdObjectives {
   double joint_damping[GAITD_MAX_JOINTS];     /* N m s/rad */
   GaitdContactPoint contacts[GAITD_MAX_CONTACTS];
   GaitdTask tasks[GAITD_MAX_TASKS];
+  int32_t separation_count;
+  int32_t reserved;
+  GaitdSeparation separations[GAITD_MAX_SEPARATIONS];
 } GaitdObjectives;
 
 /* ------------------------------------------------------------------------------- commands -- */

@@ -52,6 +52,12 @@ struct LayerTraits<GAITD_LAYER_WHOLE_BODY_CONTROLLER> {
   using Output = GaitdWholeBodyControllerOutput;
   using State = GaitdWholeBodyControllerState;
 };
+template <>
+struct LayerTraits<GAITD_LAYER_TASK_SOURCE> {
+  using Input = GaitdTaskSourceInput;
+  using Output = GaitdTaskReferences;
+  using State = GaitdTaskSourceState;
+};
 
 // The C functions of one layer class. Exceptions end here and become GAITD_EXCEPTION.
 template <class Layer, int kLayer>

@@ -11,6 +11,7 @@ namespace gaitd::sdk {
 
 // In the order of the GAITD_LAYER_* numbers of the control layers.
 inline constexpr std::array<std::string_view, GAITD_LAYER_COUNT> kLayerNames = {
-    "state_estimator", "icp_planner", "step_adjuster", "toe_off", "whole_body_controller"};
+    "state_estimator", "icp_planner",           "step_adjuster",
+    "toe_off",         "whole_body_controller", "task_source"};
 
 }  // namespace gaitd::sdk

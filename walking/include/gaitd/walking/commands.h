@@ -38,6 +38,12 @@ struct VelocityCommand {
   bool holds = false;  // need not be renewed
 };
 
+// A motion of one part of the body; its id is given to it when it is taken.
+struct MotionCommand {
+  int part = GAITD_PART_PELVIS;
+  GaitdMotion motion{};
+};
+
 // That are made for a velocity at a time.
 inline constexpr int kFootstepsOfDrive = 4;
 

@@ -8,6 +8,7 @@
 #include "gaitd/walking/com_height.h"
 #include "gaitd/walking/leg_configuration.h"
 #include "gaitd/walking/parameters.h"
+#include "gaitd/walking/self_collision.h"
 #include "gaitd/walking/sole_rest.h"
 #include "gaitd/walking/swing_trajectory.h"
 
@@ -39,19 +40,16 @@ class ObjectiveBuilder {
   // Takes the present posture as the start of every reference.
   void reset(const GaitdRobotState& robot, const GaitdGaitState& gait);
 
-  // Where a standing robot holds height and pelvis, against where it would by itself: m; axes of
-  // the heading, rad/s.
-  void set_pose(double height, const Eigen::Quaterniond& turn, const Eigen::Vector3d& rate) {
-    pose_height_ = height;
-    pose_turn_ = turn;
-    pose_rate_ = rate;
-  }
+  // Where the parts of the body that take no steps are to be, for the next update().
+  void set_references(const GaitdTaskReferences& references) { references_ = references; }
 
   // One tick of `dt` seconds. `lift_off` is where the swing foot left the ground (W).
   void update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
               const GaitdPose& lift_off, const GaitdStepAdjustment& adjustment,
               const GaitdToeOff& toe_off, GaitdObjectives& objectives);
 
+  // m, between the capsules of arms and body that are nearest; see SelfCollision.
+  double clearance() const { return self_collision_.clearance(); }
   const LegConfiguration::Reference& leg(int side) const { return legs_[side].reference(); }
 
  private:
@@ -106,6 +104,7 @@ class ObjectiveBuilder {
   LegParameters leg_parameters_{kLegParameters};
   SwingParameters swing_parameters_{kSwingParameters};
 
+  SelfCollision self_collision_;
   std::array<LegConfiguration, GAITD_MAX_FEET> legs_;
   std::array<SoleRest, GAITD_MAX_FEET> rests_;
   SwingTrajectory swing_;
@@ -117,10 +116,8 @@ class ObjectiveBuilder {
   Eigen::Vector3d ankle_in_sole_[GAITD_MAX_FEET];  // m, above a level sole
   ReferenceFilter yaw_;
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // rad, held while standing, level in a walk
-  double pose_height_ = 0.0;                        // m
-  Eigen::Quaterniond pose_turn_ = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d pose_rate_ = Eigen::Vector3d::Zero();  // rad/s
-  double pelvis_share_ = 1.0;                            // of the weight of the pelvis orientation
+  GaitdTaskReferences references_{};
+  double pelvis_share_ = 1.0;  // of the weight of the pelvis orientation
   std::array<double, GAITD_MAX_FEET> time_in_contact_{};
   std::array<double, GAITD_MAX_FEET> time_in_toe_off_{};
   bool impedance_given_ = false;
