@@ -15,8 +15,9 @@ namespace {
 // against the levers of the joints.
 constexpr double kLever = 0.17;
 constexpr double kDamping = 0.0085;
-constexpr double kSearchStep = 0.3;  // rad, of a search
-constexpr double kConverged = 1e-6;  // rad, a step that changes nothing
+constexpr double kResidualDamping = 0.5;  // of the squared error, added to it
+constexpr double kSearchStep = 0.3;       // rad, of a search
+constexpr double kConverged = 1e-6;       // rad, a step that changes nothing
 
 }  // namespace
 
@@ -114,6 +115,8 @@ JointChain::Joints JointChain::solve(const Jacobian& jacobian, const Twist& erro
   Twist rest = error;
   rest.head<3>() *= lever_;
   rest.tail<3>() *= length_weight_;
+  // Grows with what remains (Sugihara 2011): a goal out of reach is come to, not circled around.
+  const double damping = damping_ + kResidualDamping * rest.squaredNorm();
   Joints step = Joints::Zero(size_);
   free->setOnes(size_);
   // A joint whose step would leave its bounds stops there, the worst one first; the others make up
@@ -121,7 +124,7 @@ JointChain::Joints JointChain::solve(const Jacobian& jacobian, const Twist& erro
   for (int round = 0; round <= size_; ++round) {
     const Jacobian moving = levers * free->asDiagonal();
     Square normal = moving.transpose() * moving;
-    normal.diagonal().array() += damping_;
+    normal.diagonal().array() += damping;
     const Joints by_error = moving.transpose() * rest;
     const Joints found = normal.ldlt().solve(by_error);
     int worst = -1;
@@ -167,12 +170,13 @@ void JointChain::step(const Pose& goal, const Joints& largest, double pull, Join
 
 JointChain::Joints JointChain::rates(const Joints& q, const Twist& twist) const {
   constexpr double kAtLimit = 1e-9;  // rad
+  constexpr double kTime = 1e-6;  // s, in which the motion is so short that nothing remains of it
   Joints lower(size_), upper(size_), free(size_);
   for (int i = 0; i < size_; ++i) {
-    lower[i] = q[i] <= least_[i] + kAtLimit ? 0.0 : -1e6;
-    upper[i] = q[i] >= most_[i] - kAtLimit ? 0.0 : 1e6;
+    lower[i] = q[i] <= least_[i] + kAtLimit ? 0.0 : -1.0;
+    upper[i] = q[i] >= most_[i] - kAtLimit ? 0.0 : 1.0;
   }
-  return solve(jacobian(q), twist, lower, upper, &free);
+  return solve(jacobian(q), kTime * twist, lower, upper, &free) / kTime;
 }
 
 JointChain::Miss JointChain::reach(const Pose& goal, int iterations, Joints& q) const {
