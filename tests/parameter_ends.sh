@@ -9,7 +9,7 @@ keys='limits.torque_ratio, limits.velocity_ratio, safety.fall_height, safety.for
       objectives.acceleration_weight, objectives.swing_weight, objectives.swing_height_stiffness,
       objectives.rho_*, step_adjuster.margin, state_estimator.tilt_rate, state_estimator.leg_pole,
       state_estimator.upper_body_pole, whole_body_controller.torque_scale,
-      whole_body_controller.joint_acceleration_limit, whole_body_controller.limit_horizon,
+      whole_body_controller.joint_acceleration_limit,
       whole_body_controller.max_iterations, state_estimator.force_filter,
       state_estimator.tilt_bias_rate, state_estimator.trust_delay, safety.capture_reach'
 sed "s#commands/#$GAITD_SOURCE/sim/campaigns/commands/#; s#^sweep:#&\n  parameters: [${keys//$'\n'/}]#" \

@@ -50,7 +50,7 @@ SampleWalk::SampleWalk(const GaitdModel& model)
   gait_.reset(set_.robot);
   set_.gait = gait_.state();
   objectives_.reset(set_.robot, set_.gait);
-  planner_.update(kPeriod, set_.robot, set_.gait, {}, 4.0, 0.08, set_.plan);
+  planner_.update(kPeriod, set_.robot, set_.gait, {}, 0.08, set_.plan);
 }
 
 Eigen::Vector3d SampleWalk::sole(int side) {
@@ -175,7 +175,7 @@ void SampleWalk::decide() {
   }
   gait_.update(kPeriod, set_.robot, set_.plan, set_.toe_off, set_.adjustment);
   set_.gait = gait_.state();
-  planner_.update(kPeriod, set_.robot, set_.gait, {}, 4.0, 0.08, set_.plan);
+  planner_.update(kPeriod, set_.robot, set_.gait, {}, 0.08, set_.plan);
   GaitdStepAdjustment& a = set_.adjustment;
   const double omega = set_.gait.omega;
   a.kappa = 1.0;

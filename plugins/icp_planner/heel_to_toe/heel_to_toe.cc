@@ -12,7 +12,7 @@ GaitdStatus HeelToToe::process(const GaitdIcpPlannerInput& in, GaitdIcpPlan& out
                                     .exit_y = p_[P::kExitY],
                                     .exit_x_step_length = p_[P::kExitStepLength],
                                     .margin = p_[P::kMargin]};
-  reference_.update(in.time.period, *in.robot, *in.gait, offsets, p_[P::kDecay], p_[P::kFit], out);
+  reference_.update(in.time.period, *in.robot, *in.gait, offsets, p_[P::kFit], out);
   return GAITD_OK;
 }
 

@@ -10,8 +10,8 @@ namespace gaitd::plugins {
 // double support (Englsberger et al. 2014).
 class HeelToToe {
  public:
-  enum class P { kEntryX, kEntryY, kExitX, kExitY, kExitStepLength, kMargin, kDecay, kFit, kCount };
-  static constexpr std::array<GaitdParameter, 8> kParameters = {
+  enum class P { kEntryX, kEntryY, kExitX, kExitY, kExitStepLength, kMargin, kFit, kCount };
+  static constexpr std::array<GaitdParameter, 7> kParameters = {
       sdk::real_parameter("entry_x", "half lengths", -1, 1, -0.08,
                           "entry CMP ahead of the middle of the foothold"),
       sdk::real_parameter("entry_y", "half widths", -1, 1, -0.08,
@@ -22,7 +22,6 @@ class HeelToToe {
       sdk::real_parameter("exit_step_length", "m", 0, 2, 0.2,
                           "step from which on the whole of exit_x is used"),
       sdk::real_parameter("margin", "m", 0, 0.1, 0.015, "of the CMPs to the edge of the foothold"),
-      sdk::real_parameter("decay", "1/s", 0, 20, 4, "of what is left of the old plan"),
       sdk::real_parameter("fit_limit", "m", 0, 0.5, 0.08,
                           "furthest that the start of a first transfer is moved"),
   };
