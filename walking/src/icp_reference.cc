@@ -10,6 +10,8 @@ namespace gaitd::walking {
 namespace {
 
 constexpr double kLateTime = 0.1;  // s
+// Heights of the CoM, by which the start of a first transfer moves at most: it stays in the feet.
+constexpr double kFitLimit = 0.06796;
 // 1/s, k of the header: over within a step, and slower than the ICP, which would follow no faster.
 constexpr double kDecay = 4.0;
 
@@ -18,7 +20,7 @@ constexpr double kDecay = 4.0;
 using sdk::view;
 
 void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
-                          const CmpOffsets& offsets, double fit_limit, GaitdIcpPlan& plan) {
+                          const CmpOffsets& offsets, GaitdIcpPlan& plan) {
   const bool first = state_.plan_revision == kNotStarted;
   const bool changed = first || resumed_ || state_.plan_revision != gait.plan_revision;
   resumed_ = false;
@@ -35,7 +37,8 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
     // A transfer that has just begun, or one that another variant began, is fitted once.
     const bool begun = gait.phase != state_.phase || gait.time_in_phase < 0.5 * dt;
     if (begun || state_.start_ecmp_valid == 0) {
-      trajectory_.fit_start(first ? at_rest : Eigen::Vector2d(icp), fit_limit);
+      trajectory_.fit_start(first ? at_rest : Eigen::Vector2d(icp),
+                            kFitLimit * model_.nominal_com_height);
       start = trajectory_.start();
       state_.start_ecmp_valid = 1;
     } else {

@@ -16,8 +16,11 @@ using walking::ConvexPolygon;
 // Bounds of the criteria. The ICPs must be in the polygon, nearer to the leading foot than to the
 // toe; the CoP may be anywhere but at the heel, which the toe could not carry at once.
 constexpr double kIcpDistance = 0.25;
-constexpr double kCopDistance = 0.8;  // foot lengths
-constexpr double kHoldTime = 0.002;   // s: longer than one tick's noise
+constexpr double kCopDistance = 0.8;      // foot lengths
+constexpr double kCmpDistance = 0.02548;  // CoM heights
+// CoM heights, up or down, that a shorter step has toe-off for.
+constexpr double kMinHeight = 0.08495;
+constexpr double kHoldTime = 0.002;  // s: longer than one tick's noise
 // Part of a swing after which its stance foot may roll, and the step (leg lengths) that needs it.
 constexpr double kSwingStart = 0.7;
 constexpr double kSwingReach = 0.75;
@@ -62,7 +65,8 @@ bool IcpCriteria::far_enough(const GaitdFoothold& trailing, const GaitdFoothold&
   const Eigen::Vector3d d =
       sdk::from_yaw(-yaw) * (view(leading.pose.position) - view(trailing.pose.position));
   const double least = p_[P::kMinForward] * foot_length_;
-  return d.x() >= least || (std::abs(d.z()) >= p_[P::kMinHeight] && d.x() >= 0.5 * least);
+  return d.x() >= least ||
+         (std::abs(d.z()) >= kMinHeight * model_.nominal_com_height && d.x() >= 0.5 * least);
 }
 
 IcpCriteria::Candidate IcpCriteria::candidate(const GaitdGaitState& gait) const {
@@ -117,9 +121,9 @@ bool IcpCriteria::evaluate(const GaitdToeOffInput& in, const Candidate& c, Gaitd
   ok[GAITD_TOE_OFF_ICP] = value[GAITD_TOE_OFF_ICP] >= 0.0;
   ok[GAITD_TOE_OFF_ICP_DISTANCE] = value[GAITD_TOE_OFF_ICP_DISTANCE] <= kIcpDistance;
   ok[GAITD_TOE_OFF_COP] = value[GAITD_TOE_OFF_COP] <= kCopDistance * foot_length_;
-  ok[GAITD_TOE_OFF_CMP] = value[GAITD_TOE_OFF_CMP] <= p_[P::kCmpDistance];
+  ok[GAITD_TOE_OFF_CMP] = value[GAITD_TOE_OFF_CMP] <= kCmpDistance * model_.nominal_com_height;
   ok[GAITD_TOE_OFF_ANKLE] = value[GAITD_TOE_OFF_ANKLE] <= 0.0;
-  return distance(predicted, view(in.plan->ecmp)) <= p_[P::kCmpDistance];
+  return distance(predicted, view(in.plan->ecmp)) <= kCmpDistance * model_.nominal_com_height;
 }
 
 bool IcpCriteria::rolling_on(const GaitdRobotState& robot, const GaitdGaitState& gait) const {

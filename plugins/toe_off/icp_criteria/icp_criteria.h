@@ -22,16 +22,13 @@ namespace gaitd::plugins {
 // point and the coming foothold.
 class IcpCriteria {
  public:
-  enum class P { kMinForward, kMinHeight, kCmpDistance, kAnkleLimit, kCount };
-  static constexpr std::array<GaitdParameter, 4> kParameters = {
+  enum class P { kMinForward, kAnkleLimit, kCount };
+  static constexpr std::array<GaitdParameter, 2> kParameters = {
       sdk::real_parameter("min_forward", "foot lengths", 0, 10, 0.75,
-                          "leading foot ahead of the trailing one"),
-      sdk::real_parameter("min_height", "m", 0.01, 1, 0.1,
-                          "or higher or lower by this much, and ahead"),
-      sdk::real_parameter("cmp_distance", "m", 0, 0.5, 0.03,
-                          "of the CMP, desired or planned, to the predicted polygon"),
-      sdk::real_parameter("ankle_limit", "rad", 0, 1.5, 0.6,
-                          "dorsiflexion after which toe-off starts wherever the CoP is"),
+                          "step that has toe-off; low: short steps have one too, high: none has"),
+      sdk::porting(sdk::real_parameter(
+          "ankle_limit", "rad", 0, 1.5, 0.6,
+          "dorsiflexion that starts toe-off; low: too soon, high: the stop is met")),
   };
 
   explicit IcpCriteria(const GaitdModel& model);

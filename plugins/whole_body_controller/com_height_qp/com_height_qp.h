@@ -21,8 +21,9 @@ class ComHeightQp {
     kCount
   };
   static constexpr std::array<GaitdParameter, 6> kParameters = {
-      sdk::real_parameter("privileged_scale", "", 0, 10, 0.1,
-                          "of the privileged weights; low: knees drift, high: tasks are disturbed"),
+      sdk::expert(sdk::real_parameter(
+          "privileged_scale", "", 0, 10, 0.1,
+          "of the privileged weights; low: knees drift, high: tasks are disturbed")),
       kTorqueScaleParameter,
       kJointAccelerationParameter,
       kMaxIterationsParameter,

@@ -14,15 +14,15 @@
 namespace gaitd::plugins {
 
 // Parameters that every variant has.
-inline constexpr GaitdParameter kTorqueScaleParameter = sdk::real_parameter(
+inline constexpr GaitdParameter kTorqueScaleParameter = sdk::porting(sdk::real_parameter(
     "torque_scale", "", 0.4, 1, 1,
-    "share of the effort limits in use; low: long steps sag, high: none is left");
-inline constexpr GaitdParameter kJointAccelerationParameter =
+    "share of the effort limits in use; low: long steps sag, high: none is left"));
+inline constexpr GaitdParameter kJointAccelerationParameter = sdk::expert(
     sdk::real_parameter("joint_acceleration_limit", "rad/s^2", 10, 1e5, 2000,
-                        "of every joint; low: legs too weak for a step, high: noise is followed");
-inline constexpr GaitdParameter kMaxIterationsParameter = sdk::integer_parameter(
+                        "of every joint; low: legs too weak for a step, high: noise is followed"));
+inline constexpr GaitdParameter kMaxIterationsParameter = sdk::expert(sdk::integer_parameter(
     "max_iterations", "", 20, 10000, 300,
-    "of the solver; low: it gives up in a push, high: a tick takes too long");
+    "of the solver; low: it gives up in a push, high: a tick takes too long"));
 inline constexpr GaitdParameter kReferenceLeakParameter = sdk::real_parameter(
     "reference_leak", "1/s", 0, 1000, 8,
     "of drive references to the joints; low: they wind up, high: friction wins");

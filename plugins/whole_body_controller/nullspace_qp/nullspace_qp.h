@@ -24,9 +24,9 @@ class NullspaceQp {
     kCount
   };
   static constexpr std::array<GaitdParameter, 6> kParameters = {
-      sdk::real_parameter(
+      sdk::expert(sdk::real_parameter(
           "damping", "", 1e-5, 1, 0.005,
-          "of the projector; low: knees jump near a singularity, high: they go limp"),
+          "of the projector; low: knees jump near a singularity, high: they go limp")),
       kTorqueScaleParameter,
       kJointAccelerationParameter,
       kMaxIterationsParameter,
