@@ -131,17 +131,17 @@ TEST_F(CampaignTest, SweepsBothEndsOfEveryParameterThatMatches) {
 }
 
 TEST_F(CampaignTest, ASweepWithoutPlacesSetsThemFromTheStart) {
-  campaign("scenarios: [" + file("good.yaml") + "]\nsweep: {parameters: [gait.omega]}\n");
+  campaign("scenarios: [" + file("good.yaml") + "]\nsweep: {parameters: [limits.torque_ratio]}\n");
   daemon::Issues issues;
   const auto loaded = load_campaign(file("c.yaml"), &issues);
   ASSERT_TRUE(loaded) << issues.error_text();
   const auto all = swept(*loaded);
   ASSERT_EQ(all.size(), 1u);
-  EXPECT_EQ(all.at("gait.omega=10"), " seed=1 gait.omega=10");
+  EXPECT_EQ(all.at("limits.torque_ratio=0.05"), " seed=1 limits.torque_ratio=0.05");
   const Outcome outcome = run();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_HAS(workspace_.read("calls"), "--set gait.omega=10");
-  EXPECT_GT(outcome.out.find("gait.omega"), outcome.out.find("worst runs")) << outcome.out;
+  EXPECT_HAS(workspace_.read("calls"), "--set limits.torque_ratio=0.05");
+  EXPECT_GT(outcome.out.find("limits.torque_ratio"), outcome.out.find("worst runs")) << outcome.out;
 }
 
 TEST_F(CampaignTest, ASweepOfNothingIsAnError) {

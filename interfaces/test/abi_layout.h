@@ -333,7 +333,7 @@
   X(GaitdParameter, unit, 48) \
   X(GaitdParameter, description, 64) \
   X(GaitdParameter, type, 184) \
-  X(GaitdParameter, reserved, 188) \
+  X(GaitdParameter, rank, 188) \
   X(GaitdParameter, minimum, 192) \
   X(GaitdParameter, maximum, 200) \
   X(GaitdParameter, default_value, 208) \
