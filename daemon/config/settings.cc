@@ -193,8 +193,9 @@ void Settings::report_unknown(Issues* issues) const {
     }
     const std::string removed = removed_parameter(key);
     const bool strange = !variant.empty() && !variants_.contains(variant);
-    const std::string advice = !removed.empty() ? removed : strange ? "no such variant; " + suggestion(variant, variants)
-                                       : "unknown key; " + nearest_known(key, known);
+    const std::string advice = !removed.empty() ? removed
+                               : strange ? "no such variant; " + suggestion(variant, variants)
+                                         : "unknown key; " + nearest_known(key, known);
     for (const auto& [source, value] : sources) issues->add_text(value->where, key, advice);
   }
 }
