@@ -217,6 +217,8 @@ StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
   }
   c.later[StepProblem::kTransfer] = next_transfer(gait, *in.plan);
   c.gamma = std::max(in.plan->gamma[0] * growth * c.growth, kLeastGamma);
+  // Where the robot comes to rest, the edge of the feet that binds moves along with the foothold.
+  if (gait.footstep_count == 1) c.gamma = 1.0;
   const Eigen::Vector2d made =
       (view(gait.adjusted[0].pose.position) - view(step.pose.position)).head<2>();
   c.start_shift = start_shift_;

@@ -138,9 +138,8 @@ void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vecto
     row.setZero();
     row.segment<2>(kShift) = n.transpose();
     row.segment<2>(kMoment) = p.growth * n.transpose();
-    for (int j = 0; j < StepProblem::kLater; ++j) {
-      row.segment<2>(kLater + 2 * j) = p.later[j].share * n.transpose();
-    }
+    // A robot at the edge of what can be caught spends no time in the transfer after touchdown.
+    row.segment<2>(kLater + 2 * StepProblem::kSwing) = swing.share * n.transpose();
     row.segment<2>(kLost) = n.transpose();
     row[kTau] = -n.dot(grown);
     add(row, n.dot(reached - p.commanded) - p.capture.limit[i]);
