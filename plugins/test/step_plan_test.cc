@@ -204,15 +204,16 @@ TEST(StepPlan, AFasterSwingKeepsItsLeastDuration) {
   EXPECT_GE(w.gait().phase_duration + out.time_shift, shortest * time - 1e-9);
 }
 
-TEST(StepPlan, ATransferIsShortenedByALeadOfTheIcpOnly) {
+TEST(StepPlan, ATransferIsShortenedByALeadThatNoCmpBringsBack) {
   SyntheticWalk w;
   ASSERT_FALSE(w.machine.walk({.steps = 5, .length = 0.4}).refused());
   ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 3));
   w.tick();
   sdk::view(w.robot.icp) = Vector2d(sdk::view(w.plan.icp)) - Vector2d(sdk::view(w.plan.offset));
   EXPECT_EQ(with_error(w, 0.0, 0.0).time_shift, 0.0);
+  EXPECT_EQ(with_error(w, 0.02, 0.0).time_shift, 0.0);
   EXPECT_EQ(with_error(w, -0.1, 0.0).time_shift, 0.0);
-  const GaitdStepAdjustment out = with_error(w, 0.1, 0.0);
+  const GaitdStepAdjustment out = with_error(w, 0.2, 0.0);
   EXPECT_LT(out.time_shift, -0.02);
   const double time = std::sqrt(atlas().nominal_com_height / atlas().gravity);
   const double shortest = testing::parameter_default<StepPlan>("shortest_transfer");
@@ -320,6 +321,23 @@ TEST(StepQp, NoAdmissiblePointIsMuchBetterThanItsSolution) {
     }
     EXPECT_LE(here, elsewhere + 0.1 * elsewhere + 1e-2) << run;
   }
+}
+
+TEST(StepQp, TheTransferAfterTouchdownBringsBackWhatItsFeedbackAndItsFeetCan) {
+  StepProblem p = example();
+  p.cmp_region = hull({{0.0, 0.0}});  // nothing before touchdown
+  p.icp = {0.11, 0.05};
+  const double time = 0.3;
+  const Vector2d alone = p.missed(Vector2d::Zero(), time);
+  LaterPhase& transfer = p.later[StepProblem::kTransfer];
+  transfer.share = 0.3;
+  transfer.left = 0.4;
+  transfer.region = hull({{-9.0, -9.0}, {9.0, -9.0}, {9.0, 9.0}, {-9.0, 9.0}});
+  EXPECT_LT((p.missed(Vector2d::Zero(), time) - 0.4 * alone).norm(), 1e-12);
+  transfer.region = hull({{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}});
+  const Vector2d bounded = alone - p.missed(Vector2d::Zero(), time);
+  EXPECT_LE(bounded.cwiseAbs().maxCoeff(), 0.3 * 0.1 + 1e-12);
+  EXPECT_GT(bounded.dot(alone), 0.0);
 }
 
 // The other way round: from the edge of the set one best step leads to the edge of the set of the

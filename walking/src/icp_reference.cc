@@ -72,9 +72,11 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
   view(plan.ecmp) = s.ecmp + (1.0 + leaving / omega) * delta;
   view(plan.icp_velocity) = omega * (view(plan.icp) - view(plan.ecmp));
   view(plan.icp_end) = s.icp_end;
+  const int landed = gait.phase == GAITD_PHASE_TRANSFER ? 2 : 1;  // piece that begins then
+  const bool steps = gait.footstep_count > 0;
+  view(plan.icp_touchdown) = steps ? trajectory_.icp_at_start(landed) : s.icp_end;
+  view(plan.icp_transferred) = steps ? trajectory_.icp_at_start(landed + 1) : s.icp_end;
   view(plan.offset) = delta;
-  view(plan.com) = view(robot.com).head<2>();
-  view(plan.com_velocity) = omega * (view(plan.icp) - view(plan.com));
   plan.kappa =
       robot.com[2] > 0.0 ? model_.nominal_com_height * omega * omega / model_.gravity : 1.0;
   plan.time_remaining = gait.time_remaining;

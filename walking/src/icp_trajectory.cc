@@ -13,17 +13,22 @@ namespace {
 // Shorter pieces are treated as this long: the slope of the eCMP must stay finite.
 constexpr double kShortestPiece = 1e-3;
 
+// A foothold need not be a rectangle: the fractions are of its extent, and the point stays inside.
 Eigen::Vector2d point_in_sole(const GaitdFoothold& foothold, int side, double x_fraction,
                               double inwards_fraction, double margin) {
   const SoleExtent e = sole_extent(foothold);
-  auto at = [margin](double low, double high, double fraction) {
-    const double half = 0.5 * (high - low);
-    const double reach = std::max(0.0, half - margin);
-    return 0.5 * (high + low) + std::clamp(fraction * half, -reach, reach);
+  const auto at = [](double low, double high, double fraction) {
+    return 0.5 * (high + low) + fraction * 0.5 * (high - low);
   };
-  const double x = at(e.x_min, e.x_max, x_fraction);
-  const double y = at(e.y_min, e.y_max, -side_sign(side) * inwards_fraction);
-  return sdk::transform(foothold.pose, {x, y, 0.0}).head<2>();
+  Eigen::Vector2d point(at(e.x_min, e.x_max, x_fraction),
+                        at(e.y_min, e.y_max, -side_sign(side) * inwards_fraction));
+  ConvexPolygon polygon;
+  for (int i = 0; i < foothold.polygon_count; ++i) {
+    polygon.add({foothold.contact_polygon[i][0], foothold.contact_polygon[i][1]});
+  }
+  polygon.make_hull();
+  if (polygon.inside_distance(point) < margin) point = polygon.inset(margin).closest_point(point);
+  return sdk::transform(foothold.pose, {point.x(), point.y(), 0.0}).head<2>();
 }
 
 }  // namespace

@@ -105,8 +105,6 @@ void StancePose::shift_plan(const GaitdGaitState& gait, GaitdIcpPlan& plan) cons
   const Eigen::Vector2d velocity = at(&Quintic::velocity);
   const Eigen::Vector2d acceleration = at(&Quintic::acceleration);
   const double omega = gait.omega;
-  sdk::view(plan.com) += shift;
-  sdk::view(plan.com_velocity) += velocity;
   sdk::view(plan.icp) += shift + velocity / omega;
   sdk::view(plan.icp_velocity) += velocity + acceleration / omega;
   sdk::view(plan.ecmp) += shift - acceleration / (omega * omega);

@@ -109,6 +109,23 @@ TEST(IcpTrajectory, APartialFootholdKeepsItsCmpsOnTheLoadablePart) {
   EXPECT_NEAR(entry_cmp(foothold, GAITD_LEFT, o).x(), 1.0 + o.margin, 1e-12);
 }
 
+TEST(IcpTrajectory, AFootholdThatIsNoRectangleKeepsItsCmpsInside) {
+  GaitdFootstep step = footstep(GAITD_LEFT, 1, 2, 0, 0.4);
+  const double triangle[3][2] = {{0.13, -0.064}, {0.13, 0.064}, {-0.13, 0.064}};
+  step.polygon_count = 3;
+  for (int i = 0; i < 3; ++i) {
+    step.contact_polygon[i][0] = triangle[i][0];
+    step.contact_polygon[i][1] = triangle[i][1];
+  }
+  const GaitdFoothold foothold = foothold_of(atlas(), step);
+  ConvexPolygon sole;
+  add_foothold(foothold, atlas().feet[GAITD_LEFT].toe_point, sole);
+  sole.make_hull();
+  const CmpOffsets o;  // of a whole sole: the entry lies outside of the triangle
+  EXPECT_GE(sole.inside_distance(entry_cmp(foothold, GAITD_LEFT, o)), o.margin - 1e-9);
+  EXPECT_GE(sole.inside_distance(exit_cmp(foothold, GAITD_LEFT, nullptr, o)), o.margin - 1e-9);
+}
+
 // The reference of the pure plan, tick by tick, without any blending.
 TEST(IcpTrajectory, IsContinuousOverEveryPhaseOfAnUndisturbedWalkAndEndsAtRest) {
   SyntheticWalk walk;
