@@ -12,9 +12,10 @@ namespace {
 
 constexpr int kUnknownPhase = -1;
 constexpr double kLeastGamma = 0.2;
-constexpr double kRestMargin = 0.04;  // m, of an ICP that comes to rest, to the edge of the feet
-constexpr double kLeastSpeed = 0.1;   // m/s, of the ICP, that time is reckoned with
-constexpr double kClearance = 0.02;   // m, between soles that pass each other
+constexpr double kRestMargin =
+    0.11;  // CoM heights, of an ICP that comes to rest, to the edge of the feet
+constexpr double kLeastSpeed = 0.1;  // m/s, of the ICP, that time is reckoned with
+constexpr double kClearance = 0.02;  // m, between soles that pass each other
 // sqrt(h/g), before touchdown: no leg follows a change any more.
 constexpr double kHold = 0.09;
 constexpr double kLeastLeft = 1.3 * kHold;
@@ -183,7 +184,8 @@ LaterPhase StepPlan::next_transfer(const GaitdGaitState& gait, const GaitdIcpPla
   walking::add_foothold(walking::foothold_of(model_, gait.adjusted[0]),
                         model_.feet[gait.next_side].toe_point, phase.region);
   phase.region.make_hull();
-  phase.region = phase.region.inset(last ? kRestMargin : feedback_[walking::Feedback::kMargin]);
+  phase.region =
+      phase.region.inset(last ? kRestMargin * length_ : feedback_[walking::Feedback::kMargin]);
   if (last) {
     // All the time to come to rest: the ICP stays where the CMP is.
     phase.share = 1.0;
@@ -271,24 +273,28 @@ void StepPlan::adjust(const GaitdStepAdjusterInput& in) {
   StepProblem step = problem(in);
   const double now = gait.time_remaining;
   const double dead_band = p_[P::kDeadBand] * length_;
-  if (step.missed(shift_, now).norm() < dead_band * step.gamma) return;
+  const bool transfer = gait.phase == GAITD_PHASE_TRANSFER;
+  // What the CMP brings back moves no foothold; but a transfer may rather end earlier.
+  const bool held = step.missed(shift_, now).norm() < dead_band * step.gamma;
+  if (held && !transfer) return;
   add_limits(in, step);
   // What a step leaves to the next costs the shift that the next will need for it, and so on:
   // E^2 - 1 of the Riccati equation of x' = E x - u, for steps of the commanded pace.
   const GaitdFootstep& next = gait.adjusted[std::min(1, gait.footstep_count - 1)];
   const double growth = std::exp(gait.omega * (next.transfer_duration + next.swing_duration));
-  // Time costs the way that is made in it: of the foot in a swing, which has to hurry or wait; in a
-  // transfer, where no foot is on its way, of the ICP.
-  const double speed = gait.phase == GAITD_PHASE_SWING
-                           ? step.foot_speed
-                           : std::max(view(in.plan->icp_velocity).norm(), kLeastSpeed);
+  // Time costs the way of the foot in it, which has to hurry or wait. In a transfer no foot is on
+  // its way: time is free, and only a change of it costs, as much as the way of the ICP.
+  const double speed =
+      transfer ? std::max(view(in.plan->icp_velocity).norm(), kLeastSpeed) : step.foot_speed;
   const StepWeights weights{.cmp = p_[P::kCmpWeight],
                             .change = p_[P::kChangeWeight],
-                            .time = square(speed),
+                            .time = transfer ? 0.0 : square(speed),
+                            .time_change = p_[P::kChangeWeight] * square(speed),
                             .missed = growth * growth - 1.0};
   Eigen::Vector2d shift = shift_;
   double remaining = now;
   if (!qp_.solve(step, weights, shift, remaining)) return;
+  if (held) shift = shift_;
   const double change = (shift - shift_).norm() + speed * std::abs(remaining - now);
   if (change < dead_band) return;
   shift_ = shift;

@@ -103,7 +103,7 @@ void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vecto
   }
   // T = remaining + t / w
   const double per_tau = 1.0 / (p.omega * p.omega);
-  H_(kTau, kTau) += w.time * (1.0 + w.change) * per_tau;
+  H_(kTau, kTau) += (w.time + w.time_change) * per_tau;
   g_[kTau] += w.time * (remaining - p.planned) / p.omega;
 
   rows_ = 0;
