@@ -12,10 +12,9 @@ namespace {
 
 constexpr int kUnknownPhase = -1;
 constexpr double kLeastGamma = 0.2;
-constexpr double kRestMargin =
-    0.11;  // CoM heights, of an ICP that comes to rest, to the edge of the feet
-constexpr double kLeastSpeed = 0.1;  // m/s, of the ICP, that time is reckoned with
-constexpr double kClearance = 0.02;  // m, between soles that pass each other
+constexpr double kRestMargin = 0.04;  // m, of an ICP that comes to rest, to the edge of the feet
+constexpr double kLeastSpeed = 0.1;   // m/s, of the ICP, that time is reckoned with
+constexpr double kClearance = 0.02;   // m, between soles that pass each other
 // sqrt(h/g), before touchdown: no leg follows a change any more.
 constexpr double kHold = 0.09;
 constexpr double kLeastLeft = 1.3 * kHold;
@@ -184,17 +183,18 @@ LaterPhase StepPlan::next_transfer(const GaitdGaitState& gait, const GaitdIcpPla
   walking::add_foothold(walking::foothold_of(model_, gait.adjusted[0]),
                         model_.feet[gait.next_side].toe_point, phase.region);
   phase.region.make_hull();
-  phase.region =
-      phase.region.inset(last ? kRestMargin * length_ : feedback_[walking::Feedback::kMargin]);
+  phase.region = phase.region.inset(last ? kRestMargin : feedback_[walking::Feedback::kMargin]);
+  const double settling = gait.omega * kSettling * time_;
   if (last) {
-    // All the time to come to rest: the ICP stays where the CMP is.
-    phase.share = 1.0;
+    // All the time to come to rest: the ICP stays where the CMP is, once that follows. A step that
+    // the gait chose itself can be followed by another one: it need not be as sure.
+    phase.share = gait.commanded[0].closing != 0 ? 1.0 : std::exp(-settling);
     phase.cmp = phase.region.closest_point(view(plan.icp_touchdown));
     return phase;
   }
   const double exponent = gait.omega * gait.adjusted[1].transfer_duration;
   const double growth = std::exp(exponent);
-  const double used = std::max(exponent - gait.omega * kSettling * time_, 0.0);
+  const double used = std::max(exponent - settling, 0.0);
   const double gain = feedback_[walking::Feedback::kGainOrthogonal];
   phase.share = std::expm1(used) / growth;
   phase.left = std::exp(-(1.0 + gain / gait.omega) * used);
