@@ -184,15 +184,17 @@ LaterPhase StepPlan::next_transfer(const GaitdGaitState& gait, const GaitdIcpPla
                         model_.feet[gait.next_side].toe_point, phase.region);
   phase.region.make_hull();
   phase.region = phase.region.inset(last ? kRestMargin : feedback_[walking::Feedback::kMargin]);
+  const double settling = gait.omega * kSettling * time_;
   if (last) {
-    // All the time to come to rest: the ICP stays where the CMP is.
-    phase.share = 1.0;
+    // All the time to come to rest: the ICP stays where the CMP is, once that follows. A step that
+    // the gait chose itself can be followed by another one: it need not be as sure.
+    phase.share = gait.commanded[0].closing != 0 ? 1.0 : std::exp(-settling);
     phase.cmp = phase.region.closest_point(view(plan.icp_touchdown));
     return phase;
   }
   const double exponent = gait.omega * gait.adjusted[1].transfer_duration;
   const double growth = std::exp(exponent);
-  const double used = std::max(exponent - gait.omega * kSettling * time_, 0.0);
+  const double used = std::max(exponent - settling, 0.0);
   const double gain = feedback_[walking::Feedback::kGainOrthogonal];
   phase.share = std::expm1(used) / growth;
   phase.left = std::exp(-(1.0 + gain / gait.omega) * used);
@@ -217,6 +219,8 @@ StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
   }
   c.later[StepProblem::kTransfer] = next_transfer(gait, *in.plan);
   c.gamma = std::max(in.plan->gamma[0] * growth * c.growth, kLeastGamma);
+  // Where the robot comes to rest, the edge of the feet that binds moves along with the foothold.
+  if (gait.footstep_count == 1) c.gamma = 1.0;
   const Eigen::Vector2d made =
       (view(gait.adjusted[0].pose.position) - view(step.pose.position)).head<2>();
   c.start_shift = start_shift_;
@@ -269,24 +273,28 @@ void StepPlan::adjust(const GaitdStepAdjusterInput& in) {
   StepProblem step = problem(in);
   const double now = gait.time_remaining;
   const double dead_band = p_[P::kDeadBand] * length_;
-  if (step.missed(shift_, now).norm() < dead_band * step.gamma) return;
+  const bool transfer = gait.phase == GAITD_PHASE_TRANSFER;
+  // What the CMP brings back moves no foothold; but a transfer may rather end earlier.
+  const bool held = step.missed(shift_, now).norm() < dead_band * step.gamma;
+  if (held && !transfer) return;
   add_limits(in, step);
   // What a step leaves to the next costs the shift that the next will need for it, and so on:
   // E^2 - 1 of the Riccati equation of x' = E x - u, for steps of the commanded pace.
   const GaitdFootstep& next = gait.adjusted[std::min(1, gait.footstep_count - 1)];
   const double growth = std::exp(gait.omega * (next.transfer_duration + next.swing_duration));
-  // Time costs the way that is made in it: of the foot in a swing, which has to hurry or wait; in a
-  // transfer, where no foot is on its way, of the ICP.
-  const double speed = gait.phase == GAITD_PHASE_SWING
-                           ? step.foot_speed
-                           : std::max(view(in.plan->icp_velocity).norm(), kLeastSpeed);
+  // Time costs the way of the foot in it, which has to hurry or wait. In a transfer no foot is on
+  // its way: time is free, and only a change of it costs, as much as the way of the ICP.
+  const double speed =
+      transfer ? std::max(view(in.plan->icp_velocity).norm(), kLeastSpeed) : step.foot_speed;
   const StepWeights weights{.cmp = p_[P::kCmpWeight],
                             .change = p_[P::kChangeWeight],
-                            .time = square(speed),
+                            .time = transfer ? 0.0 : square(speed),
+                            .time_change = p_[P::kChangeWeight] * square(speed),
                             .missed = growth * growth - 1.0};
   Eigen::Vector2d shift = shift_;
   double remaining = now;
   if (!qp_.solve(step, weights, shift, remaining)) return;
+  if (held) shift = shift_;
   const double change = (shift - shift_).norm() + speed * std::abs(remaining - now);
   if (change < dead_band) return;
   shift_ = shift;

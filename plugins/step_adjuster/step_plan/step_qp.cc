@@ -103,7 +103,7 @@ void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vecto
   }
   // T = remaining + t / w
   const double per_tau = 1.0 / (p.omega * p.omega);
-  H_(kTau, kTau) += w.time * (1.0 + w.change) * per_tau;
+  H_(kTau, kTau) += (w.time + w.time_change) * per_tau;
   g_[kTau] += w.time * (remaining - p.planned) / p.omega;
 
   rows_ = 0;
@@ -138,9 +138,8 @@ void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vecto
     row.setZero();
     row.segment<2>(kShift) = n.transpose();
     row.segment<2>(kMoment) = p.growth * n.transpose();
-    for (int j = 0; j < StepProblem::kLater; ++j) {
-      row.segment<2>(kLater + 2 * j) = p.later[j].share * n.transpose();
-    }
+    // A robot at the edge of what can be caught spends no time in the transfer after touchdown.
+    row.segment<2>(kLater + 2 * StepProblem::kSwing) = swing.share * n.transpose();
     row.segment<2>(kLost) = n.transpose();
     row[kTau] = -n.dot(grown);
     add(row, n.dot(reached - p.commanded) - p.capture.limit[i]);

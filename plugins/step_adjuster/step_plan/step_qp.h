@@ -69,7 +69,8 @@ struct StepWeights {
   double cmp;     // of a moved CMP, before and after touchdown, against a foothold moved as far
   double change;  // of a change of what was decided before, likewise
   double time;    // m^2/s^2, of an earlier or later touchdown: the way of the foot in that time
-  double missed;  // of the ICP missed at touchdown
+  double time_change;  // m^2/s^2, of a change of what was decided before
+  double missed;       // of the ICP missed at touchdown
 };
 
 // Place of the next foothold, end of this phase and CMP of this and later phases, from one convex
