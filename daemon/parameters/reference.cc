@@ -26,7 +26,7 @@ gaitctl param set gait.swing_height 0.12
 ```
 
 The column *rank* says whom a parameter is for. *tuning*: whoever makes a robot walk better, or
-otherwise; moved by 15 % it costs no walk. *porting*: whoever brings gaitd to another robot, its sensors and
+otherwise. *porting*: whoever brings gaitd to another robot, its sensors and
 its drives. *expert*: whoever knows the code that it is read in. Lengths, times and speeds that go with the
 size of the robot are in units of it: `com heights`, with h the height of the CoM in the nominal posture and g
 gravity, `sqrt(h/g)` and `sqrt(g h)`. What follows from the robot, and what nobody had a reason to change, is no parameter
