@@ -36,16 +36,17 @@ std::string list_text(const json& result) {
     const bool differs = p.value("value", json()) != p.value("default", json());
     changed |= differs;
     rows.push_back({text(p, "name"), text(p, "value") + (differs ? " *" : ""), text(p, "unit"),
-                    range(p), text(p, "default"), text(p, "description")});
+                    range(p), text(p, "default"), text(p, "rank"), text(p, "description")});
   }
-  return table({"parameter", "value", "unit", "range", "default", ""}, rows) +
+  return table({"parameter", "value", "unit", "range", "default", "rank", ""}, rows) +
          (changed ? "* not the default\n" : "");
 }
 
 std::string get_text(const json& p) {
   return text(p, "name") + "  " + with_unit(text(p, "value"), p) + "\n  " + text(p, "description") +
          "\n  range    " + with_unit(range(p), p) + "\n  default  " +
-         with_unit(text(p, "default"), p) + "\n  effect   " + text(p, "effect") + "\n";
+         with_unit(text(p, "default"), p) + "\n  rank     " + text(p, "rank") + "\n  effect   " +
+         text(p, "effect") + "\n";
 }
 
 std::string set_text(const json& r) {

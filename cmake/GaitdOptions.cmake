@@ -45,6 +45,12 @@ if(GAITD_BUILD_BENCHMARKS)
   find_package(benchmark REQUIRED)
 endif()
 
+# gaitd_in_plugins(TARGET): a static library that ends up in plugins. A library with unique symbols is never
+# unloaded; clang makes none and does not know the option.
+function(gaitd_in_plugins target)
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
+endfunction()
+
 # gaitd_test(NAME SOURCES... [LIBRARIES...]): a GoogleTest program registered with CTest.
 function(gaitd_test name)
   if(NOT GAITD_BUILD_TESTS)

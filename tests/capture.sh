@@ -16,7 +16,7 @@ fall early
 early=$time
 what='"faults":\["fall","capture"\].*"what":"ICP [0-9.]* m off the feet, beyond [0-9.]* m"'
 grep -q "$what" "$scratch/early.event" || fail "$(cat "$scratch/early.event")"
-fall late --set safety.capture_time=1
+fall late --set safety.capture_reach=10
 grep -q '"faults":\["fall"' "$scratch/late.event" || fail "$(cat "$scratch/late.event")"
 ! grep -q capture "$scratch/late.event" || fail "$(cat "$scratch/late.event")"
 awk -v early="$early" -v late="$time" 'BEGIN {

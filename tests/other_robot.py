@@ -59,9 +59,7 @@ def make_description(text, options):
     text = text.replace("name: atlas", "name: other").replace("atlas.urdf", "robot.urdf")
     text = re.sub(r"(?<=xyz: \[)[^]]*", lambda m: scale_numbers(m.group(), options.size), text)
     soles = options.size * options.feet
-    text = re.sub(r"(?<=outline: ).*", lambda m: scale_numbers(m.group(), soles), text)
-    omega = re.search(r"(?<=gait\.omega: )[\d.]+", text)
-    return text.replace(omega.group(), f"{float(omega.group()) * options.size**-0.5:.6g}")
+    return re.sub(r"(?<=outline: ).*", lambda m: scale_numbers(m.group(), soles), text)
 
 
 def main():

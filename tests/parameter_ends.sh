@@ -4,14 +4,12 @@
 source "$(dirname "$0")/common.sh"
 cd "$scratch"
 
-keys='limits.torque_ratio, limits.velocity_ratio, safety.fall_height, safety.force_range,
+keys='limits.torque_ratio, limits.velocity_ratio, safety.fall_height,
       safety.torque_rate, objectives.com_height, objectives.momentum_weight,
-      objectives.acceleration_weight, objectives.swing_weight, objectives.swing_height_stiffness,
-      objectives.rho_*, step_adjuster.margin, state_estimator.tilt_rate, state_estimator.leg_pole,
-      state_estimator.upper_body_pole, whole_body_controller.torque_scale,
-      whole_body_controller.joint_acceleration_limit, whole_body_controller.limit_horizon,
-      whole_body_controller.max_iterations, state_estimator.force_filter,
-      state_estimator.tilt_bias_rate, state_estimator.trust_delay, safety.capture_reach'
+      objectives.swing_weight, objectives.swing_stiffness, objectives.rho_*, step_adjuster.margin,
+      state_estimator.tilt_rate, state_estimator.joint_pole, whole_body_controller.torque_scale,
+      whole_body_controller.joint_acceleration_limit, whole_body_controller.max_iterations,
+      state_estimator.force_filter, safety.capture_reach'
 sed "s#commands/#$GAITD_SOURCE/sim/campaigns/commands/#; s#^sweep:#&\n  parameters: [${keys//$'\n'/}]#" \
   "$GAITD_SOURCE/sim/campaigns/parameters.yaml" >parameters.yaml
 expect 0 gaitctl campaign parameters.yaml -o out

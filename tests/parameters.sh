@@ -13,15 +13,15 @@ refused() {
   grep -qF -- "$text" "$scratch/error" || fail "'$*' says: $(cat "$scratch/error")"
 }
 
-start_daemon --clock realtime --log "$scratch/walk.mcap" --set swing.late_velocity=0.25
+start_daemon --clock realtime --log "$scratch/walk.mcap" --set swing.landing_speed=0.075
 wait_for state standing 20
-[[ $(value swing.late_velocity) == 0.25 ]] || fail "--set does not show in param get"
+[[ $(value swing.landing_speed) == 0.075 ]] || fail "--set does not show in param get"
 expect 0 gaitctl param list >"$scratch/list"
 expect 0 gaitctl param list 'gait.*'
 expect 0 gaitctl param get gait.swing_height
-grep -q '^swing.late_velocity *0.25 \*' "$scratch/list" || fail "the list shows no changed value"
-for key in gait.omega swing.apex_fraction legs.bent_knee objectives.friction safety.tilt_limit \
-  limits.torque_ratio state_estimator.leg_pole icp_planner.entry_x step_adjuster.margin \
+grep -q '^swing.landing_speed *0.075 \*' "$scratch/list" || fail "the list shows no changed value"
+for key in gait.longest_step gait.touchdown_force legs.bent_knee objectives.friction safety.tilt_limit \
+  limits.torque_ratio state_estimator.joint_pole icp_planner.entry_x step_adjuster.margin \
   whole_body_controller.torque_scale; do
   grep -q "^$key " "$scratch/list" || fail "the list lacks $key"
 done
@@ -34,7 +34,7 @@ refused 1 'nan' gaitctl param set gait.swing_height nan
 refused 1 'text' gaitctl param set gait.swing_height high
 refused 1 'needs a restart' gaitctl param set period 0.002
 refused 1 'not in use' gaitctl param set icp_planner/single_cmp.inwards 0.2
-refused 1 'while the robot stands' gaitctl param set gait.omega 3.5
+refused 1 'while the robot stands' gaitctl param set safety.ready_duration 2
 refused 2 '' gaitctl param set gait.swing_height
 [[ $(value gait.swing_height) == 0.13 ]] || fail "a refused value was taken"
 
@@ -48,10 +48,10 @@ change() {
 }
 change icp_planner.entry_y objectives.pelvis_stiffness &
 first=$!
-change icp_planner.exit_step_length objectives.chest_stiffness &
+change icp_planner.exit_y objectives.chest_stiffness &
 wait $! || fail "the second client failed"
 wait $first || fail "the first client failed"
-for key in icp_planner.entry_y icp_planner.exit_step_length; do
+for key in icp_planner.entry_y icp_planner.exit_y; do
   [[ $(value $key) == 0.08 ]] || fail "$key is $(value $key), expected 0.08"
 done
 expect 0 gaitctl param set icp_planner.entry_x -0.1
@@ -60,7 +60,7 @@ expect 0 gaitctl param set gait.swing_height 0.15
 wait_for state standing 240
 
 # At rest; and no reset takes a change back.
-expect 0 gaitctl param set gait.omega 3.4
+expect 0 gaitctl param set safety.ready_duration 2.5
 expect 0 gaitctl sim reset
 wait_for state standing 20
 expect 0 gaitctl estop

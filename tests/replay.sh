@@ -14,7 +14,7 @@ sensors: {noise: nominal}
 actuators: {model: nominal}
 commands:
   - {at: 1.0, walk: {steps: 66, length: 0.3}}
-  - {at: 6.0, param: {gait.swing_height: 0.12, swap.shadow: 0.3}}
+  - {at: 6.0, param: {gait.swing_height: 0.12, swap.probation: 0.9}}
   - {at: 8.0, swap: {layer: whole_body_controller, to: com_height_qp}}
   - {at: 12.0, mode: walk-bent}
   - {at: 16.0, swap: {layer: whole_body_controller, to: nullspace_qp}}

@@ -23,7 +23,7 @@ draw: {model_error.mass_scale.utorso: [0.95, 1.05]}
 seeds: 1
 keep_logs: 0
 tune:
-  parameters: {step_adjuster.gain_parallel: 30 %, objectives.swing_height_stiffness: [150, 300]}
+  parameters: {step_adjuster.gain_parallel: 30 %, objectives.swing_stiffness: [110, 220]}
   objective: {icp_error_rms: 1}
   generations: 2
   population: 5

@@ -75,7 +75,7 @@ Findings check_faults(const LogCase& log) {
   }
   if ((faults & daemon::kFaultReadying) != 0) {
     add("readying", "the robot did not come into its standing posture, or its feet carry no load",
-        "safety.ready_stiffness, safety.ready_tolerance, safety.ready_load; the zeros of the "
+        "safety.ready_stiffness, safety.ready_tolerance; the zeros of the "
         "joints");
   }
   return findings;

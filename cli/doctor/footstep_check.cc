@@ -68,9 +68,10 @@ Findings check_footsteps(const LogCase& log) {
                      horizontal(goal[swing], foot[swing], i), static_cast<int>((*index)[i]));
     findings.push_back(log_finding(
         log, "footstep", i, what,
-        format("the footsteps that were sent; gait.max_step_forward (%g m), gait.max_step_height, "
-               "gait.max_foot_separation refuse those out of reach; a longer swing",
-               log.setting("gait.max_step_forward", 1.0))));
+        format(
+            "the footsteps that were sent; gait.longest_step (%g CoM heights), gait.highest_step, "
+            "gait.widest_step refuse those out of reach; a longer swing",
+            log.setting("gait.longest_step", 0.85))));
   }
   return findings;
 }

@@ -42,13 +42,11 @@ struct FixedGuess {
 
 // What the commanded gait takes from the size of the robot.
 struct Proportions {
-  double scale = 1.0;          // height of the centre of mass against that of Atlas
-  double omega = 0.0;          // 1/s
-  double swing = 0.0;          // s
-  double transfer = 0.0;       // s
-  double length = 0.0;         // m, of a step
-  double swing_height = 0.0;   // m
-  double contact_least = 0.0;  // N
+  double scale = 1.0;         // height of the centre of mass against that of Atlas
+  double swing = 0.0;         // s
+  double transfer = 0.0;      // s
+  double length = 0.0;        // m, of a step
+  double swing_height = 0.0;  // m
 };
 
 // A robot as far as it is known. Every step of the guessing fills its part.

@@ -127,10 +127,7 @@ void write_parameters(const Guess& guess, Writer* out) {
   out->line("");
   out->comment(guess.proportions_why);
   out->line("parameters:");
-  out->line("  gait.omega: " + number(p.omega));
   out->line("  gait.swing_height: " + number(p.swing_height));
-  out->line("  gait.touchdown_least: " + number(1.125 * p.contact_least, 3));
-  out->line("  state_estimator.contact_least: " + number(p.contact_least, 3));
   for (const auto& [name, value] : scaled_parameters(p)) {
     out->line("  " + name + ": " + number(value));
   }

@@ -115,7 +115,8 @@ std::map<std::string, std::string> swept(const Campaign& campaign) {
 
 TEST_F(CampaignTest, SweepsBothEndsOfEveryParameterThatMatches) {
   campaign("scenarios: [" + file("good.yaml") +
-           "]\nset: {mode: [walk-bent]}\nsweep: {parameters: [gait.recovery*, safety.tilt_limit], "
+           "]\nset: {mode: [walk-bent]}\nsweep: {parameters: [gait.recovery, drive.max*, "
+           "safety.tilt_limit], "
            "ends: [commands.1.param, commands.3.param], defaults: [commands.2.param]}\n");
   daemon::Issues issues;
   const auto loaded = load_campaign(file("c.yaml"), &issues);
@@ -131,17 +132,19 @@ TEST_F(CampaignTest, SweepsBothEndsOfEveryParameterThatMatches) {
 }
 
 TEST_F(CampaignTest, ASweepWithoutPlacesSetsThemFromTheStart) {
-  campaign("scenarios: [" + file("good.yaml") + "]\nsweep: {parameters: [gait.omega]}\n");
+  campaign("scenarios: [" + file("good.yaml") +
+           "]\nsweep: {parameters: [limits.position_margin]}\n");
   daemon::Issues issues;
   const auto loaded = load_campaign(file("c.yaml"), &issues);
   ASSERT_TRUE(loaded) << issues.error_text();
   const auto all = swept(*loaded);
   ASSERT_EQ(all.size(), 1u);
-  EXPECT_EQ(all.at("gait.omega=10"), " seed=1 gait.omega=10");
+  EXPECT_EQ(all.at("limits.position_margin=0.5"), " seed=1 limits.position_margin=0.5");
   const Outcome outcome = run();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_HAS(workspace_.read("calls"), "--set gait.omega=10");
-  EXPECT_GT(outcome.out.find("gait.omega"), outcome.out.find("worst runs")) << outcome.out;
+  EXPECT_HAS(workspace_.read("calls"), "--set limits.position_margin=0.5");
+  EXPECT_GT(outcome.out.find("limits.position_margin"), outcome.out.find("worst runs"))
+      << outcome.out;
 }
 
 TEST_F(CampaignTest, ASweepOfNothingIsAnError) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "daemon/config/removed_parameters.h"
 #include "daemon/config/yaml_reader.h"
 #include "gaitd/sdk/bounds.h"
 
@@ -190,9 +191,11 @@ void Settings::report_unknown(Issues* issues) const {
         issues->add_text(value->where, key, "unknown key");
       continue;
     }
+    const std::string removed = removed_parameter(key);
     const bool strange = !variant.empty() && !variants_.contains(variant);
-    const std::string advice = strange ? "no such variant; " + suggestion(variant, variants)
-                                       : "unknown key; " + nearest_known(key, known);
+    const std::string advice = !removed.empty() ? removed
+                               : strange ? "no such variant; " + suggestion(variant, variants)
+                                         : "unknown key; " + nearest_known(key, known);
     for (const auto& [source, value] : sources) issues->add_text(value->where, key, advice);
   }
 }

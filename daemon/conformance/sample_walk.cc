@@ -53,7 +53,7 @@ SampleWalk::SampleWalk(const GaitdModel& model)
   gait_.reset(set_.robot);
   set_.gait = gait_.state();
   objectives_.reset(set_.robot, set_.gait);
-  planner_.update(kPeriod, set_.robot, set_.gait, {}, 4.0, 0.08, set_.plan);
+  planner_.update(kPeriod, set_.robot, set_.gait, {}, set_.plan);
 }
 
 // Every kind of motion that the robot is able to.
@@ -86,8 +86,7 @@ Eigen::Vector3d SampleWalk::sole(int side) {
   if (swing_step_ != g.step_index) {
     swing_step_ = g.step_index;
     swing_.begin(gait_.lift_off(), sdk::Vector6d::Zero(), g.footholds[side].pose.position[2],
-                 g.adjusted[0], g.phase_duration,
-                 walking::SwingParameters(walking::kSwingParameters));
+                 g.adjusted[0], g.phase_duration, {});
   }
   return swing_.evaluate(std::min(g.time_in_phase, g.phase_duration)).position;
 }
@@ -202,7 +201,7 @@ void SampleWalk::decide() {
   }
   gait_.update(kPeriod, set_.robot, set_.plan, set_.toe_off, set_.adjustment);
   set_.gait = gait_.state();
-  planner_.update(kPeriod, set_.robot, set_.gait, {}, 4.0, 0.08, set_.plan);
+  planner_.update(kPeriod, set_.robot, set_.gait, {}, set_.plan);
   GaitdStepAdjustment& a = set_.adjustment;
   const double omega = set_.gait.omega;
   a.kappa = 1.0;

@@ -68,7 +68,7 @@ void Safety::swing_joint(GaitdJointCommands& commands) const {
   c.position = start_position_[test_.joint] + 0.5 * test_.amplitude * (1.0 - std::cos(phase));
   c.velocity = test_.amplitude * M_PI / test_.duration * std::sin(phase);
   c.stiffness = p_[P::kReadyStiffness] * effort;
-  c.damping = p_[P::kReadyDamping] * effort;
+  c.damping = kReadyDamping * p_[P::kReadyStiffness] * effort;
 }
 
 }  // namespace gaitd::daemon

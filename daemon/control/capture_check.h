@@ -16,10 +16,13 @@ namespace gaitd::daemon {
 // no sequence of steps catches it, whatever their direction.
 class CaptureCheck {
  public:
+  static constexpr double kStepTime = 0.5;   // s, T above
+  static constexpr double kPatience = 0.02;  // s: noise of the velocity is shorter
+
   explicit CaptureCheck(const GaitdModel& model) : model_(model) {}
   void reset() { time_beyond_ = 0.0; }
 
-  // True once the ICP has been beyond the limit for safety.capture_time. A robot that stands on
+  // True once the ICP has been beyond the limit for kPatience. A robot that stands on
   // nothing, and one whose gait has no natural frequency yet, is not judged.
   bool lost(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
             const sdk::Parameters<SafetyParameter>& parameters);

@@ -89,9 +89,9 @@ void cross_fade(const GaitdIcpPlan& from, double share, GaitdIcpPlan& to) {
   mix(from.icp, share, to.icp);
   mix(from.icp_velocity, share, to.icp_velocity);
   mix(from.ecmp, share, to.ecmp);
-  mix(from.com, share, to.com);
-  mix(from.com_velocity, share, to.com_velocity);
   mix(from.icp_end, share, to.icp_end);
+  mix(from.icp_touchdown, share, to.icp_touchdown);
+  mix(from.icp_transferred, share, to.icp_transferred);
   mix(from.kappa, share, to.kappa);
 }
 

@@ -73,14 +73,14 @@ bool Safety::update(double dt, const TickData& d, bool walking) {
   const double weight = model_.total_mass * model_.gravity;
   const double left = d.robot.feet[GAITD_LEFT].normal_force;
   const double right = d.robot.feet[GAITD_RIGHT].normal_force;
-  const bool loaded = left + right > p_[P::kReadyLoad] * weight &&
-                      std::min(left, right) > 0.25 * p_[P::kReadyLoad] * weight;
+  const bool loaded =
+      left + right > kReadyLoad * weight && std::min(left, right) > 0.25 * kReadyLoad * weight;
   time_settled_ = in_posture && loaded ? time_settled_ + dt : 0.0;
-  if (time_settled_ >= p_[P::kReadySettle]) {
+  if (time_settled_ >= kReadySettle) {
     state_ = SafetyState::kStanding;
     return true;
   }
-  if (time_in_state_ > 2.0 * p_[P::kReadyDuration] + p_[P::kReadySettle]) raise(kFaultReadying);
+  if (time_in_state_ > 2.0 * p_[P::kReadyDuration] + kReadySettle) raise(kFaultReadying);
   return false;
 }
 
@@ -94,7 +94,7 @@ void Safety::hold(const TickData& d, GaitdJointCommands& commands) const {
     c.mode = GAITD_JOINT_MODE_TORQUE;
     c.position = start_position_[i] + smooth * (model_.nominal_position[i] - start_position_[i]);
     c.stiffness = p_[P::kReadyStiffness] * effort;
-    c.damping = p_[P::kReadyDamping] * effort;
+    c.damping = kReadyDamping * p_[P::kReadyStiffness] * effort;
   }
 }
 
@@ -112,13 +112,12 @@ void Safety::damp(GaitdJointCommands& commands) const {
 void Safety::fall_back(double dt, TickData& d) {
   // Last good torques, fading into joint damping; then the safe stop.
   time_unsolved_ += dt;
-  const double patience = p_[P::kSolverPatience];
-  if (time_unsolved_ > patience) {
+  if (time_unsolved_ > kSolverPatience) {
     raise(kFaultSolver);
     damp(d.commands);
     return;
   }
-  const double share = patience > 0.0 ? 1.0 - time_unsolved_ / patience : 0.0;
+  const double share = 1.0 - time_unsolved_ / kSolverPatience;
   for (int i = 0; i < model_.joint_count; ++i) {
     GaitdJointCommand& c = d.commands.joints[i];
     c = {};

@@ -14,6 +14,11 @@ namespace gaitd::daemon {
 // table of conditions.h.
 class Safety {
  public:
+  // s, without a solution before the safe stop: the last torques still hold the robot for so long.
+  static constexpr double kSolverPatience = 0.05;
+  // s, in the standing posture and on loaded feet before the robot stands.
+  static constexpr double kReadySettle = 0.5;
+
   explicit Safety(const GaitdModel& model)
       : model_(model), balance_(balance_joints(model_)), capture_(model_) {}
   void set_parameter(int index, double value) { p_.set(index, value); }
@@ -50,6 +55,10 @@ class Safety {
   void write(double dt, bool control_ok, TickData& data);
 
  private:
+  static constexpr double kReadyLoad = 0.6;  // weights, on both feet together before standing
+  // s, damping of the joints while readying over their stiffness.
+  static constexpr double kReadyDamping = 1.0 / 32.0;
+
   void fall_back(double dt, TickData& data);
   void hold(const TickData& data, GaitdJointCommands& commands) const;
   void damp(int joint, GaitdJointCommands& commands) const;

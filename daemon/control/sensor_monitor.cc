@@ -22,8 +22,12 @@ constexpr double kRestingSpeed = 0.03;   // m/s, of a foot on the ground
 // Joints are overtaken by impacts; only this multiple of the limit is impossible, and of a slow
 // joint no less than what a light limb reaches when it is thrown about.
 constexpr double kVelocityRatio = 3.0;
-constexpr double kFastestTurn = 30.0;  // rad/s
-constexpr double kFastestSlide = 3.0;  // m/s
+// In a tick: more is a wrong reading, and no blow.
+constexpr double kGyroJump = 10.0;            // rad/s
+constexpr double kAccelerometerJump = 200.0;  // m/s^2
+constexpr double kForceRange = 20.0;          // weights, on a foot
+constexpr double kFastestTurn = 30.0;         // rad/s
+constexpr double kFastestSlide = 3.0;         // m/s
 // Of the weight, that the IMU feels and the other foot does not show: this one must carry it.
 constexpr double kMissingWeight = 0.25;
 
@@ -193,9 +197,8 @@ void SensorMonitor::check_imus(double dt, const Limits& p, const Evidence& evide
     const double missed = 1.0 + h.untrue / dt;
     const bool credible =
         finite(imu.angular_rate) && finite(imu.specific_force) && finite(imu.orientation) &&
-        (!h.known ||
-         (near(imu.angular_rate, held.angular_rate, missed * p[P::kGyroJump]) &&
-          near(imu.specific_force, held.specific_force, missed * p[P::kAccelerometerJump])));
+        (!h.known || (near(imu.angular_rate, held.angular_rate, missed * kGyroJump) &&
+                      near(imu.specific_force, held.specific_force, missed * kAccelerometerJump)));
     const bool fresh = imu.info.sequence != last_.imus[i].info.sequence;
     const bool repeats = same(imu, last_.imus[i]) && (evidence.controlled || evidence.joints);
     h.unchanged = repeats ? h.unchanged + (fresh ? dt : 0.0) : 0.0;
@@ -211,7 +214,7 @@ void SensorMonitor::check_feet(double dt, const Limits& p, const Evidence& evide
     const GaitdFootForceSensor& foot = d.readings.feet[side];
     History& h = feet_[side];
     const bool credible =
-        finite(foot.force) && finite(foot.moment) && within(foot.force, p[P::kForceRange] * weight);
+        finite(foot.force) && finite(foot.moment) && within(foot.force, kForceRange * weight);
     // Overdue and not moving down any more: on the ground, whatever the sensor says.
     const bool rests = d.gait.late_contact != 0 && d.gait.next_side == side &&
                        std::abs(d.robot.feet[side].twist[5]) < kRestingSpeed;

@@ -20,20 +20,11 @@ const char* swap_refusal(SwapRight right) {
 
 void set_swap_rule(int index, double value, SwapRules* rules) {
   switch (static_cast<SwapParameter>(index)) {
-    case SwapParameter::kShadow:
-      rules->shadow = value;
-      break;
-    case SwapParameter::kFade:
-      rules->fade = value;
-      break;
     case SwapParameter::kProbation:
       rules->probation = value;
       break;
     case SwapParameter::kDifferenceLimit:
       rules->difference_limit = value;
-      break;
-    case SwapParameter::kIcpErrorGrowth:
-      rules->icp_error_growth = value;
       break;
     case SwapParameter::kOnHardware:
       rules->on_hardware = value != 0.0;

@@ -43,11 +43,11 @@ struct SwapReport {
 
 // Times and limits of a swap, s and m.
 struct SwapRules {
-  double shadow = 0.2;
-  double fade = 0.03;
+  double shadow = 0.2;  // beside the layer in use before it takes over: a quarter of a step
+  double fade = 0.03;   // of commands, CMP and plan: no jump, and over before the ICP has gone far
   double probation = 1.0;
   double difference_limit = 1.0;
-  double icp_error_growth = 0.05;
+  double icp_error_growth = 0.05;  // in the probation; beyond it the layer goes again
   bool on_hardware = false;
   bool simulation = true;       // else only standing, and only with on_hardware
   bool wall_time_acts = false;  // the realtime clock

@@ -126,6 +126,10 @@ void check_parameter_entry(const GaitdParameter& p, int index, std::set<std::str
                  "printable text that fits", remedy);
     return;
   }
+  if (p.rank < GAITD_RANK_TUNING || p.rank > GAITD_RANK_EXPERT) {
+    refusal->add(what, "rank " + std::to_string(p.rank), "GAITD_RANK_TUNING, _PORTING or _EXPERT",
+                 remedy);
+  }
   if (p.type != GAITD_PARAMETER_REAL && p.type != GAITD_PARAMETER_INTEGER &&
       p.type != GAITD_PARAMETER_BOOLEAN) {
     refusal->add(what, "type " + std::to_string(p.type), "real 0, integer 1 or boolean 2", remedy);

@@ -84,8 +84,9 @@ const char* output_error(const GaitdIcpPlan& p, int) {
   if (!finite(p.icp)) return "icp: is not finite";
   if (!finite(p.icp_velocity)) return "icp_velocity: is not finite";
   if (!finite(p.ecmp)) return "ecmp: is not finite";
-  if (!finite(p.com) || !finite(p.com_velocity)) return "com: is not finite";
   if (!finite(p.icp_end)) return "icp_end: is not finite";
+  if (!finite(p.icp_touchdown)) return "icp_touchdown: is not finite";
+  if (!finite(p.icp_transferred)) return "icp_transferred: is not finite";
   if (!std::isfinite(p.kappa) || p.kappa < 0.0) return "kappa: is negative or not finite";
   if (!std::isfinite(p.time_remaining)) return "time_remaining: is not finite";
   if (!finite(p.offset)) return "offset: is not finite";

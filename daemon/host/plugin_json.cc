@@ -30,12 +30,17 @@ json entry_json(const PluginEntry& entry, const std::map<std::string, std::strin
 
 }  // namespace
 
+const char* rank_name(int rank) {
+  return rank == GAITD_RANK_PORTING ? "porting" : rank == GAITD_RANK_EXPERT ? "expert" : "tuning";
+}
+
 json parameter_json(const GaitdParameter& p) {
   const char* type = p.type == GAITD_PARAMETER_REAL      ? "real"
                      : p.type == GAITD_PARAMETER_INTEGER ? "integer"
                                                          : "boolean";
   return {{"name", p.name},
           {"type", type},
+          {"rank", rank_name(p.rank)},
           {"unit", p.unit},
           {"min", p.minimum},
           {"max", p.maximum},

@@ -11,6 +11,8 @@
 namespace gaitd::daemon {
 
 /// {name, type: real|integer|boolean, unit, min, max, default, description}.
+/// "tuning", "porting" or "expert".
+const char* rank_name(int rank);
 nlohmann::json parameter_json(const GaitdParameter& parameter);
 
 /// The answer to plugin.list: {"plugins": [{layer, variant, path, active, version, build,

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "daemon/config/node.h"
+#include "daemon/config/removed_parameters.h"
 #include "daemon/config/settings.h"
 #include "daemon/host/plugin_json.h"
 #include "daemon/log/glob.h"
@@ -119,6 +120,10 @@ int LiveParameters::find(std::string_view key, std::string* error) const {
   }
   if (std::find(restart_keys_.begin(), restart_keys_.end(), key) != restart_keys_.end()) {
     *error = name + ": cannot be changed while gaitd runs; it " + kRestart;
+    return -1;
+  }
+  if (const std::string removed = removed_parameter(name); !removed.empty()) {
+    *error = name + ": " + removed;
     return -1;
   }
   *error = name + ": no such parameter; ";

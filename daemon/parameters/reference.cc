@@ -5,6 +5,7 @@
 
 #include "daemon/host/layers.h"
 #include "daemon/host/parameters.h"
+#include "daemon/host/plugin_json.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -23,6 +24,13 @@ gaitctl param list 'gait.*'
 gaitctl param get gait.swing_height
 gaitctl param set gait.swing_height 0.12
 ```
+
+The column *rank* says whom a parameter is for. *tuning*: whoever makes a robot walk better, or
+otherwise. *porting*: whoever brings gaitd to another robot, its sensors and
+its drives. *expert*: whoever knows the code that it is read in. Lengths, times and speeds that go with the
+size of the robot are in units of it: `com heights`, with h the height of the CoM in the nominal posture and g
+gravity, `sqrt(h/g)` and `sqrt(g h)`. What follows from the robot, and what nobody had a reason to change, is no parameter
+([why](decisions/parameters.md)).
 
 Each of them can be changed while gaitd runs, also while the robot walks: a new value is checked,
 taken at the boundary between two ticks, and logged with the tick, the old and the new value. The
@@ -91,11 +99,12 @@ std::string parameter_reference(const LiveParameters& all) {
     const GaitdParameter& p = row.declared;
     if (row.index == 0) {
       out += heading(row);
-      out += "\n| key | unit | range | default | effect | |\n|---|---|---|---|---|---|\n";
+      out +=
+          "\n| key | rank | unit | range | default | effect | |\n|---|---|---|---|---|---|---|\n";
     }
     for (const std::string& text :
-         {"`" + row.key + "`", std::string(p.unit), range_text(p), value_text(p, p.default_value),
-          effect_text(row.effect), std::string(p.description)}) {
+         {"`" + row.key + "`", std::string(rank_name(p.rank)), std::string(p.unit), range_text(p),
+          value_text(p, p.default_value), effect_text(row.effect), std::string(p.description)}) {
       out += "| " + cell(text) + " ";
     }
     out += "|\n";

@@ -35,33 +35,18 @@ constexpr const char* kCommanded = "footsteps commanded afterwards";
 constexpr const char* kNextSwing = "the next swing";
 constexpr const char* kRamp = "a joint on its ramp to the standing posture would jump";
 constexpr const char* kWeak = "the legs would be too weak for the next step";
-constexpr const char* kKnee = "a knee on its ramp would jump";
 
 constexpr Rule kRules[] = {
-    {"gait.omega", {kAtRest, "the plan of the footsteps under way depends on it"}},
     {"gait.swing_duration", {kLater, kCommanded}},
     {"gait.transfer_duration", {kLater, kCommanded}},
     {"gait.swing_height", {kLater, kCommanded}},
-    {"gait.min_foot_separation", {kLater, kCommanded}},
-    {"gait.max_foot_separation", {kLater, kCommanded}},
-    {"gait.max_step_forward", {kLater, kCommanded}},
-    {"gait.max_step_backward", {kLater, kCommanded}},
-    {"gait.max_step_height", {kLater, kCommanded}},
+    {"gait.widest_step", {kLater, kCommanded}},
+    {"gait.longest_step", {kLater, kCommanded}},
+    {"gait.highest_step", {kLater, kCommanded}},
     {"gait.max_step_turn", {kLater, kCommanded}},
-    {"gait.max_step_tilt", {kLater, kCommanded}},
-    {"gait.initial_transfer_duration", {kLater, "the next walk"}},
-    {"gait.final_transfer_duration", {kLater, "the next transfer"}},
-    {"swing.touchdown_velocity", {kLater, kNextSwing}},
-    {"swing.apex_fraction", {kLater, kNextSwing}},
-    {"swing.late_velocity", {kLater, kNextSwing}},
-    {"swing.late_acceleration", {kLater, kNextSwing}},
-    {"swing.late_speed", {kLater, kNextSwing}},
-    {"legs.straighten_rate", {kAtRest, kKnee}},
-    {"legs.collapse_duration", {kAtRest, kKnee}},
-    {"objectives.contact_ramp", {kAtRest, "a foot that carries the robot would lose its load"}},
+    {"swing.landing_speed", {kLater, kNextSwing}},
     {"safety.ready_duration", {kAtRest, kRamp}},
     {"safety.ready_stiffness", {kAtRest, kRamp}},
-    {"safety.ready_damping", {kAtRest, kRamp}},
     {"limits.torque_ratio", {kBounded, kWeak, 0.5, 1.0}},
     {"limits.velocity_ratio", {kBounded, kWeak, 0.5, 1.0}},
     {"whole_body_controller.joint_acceleration_limit", {kBounded, kWeak, 300.0, 1e5}},

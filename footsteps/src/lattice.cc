@@ -106,7 +106,7 @@ class Lattice::Search {
   }
 
   Foothold look(int side, const Place& place) const {
-    return steps_.footholds().at(side, place, parameters_[Gait::kMaxStepTilt]);
+    return steps_.footholds().at(side, place, walking::kMaxStepTilt);
   }
 
   // Footholds for both feet at the goal, or as near to it as there are any.

@@ -90,8 +90,9 @@ StepState StepMaker::make(int side, const GaitdPose& pose, const GaitdPose& stan
 // with the clearance that it has gained by then.
 bool StepMaker::swings_clear(const GaitdFootstep& step, const GaitdPose& from) const {
   const walking::SwingParameters parameters(walking::kSwingParameters);
+  const walking::SwingShape shape = walking::swing_shape(model_, parameters);
   walking::SwingTrajectory swing;
-  swing.begin(from, sdk::Vector6d::Zero(), from.position[2], step, step.swing_duration, parameters);
+  swing.begin(from, sdk::Vector6d::Zero(), from.position[2], step, step.swing_duration, shape);
   const GaitdFoot& foot = model_.feet[step.side];
   for (int k = 1; k < kSamples; ++k) {
     const walking::SwingTrajectory::Sample sole =

@@ -11,7 +11,6 @@ namespace gaitd::footsteps {
 namespace {
 
 using walking::CaptureCheck;
-using walking::Gait;
 using walking::GaitParameters;
 using walking::Refusal;
 
@@ -25,7 +24,7 @@ StepRules::StepRules(const GaitdModel& model)
 
 Refusal StepRules::check(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
                          int number, const GaitParameters& parameters) const {
-  Refusal r = walking::check_footstep(step, stance, from, number, parameters);
+  Refusal r = walking::check_footstep(step, stance, from, number, {model_, parameters});
   if (!r.refused()) r = turn_reach_.check(step, stance, number);
   if (!r.refused()) r = walking::check_contact_polygon(model_, step, number);
   if (!r.refused()) r = swing_limits_.check(step, stance, from, number);
@@ -33,7 +32,7 @@ Refusal StepRules::check(const GaitdFootstep& step, const GaitdPose& stance, con
 }
 
 // For the footstep after the one that lands. False: no transfer is long enough.
-bool StepRules::give_time(const Start& start, double final_transfer, std::size_t landing,
+bool StepRules::give_time(const Start& start, std::size_t landing,
                           std::vector<GaitdFootstep>* all) const {
   const std::size_t known = std::min(std::size_t{CaptureCheck::kAhead}, all->size() - landing);
   std::array<GaitdFootstep, CaptureCheck::kAhead> ahead;
@@ -44,7 +43,7 @@ bool StepRules::give_time(const Start& start, double final_transfer, std::size_t
   stance.contact = GAITD_CONTACT_FULL;
   for (double& transfer = ahead[1].transfer_duration;; transfer += kTransferStep) {
     const CaptureCheck::Room room = capture_check_.room(
-        stance, ahead.data(), static_cast<int>(known), final_transfer, start.omega);
+        stance, ahead.data(), static_cast<int>(known), walking::kFinalTransfer, start.omega);
     if (room.capture >= room.error) break;
     if (transfer > kLongestTransfer) return false;
   }
@@ -70,10 +69,9 @@ Refusal StepRules::finish(const Start& start, const GaitParameters& parameters,
   const std::size_t before = all.size();
   all.insert(all.end(), footsteps->begin(), footsteps->end());
   // A longer transfer moves the plan of the steps before it too: from the last one back, and again.
-  const double final_transfer = parameters[Gait::kFinalTransferDuration];
   for (int round = 0; round < 2; ++round) {
     for (std::size_t i = all.size(); i-- > 1;) {
-      if (!give_time(start, final_transfer, i - 1, &all)) {
+      if (!give_time(start, i - 1, &all)) {
         return walking::refuse("footstep %d: no transfer is long enough for it",
                                static_cast<int>(i + 1 - before));
       }

@@ -78,15 +78,15 @@ Plan TurnWalkTurn::walk(const Start& start, const Goal& goal, const Manner& mann
     side = m.beside > kNoWay || (std::abs(m.beside) <= kNoWay && m.turn > 0) ? GAITD_LEFT
                                                                              : GAITD_RIGHT;
   }
-  const double width = std::max(steps_->model().nominal_foot_separation,
-                                parameters[Gait::kMinFootSeparation] + std::abs(lateral));
+  const double least = walking::StepLimits(steps_->model(), parameters).least_separation;
+  const double width = std::max(steps_->model().nominal_foot_separation, least + std::abs(lateral));
   GaitdPose feet[GAITD_MAX_FEET] = {start.feet[GAITD_LEFT], start.feet[GAITD_RIGHT]};
   Place at = from;
   const auto step_to = [&](double apart) {
     const int number = static_cast<int>(plan.footsteps.size()) + 1;
     const double y = 0.5 * apart * side_sign(side);
     const Place place{at.x - std::sin(at.yaw) * y, at.y + std::cos(at.yaw) * y, at.yaw};
-    const Foothold foothold = steps_->footholds().at(side, place, parameters[Gait::kMaxStepTilt]);
+    const Foothold foothold = steps_->footholds().at(side, place, walking::kMaxStepTilt);
     char text[160];
     if (foothold.state != FootholdState::kGood) {
       std::snprintf(text, sizeof(text), "footstep %d at (%.2f, %.2f): %s", number, place.x, place.y,

@@ -279,9 +279,9 @@
   X(GaitdIcpPlan, icp, 8) \
   X(GaitdIcpPlan, icp_velocity, 24) \
   X(GaitdIcpPlan, ecmp, 40) \
-  X(GaitdIcpPlan, com, 56) \
-  X(GaitdIcpPlan, com_velocity, 72) \
-  X(GaitdIcpPlan, icp_end, 88) \
+  X(GaitdIcpPlan, icp_end, 56) \
+  X(GaitdIcpPlan, icp_touchdown, 72) \
+  X(GaitdIcpPlan, icp_transferred, 88) \
   X(GaitdIcpPlan, kappa, 104) \
   X(GaitdIcpPlan, time_remaining, 112) \
   X(GaitdIcpPlan, offset, 120) \
@@ -395,7 +395,7 @@
   X(GaitdParameter, unit, 48) \
   X(GaitdParameter, description, 64) \
   X(GaitdParameter, type, 184) \
-  X(GaitdParameter, reserved, 188) \
+  X(GaitdParameter, rank, 188) \
   X(GaitdParameter, minimum, 192) \
   X(GaitdParameter, maximum, 200) \
   X(GaitdParameter, default_value, 208) \

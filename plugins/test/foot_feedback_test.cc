@@ -15,8 +15,7 @@ namespace {
 using testing::atlas;
 
 constexpr double kDt = 0.001;
-constexpr double kGain = 20.0;   // 1/s
-constexpr double kLimit = 0.01;  // effort limits
+constexpr double kGain = 20.0;  // 1/s
 
 // Atlas stands on both feet; the controller wants the CoP in the middle of each sole.
 struct Bench {
@@ -57,7 +56,7 @@ struct Bench {
   double torque(int joint, int ticks, double gain = kGain) {
     for (int i = 0; i < ticks; ++i) {
       *commands = {};
-      feedback.update(kDt, gain, kLimit, dynamics, robot, *objectives, wanted, *commands);
+      feedback.update(kDt, gain, dynamics, robot, *objectives, wanted, *commands);
     }
     return commands->joints[joint].torque;
   }
@@ -99,7 +98,7 @@ TEST(FootFeedback, KeepsItsLimitAndDoesNotWindUp) {
   Bench b;
   b.torque(left_leg().ankle_pitch, 1);
   b.load(GAITD_LEFT, {-0.05, 0.0});
-  const double most = kLimit * atlas().joints[left_leg().ankle_pitch].effort_limit;
+  const double most = FootFeedback::kLimit * atlas().joints[left_leg().ankle_pitch].effort_limit;
   EXPECT_NEAR(b.torque(left_leg().ankle_pitch, 2000), most, 1e-6);
   b.load(GAITD_LEFT, {0.05, 0.0});
   EXPECT_LT(b.torque(left_leg().ankle_pitch, 50), 0.0);

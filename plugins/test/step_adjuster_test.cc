@@ -124,15 +124,14 @@ TEST(FixedSteps, TheCmpBelongsToTheEcmpByKappa) {
   EXPECT_LT((rate - atlas().total_mass * omega * omega * (com - ecmp)).norm(), 1e-9);
 }
 
-// Theory section 1: a pendulum of 1 m, a stride of 0.75 m, at the exchange of support.
+// Theory section 1: a stride of 0.75 of the pendulum's length, 27 mm of one of 1 m, at the exchange
+// of support.
 TEST(FixedSteps, APendulumAtTheExchangeOfSupportHasItsCmp27MillimetresFromItsEcmp) {
-  const double l = 0.75;
-  const double z = 1.0;
-  const double expected = 0.5 * l * (1.0 - std::sqrt(z * z - 0.25 * l * l) / z);
-  ASSERT_NEAR(expected, 0.027, 5e-4);
   SyntheticWalk w;
-  const double omega = std::sqrt(atlas().gravity / z);
-  w.machine.set_parameter(static_cast<int>(walking::Gait::kOmega), omega);
+  const double z = atlas().gravity / (w.gait().omega * w.gait().omega);
+  const double l = 0.75 * z;
+  const double expected = 0.5 * l * (1.0 - std::sqrt(z * z - 0.25 * l * l) / z);
+  ASSERT_NEAR(expected / z, 0.027, 5e-4);
   w.run_for(0.01);
   w.robot.com[0] = -0.5 * l;  // half a stride behind the CMP, which is under the feet
   w.robot.com[1] = 0.0;

@@ -211,8 +211,13 @@ TEST(StepPlan, ATransferIsShortenedByALeadOfTheIcpOnly) {
   w.tick();
   sdk::view(w.robot.icp) = Vector2d(sdk::view(w.plan.icp)) - Vector2d(sdk::view(w.plan.offset));
   EXPECT_EQ(with_error(w, 0.0, 0.0).time_shift, 0.0);
+  EXPECT_EQ(with_error(w, 0.01, 0.0).time_shift, 0.0);
   EXPECT_EQ(with_error(w, -0.1, 0.0).time_shift, 0.0);
-  const GaitdStepAdjustment out = with_error(w, 0.1, 0.0);
+  // That CMPs could bring it back as well moves no foothold.
+  const GaitdStepAdjustment small = with_error(w, 0.05, 0.0);
+  EXPECT_LT(small.time_shift, -0.02);
+  EXPECT_EQ(small.shift[0], 0.0);
+  const GaitdStepAdjustment out = with_error(w, 0.2, 0.0);
   EXPECT_LT(out.time_shift, -0.02);
   const double time = std::sqrt(atlas().nominal_com_height / atlas().gravity);
   const double shortest = testing::parameter_default<StepPlan>("shortest_transfer");
@@ -259,7 +264,7 @@ double cost(const StepProblem& p, const StepWeights& w, const Vector2d& before, 
   }
   return (D - p.start_shift).squaredNorm() + w.cmp * (d / p.kappa).squaredNorm() +
          w.change * (D - before).squaredNorm() + w.missed * missed.squaredNorm() +
-         w.time * (std::pow(T - p.planned, 2) + w.change * std::pow(T - time_before, 2)) +
+         w.time * std::pow(T - p.planned, 2) + w.time_change * std::pow(T - time_before, 2) +
          1e4 * beyond * beyond;
 }
 
@@ -293,7 +298,8 @@ StepProblem example() {
 TEST(StepQp, NoAdmissiblePointIsMuchBetterThanItsSolution) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  const StepWeights w{.cmp = 0.1, .change = 0.1, .time = 0.04, .missed = 30.0};
+  const StepWeights w{
+      .cmp = 0.1, .change = 0.1, .time = 0.04, .time_change = 0.004, .missed = 30.0};
   StepQp qp;
   for (int run = 0; run < 50; ++run) {
     StepProblem p = example();
@@ -320,6 +326,23 @@ TEST(StepQp, NoAdmissiblePointIsMuchBetterThanItsSolution) {
     }
     EXPECT_LE(here, elsewhere + 0.1 * elsewhere + 1e-2) << run;
   }
+}
+
+TEST(StepQp, TheTransferAfterTouchdownBringsBackWhatItsFeedbackAndItsFeetCan) {
+  StepProblem p = example();
+  p.cmp_region = hull({{0.0, 0.0}});  // nothing before touchdown
+  p.icp = {0.11, 0.05};
+  const double time = 0.3;
+  const Vector2d alone = p.missed(Vector2d::Zero(), time);
+  LaterPhase& transfer = p.later[StepProblem::kTransfer];
+  transfer.share = 0.3;
+  transfer.left = 0.4;
+  transfer.region = hull({{-9.0, -9.0}, {9.0, -9.0}, {9.0, 9.0}, {-9.0, 9.0}});
+  EXPECT_LT((p.missed(Vector2d::Zero(), time) - 0.4 * alone).norm(), 1e-12);
+  transfer.region = hull({{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}});
+  const Vector2d bounded = alone - p.missed(Vector2d::Zero(), time);
+  EXPECT_LE(bounded.cwiseAbs().maxCoeff(), 0.3 * 0.1 + 1e-12);
+  EXPECT_GT(bounded.dot(alone), 0.0);
 }
 
 // The other way round: from the edge of the set one best step leads to the edge of the set of the

@@ -397,16 +397,27 @@ TEST(NullspaceQp, KneesAtTheSingularityGetNoTorqueSpike) {
   }
 }
 
+// The problem that all variants have in common, with limits of its own.
+struct Plain {
+  InverseDynamicsQp qp{atlas()};
+  InverseDynamicsQp::Limits limits{};
+  GaitdStatus process(const GaitdWholeBodyControllerInput& in, Output& out) {
+    qp.begin(*in.robot, *in.objectives, in.objectives->momentum_mask, limits);
+    qp.solve(in.time.period, 300);
+    qp.write(in.time.period, {}, *in.robot, *in.objectives, out);
+    return GAITD_OK;
+  }
+};
+
 // More force to the side than friction gives at the weight of the robot: without the limit the free
 // height is spent on it.
-TEST(NullspaceQp, AFreeHeightIsNotSpentOnAJump) {
+TEST(InverseDynamicsQp, AFreeHeightIsNotSpentOnAJump) {
   auto vertical_force = [](double rise_speed, double velocity) {
     Bench b;
     b.straighten(0.6);
     b.walk.robot.com_velocity[2] = velocity;
     b.objectives->momentum_rate[4] = 14.0 * atlas().total_mass;
-    NullspaceQp controller(atlas());
-    controller.set_parameter(static_cast<int>(NullspaceQp::P::kRiseSpeed), rise_speed);
+    Plain controller{.limits = {.rise_speed = rise_speed}};
     EXPECT_EQ(b.process(controller), GAITD_OK);
     EXPECT_EQ(b.out->info.status, GAITD_WBC_SOLVED);
     double sum = 0.0;
@@ -415,8 +426,7 @@ TEST(NullspaceQp, AFreeHeightIsNotSpentOnAJump) {
   };
   const double free = vertical_force(100.0, 0.3);
   EXPECT_GT(free, 1.4);
-  const double time =
-      sdk::Parameters<NullspaceQp::P>(NullspaceQp::kParameters)[NullspaceQp::P::kRiseTime];
+  const double time = InverseDynamicsQp::Limits{}.rise_time;
   EXPECT_LE(vertical_force(0.7, 0.3), 1.0 + 0.4 / (time * atlas().gravity) + 1e-6);
   EXPECT_LE(vertical_force(0.7, 0.7), 1.0 + 1e-6);
   // Who falls may brake.
@@ -425,12 +435,11 @@ TEST(NullspaceQp, AFreeHeightIsNotSpentOnAJump) {
 
 // A chest that is suddenly told to turn hard: what the torques gain in a tick is worth less the
 // more it is, and contacts and limits hold all the same.
-TEST(NullspaceQp, TorquesDoNotJump) {
+TEST(InverseDynamicsQp, TorquesDoNotJump) {
   auto largest_change = [](double weight) {
     Bench b;
     b.straighten(0.3);
-    NullspaceQp controller(atlas());
-    controller.set_parameter(static_cast<int>(NullspaceQp::P::kTorqueRateWeight), weight);
+    Plain controller{.limits = {.torque_rate_weight = weight}};
     EXPECT_EQ(b.process(controller), GAITD_OK);
     const auto before = b.out->commands;
     for (int i = 0; i < b.objectives->task_count; ++i) {
@@ -448,8 +457,7 @@ TEST(NullspaceQp, TorquesDoNotJump) {
     }
     return change;
   };
-  const double rate =
-      sdk::Parameters<NullspaceQp::P>(NullspaceQp::kParameters)[NullspaceQp::P::kTorqueRate];
+  const double rate = InverseDynamicsQp::Limits{}.torque_rate;
   const double free = largest_change(0.0);
   EXPECT_GT(free, 2.0 * rate * 0.001);
   EXPECT_LT(largest_change(1e6), 0.15);

@@ -57,7 +57,8 @@ Request CommandSource::plain(const std::string& method) {
 }
 
 Request CommandSource::without_effect() {
-  return request(Request::Kind::kFlood, {"param.set", {{"name", "swap.shadow"}, {"value", 0.2}}});
+  return request(Request::Kind::kFlood,
+                 {"param.set", {{"name", "swap.probation"}, {"value", 1.0}}});
 }
 
 std::string CommandSource::batch(const std::vector<Request>& requests) {

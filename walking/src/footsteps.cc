@@ -14,6 +14,11 @@ namespace {
 // that.
 constexpr double kEstimate = 0.005;  // m
 
+// Of the longest step forwards: one backwards, and the way of a foot from its foothold before.
+constexpr double kBackward = 0.6;
+constexpr double kTravel = 1.85;
+constexpr double kNearestFeet = 0.8;  // of their distance in the nominal posture
+
 }  // namespace
 
 GaitdPose moved(const GaitdPose& pose, double x, double y, double yaw) {
@@ -23,12 +28,19 @@ GaitdPose moved(const GaitdPose& pose, double x, double y, double yaw) {
   return result;
 }
 
+StepLimits::StepLimits(const GaitdModel& model, const GaitParameters& p)
+    : least_separation(kNearestFeet * model.nominal_foot_separation),
+      largest_separation(p[Gait::kWidestStep] * model.nominal_com_height),
+      forward(p[Gait::kLongestStep] * model.nominal_com_height),
+      backward(kBackward * forward),
+      travel(kTravel * forward),
+      height(p[Gait::kHighestStep] * model.nominal_com_height),
+      turn(p[Gait::kMaxStepTurn]) {}
+
 FootstepGenerator::FootstepGenerator(const WalkCommand& walk, const GaitdPose& middle,
-                                     int first_side, double width, const GaitParameters& p)
+                                     int first_side, double width, double least_separation)
     : walk_(walk), middle_(middle), side_(first_side), width_(width) {
-  width_ = std::max(width_, std::abs(walk.lateral) + p[Gait::kMinFootSeparation]);
-  if (walk_.swing_duration <= 0.0) walk_.swing_duration = p[Gait::kSwingDuration];
-  if (walk_.transfer_duration <= 0.0) walk_.transfer_duration = p[Gait::kTransferDuration];
+  width_ = std::max(width_, std::abs(walk.lateral) + least_separation);
 }
 
 GaitdFootstep FootstepGenerator::next() {
@@ -55,7 +67,7 @@ GaitdPose middle_pose(const GaitdPose& a, const GaitdPose& b) {
 }
 
 Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
-                       int number, const GaitParameters& p) {
+                       int number, const StepLimits& limits) {
   const char* side = step.side == GAITD_LEFT ? "left" : "right";
   const Eigen::Quaterniond q = sdk::quaternion(step.pose.orientation);
   if (!sdk::view(step.pose.position).allFinite() || !q.coeffs().allFinite() ||
@@ -84,49 +96,48 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const
       sdk::from_yaw(-stance_yaw) * (sdk::view(step.pose.position) - sdk::view(stance.position));
   const double outwards = side_sign(step.side) * d.y();
   const double turn = std::remainder(rpy.z() - stance_yaw, 2.0 * M_PI);
-  if (outwards < p[Gait::kMinFootSeparation] - kEstimate) {
+  if (outwards < limits.least_separation - kEstimate) {
     return refuse(
-        "footstep %d (%s): %.3f m beside the other foot, at least %.3f expected "
-        "(gait.min_foot_separation), or the legs cross; move it outwards",
-        number, side, outwards, p[Gait::kMinFootSeparation]);
+        "footstep %d (%s): %.3f m beside the other foot, at least %.3f expected, "
+        "or the legs cross; move it outwards",
+        number, side, outwards, limits.least_separation);
   }
-  if (outwards > p[Gait::kMaxFootSeparation] + kEstimate) {
+  if (outwards > limits.largest_separation + kEstimate) {
     return refuse(
         "footstep %d (%s): %.3f m beside the other foot, at most %.3f expected "
-        "(gait.max_foot_separation); take more steps",
-        number, side, outwards, p[Gait::kMaxFootSeparation]);
+        "(gait.widest_step); take more steps",
+        number, side, outwards, limits.largest_separation);
   }
-  if (d.x() > p[Gait::kMaxStepForward] + kEstimate ||
-      -d.x() > p[Gait::kMaxStepBackward] + kEstimate) {
+  if (d.x() > limits.forward + kEstimate || -d.x() > limits.backward + kEstimate) {
     return refuse(
         "footstep %d (%s): %.3f m ahead of the other foot, %.3f to %.3f expected "
-        "(gait.max_step_backward, gait.max_step_forward); take more steps",
-        number, side, d.x(), -p[Gait::kMaxStepBackward], p[Gait::kMaxStepForward]);
+        "(gait.longest_step); take more steps",
+        number, side, d.x(), -limits.backward, limits.forward);
   }
   const double travel = (sdk::view(step.pose.position) - sdk::view(from.position)).head<2>().norm();
-  if (travel > p[Gait::kMaxFootTravel] + kEstimate) {
+  if (travel > limits.travel + kEstimate) {
     return refuse(
         "footstep %d (%s): %.3f m from where this foot stands before, at most %.3f expected "
-        "(gait.max_foot_travel); take shorter steps",
-        number, side, travel, p[Gait::kMaxFootTravel]);
+        "(gait.longest_step); take shorter steps",
+        number, side, travel, limits.travel);
   }
-  if (std::abs(d.z()) > p[Gait::kMaxStepHeight] + kEstimate) {
+  if (std::abs(d.z()) > limits.height + kEstimate) {
     return refuse(
         "footstep %d (%s): %.3f m above the other foot, within %.3f expected "
-        "(gait.max_step_height); find lower footholds",
-        number, side, d.z(), p[Gait::kMaxStepHeight]);
+        "(gait.highest_step); find lower footholds",
+        number, side, d.z(), limits.height);
   }
-  if (std::abs(turn) > p[Gait::kMaxStepTurn]) {
+  if (std::abs(turn) > limits.turn) {
     return refuse(
         "footstep %d (%s): turned by %.3f rad from the other foot, within %.3f expected "
         "(gait.max_step_turn); take more steps",
-        number, side, turn, p[Gait::kMaxStepTurn]);
+        number, side, turn, limits.turn);
   }
-  if (std::max(std::abs(rpy.x()), std::abs(rpy.y())) > p[Gait::kMaxStepTilt]) {
+  if (std::max(std::abs(rpy.x()), std::abs(rpy.y())) > kMaxStepTilt) {
     return refuse(
-        "footstep %d (%s): tilted by %.3f rad, within %.3f expected (gait.max_step_tilt); "
+        "footstep %d (%s): tilted by %.3f rad, within %.3f expected; "
         "find a flatter foothold",
-        number, side, std::max(std::abs(rpy.x()), std::abs(rpy.y())), p[Gait::kMaxStepTilt]);
+        number, side, std::max(std::abs(rpy.x()), std::abs(rpy.y())), kMaxStepTilt);
   }
   return {};
 }

@@ -39,7 +39,7 @@ void GaitMachine::complete(GaitdFootstep& step) {
 
 Refusal GaitMachine::check(const GaitdFootstep& step, const GaitdPose& stance,
                            const GaitdPose& from, int number) const {
-  Refusal r = check_footstep(step, stance, from, number, parameters_);
+  Refusal r = check_footstep(step, stance, from, number, limits());
   if (!r.refused()) r = turn_reach_.check(step, stance, number);
   if (!r.refused()) r = check_contact_polygon(model_, step, number);
   if (r.refused()) return r;
@@ -66,8 +66,7 @@ Refusal GaitMachine::check_capture(const GaitdFootstep* steps, int count, int ke
     stance.contact = GAITD_CONTACT_FULL;
     const int number = ahead[1].closing != 0 ? closing_number : landing + 2 - kept;
     if (Refusal r =
-            capture_check_.check(stance, ahead.data(), known,
-                                 parameters_[Gait::kFinalTransferDuration], state_.omega, number);
+            capture_check_.check(stance, ahead.data(), known, kFinalTransfer, state_.omega, number);
         r.refused()) {
       return r;
     }
@@ -113,9 +112,9 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
         walk.lateral > 0.0 || (walk.lateral == 0.0 && walk.turn > 0.0) ? GAITD_LEFT : GAITD_RIGHT;
   }
   const double width = walk.width > 0.0 ? walk.width : model_.nominal_foot_separation;
-  if (width < parameters_[Gait::kMinFootSeparation]) {
-    return refuse("walk: width %.3f m, at least %.3f expected (gait.min_foot_separation)", width,
-                  parameters_[Gait::kMinFootSeparation]);
+  const double least = limits().least_separation;
+  if (width < least) {
+    return refuse("walk: width %.3f m, at least %.3f expected, or the legs cross", width, least);
   }
   GaitdPose middle = middle_pose(feet[GAITD_LEFT], feet[GAITD_RIGHT]);
   // From the third on each footstep is to the two before it as the one two further on: a long walk
@@ -124,7 +123,7 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
   if (walk.steps > kDistinctSteps) {
     shorter.steps = kDistinctSteps - (walk.steps - kDistinctSteps) % 2;
   }
-  FootstepGenerator trial(shorter, middle, first, width, parameters_);
+  FootstepGenerator trial(shorter, middle, first, width, least);
   GaitdPose at[2] = {feet[GAITD_LEFT], feet[GAITD_RIGHT]};
   std::array<GaitdFootstep, kDistinctSteps + 1> distinct;
   for (int i = 0; i < trial.count(); ++i) {
@@ -142,7 +141,7 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
   queue_.truncate(kept);
   returns_left_ = kMostReturning;
   drive_.end();
-  FootstepGenerator generator(walk, middle, first, width, parameters_);
+  FootstepGenerator generator(walk, middle, first, width, least);
   for (int i = 0; i < generator.count(); ++i) {
     GaitdFootstep step = generator.next();
     complete(step);

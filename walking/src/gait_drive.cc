@@ -100,7 +100,7 @@ void GaitMachine::drive_on(int kept, int landed, const Eigen::Vector3d& missed) 
     GaitdFootstep footstep;
     Refusal refusal;
     for (int attempt = 0; attempt < kAttempts; ++attempt, v = scaled(v, kSlower)) {
-      step = {v, drive_.width(v, duration, parameters_[Gait::kMinFootSeparation])};
+      step = {v, drive_.width(v, duration, limits().least_separation)};
       footstep = drive_step(middle, side, step, duration);
       refusal = check(footstep, feet[other_side(side)], feet[side], count + 1);
       if (!refusal.refused()) refusal = check_capture(&footstep, 1, queue_.size(), count + 1);

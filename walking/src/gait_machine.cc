@@ -10,10 +10,8 @@
 namespace gaitd::walking {
 namespace {
 
-// Of the distance of the feet in the nominal posture: closer the legs get in each other's way.
-constexpr double kNominalShare = 0.8;
-
-// Of the same distance: the gap that is left between two soles side by side.
+// Of the distance of the feet in the nominal posture: the gap that is left between two soles side
+// by side.
 constexpr double kSolesApart = 0.05;
 
 // Over sqrt(g h), h the height of the CoM: a foot that is faster is still on its way.
@@ -23,6 +21,11 @@ constexpr double kLandedFirmly = 3.0;
 // Of √(g h): the speed that the foot may lose to a knee at its stop. Its own force sensor shows the
 // impulse of it, and no more than that is needed to say that the load is the ground's.
 constexpr double kLandedStop = 0.2;
+
+// Heights of the CoM, of the ICP error along the walk and across it that lets a transfer end in
+// time.
+constexpr double kReadyAlong = 0.04247;
+constexpr double kReadyAcross = 0.02548;
 
 // ICP closer than this to the edge of both feet is not held by them (m).
 constexpr double kHeldMargin = 0.01;
@@ -44,7 +47,7 @@ GaitMachine::GaitMachine(const GaitdModel& model)
       swing_limits_(model),
       capture_check_(model),
       drive_(model),
-      nominal_omega_(std::sqrt(model.gravity / model.nominal_com_height)) {
+      scale_(model) {
   closest_ = kSolesApart * model.nominal_foot_separation;
   for (const GaitdFoot& foot : model.feet) {
     double inner = 0.0, outer = 0.0;
@@ -54,26 +57,19 @@ GaitMachine::GaitMachine(const GaitdModel& model)
     }
     closest_ += 0.5 * (outer - inner);
   }
-  const int separation = static_cast<int>(Gait::kMinFootSeparation);
-  set_parameter(separation, kGaitParameters[separation].default_value);
   state_.size = sizeof(state_);
   state_.mode = GAITD_MODE_WALK_BENT;
   state_.next_side = GAITD_BOTH;
   state_.trailing_side = GAITD_BOTH;
   state_.support = GAITD_BOTH;
-  state_.omega = nominal_omega_;
+  state_.omega = 1.0 / (std::sqrt(kWalkingHeight) * scale_.time);
   for (auto& foothold : state_.footholds) {
     foothold.pose.orientation[3] = 1.0;
     foothold.contact = GAITD_CONTACT_FULL;
   }
 }
 
-void GaitMachine::set_parameter(int index, double value) {
-  const bool nominal = index == static_cast<int>(Gait::kMinFootSeparation) && value <= 0.0;
-  parameters_.set(index, nominal ? kNominalShare * model_.nominal_foot_separation : value);
-  const double omega = parameters_[Gait::kOmega];
-  state_.omega = omega > 0.0 ? omega : nominal_omega_;
-}
+void GaitMachine::set_parameter(int index, double value) { parameters_.set(index, value); }
 
 void GaitMachine::reset(const GaitdRobotState& robot) {
   queue_.truncate(0);
@@ -124,15 +120,14 @@ void GaitMachine::begin_transfer(const GaitdRobotState& robot, int trailing_side
   state_.time_in_phase = 0.0;
   time_shift_ = 0.0;
   time_changes_ = {};
-  state_.final_transfer_duration = parameters_[Gait::kFinalTransferDuration];
+  state_.final_transfer_duration = kFinalTransfer;
   if (final) {
     state_.phase_duration = state_.final_transfer_duration;
     state_.next_side = GAITD_BOTH;
   } else {
     state_.phase_duration = queue_[0].transfer_duration;
     if (trailing_side == GAITD_BOTH && !recovering_) {
-      state_.phase_duration =
-          std::max(state_.phase_duration, parameters_[Gait::kInitialTransferDuration]);
+      state_.phase_duration = std::max(state_.phase_duration, kInitialTransfer);
     }
     state_.next_side = queue_[0].side;
     ++state_.step_index;
@@ -144,14 +139,10 @@ void GaitMachine::begin_transfer(const GaitdRobotState& robot, int trailing_side
 }
 
 void GaitMachine::time_step(const GaitdRobotState& robot) {
-  const GaitParameters& p = parameters_;
-  const bool wanted = p.flag(Gait::kStepTiming) && state_.mode == GAITD_MODE_WALK_STRAIGHT;
+  const bool wanted =
+      parameters_.flag(Gait::kStepTiming) && state_.mode == GAITD_MODE_WALK_STRAIGHT;
   if (!wanted || recovering_) return;
-  time_changes_ = timing_.solve(state_, sdk::view(robot.com).head<2>(),
-                                {.knee = p[Gait::kTimingKnee],
-                                 .drop = p[Gait::kTimingDrop],
-                                 .roll = p[Gait::kTimingRoll],
-                                 .change = p[Gait::kTimingChange]});
+  time_changes_ = timing_.solve(state_, sdk::view(robot.com).head<2>(), {});
   state_.phase_duration += time_changes_[0];
   publish_footsteps();
 }
@@ -222,19 +213,17 @@ bool GaitMachine::icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& pl
                                                       sdk::view(leading.position));
   const double behind = next.x() < 0.0 ? local.x() : -local.x();
   const double inside = side_sign(state_.next_side) * local.y();
-  return behind <= parameters_[Gait::kIcpErrorForward] &&
-         inside <= parameters_[Gait::kIcpErrorSideways];
+  return behind <= kReadyAlong * scale_.length && inside <= kReadyAcross * scale_.length;
 }
 
 // The ground loads a foot and stops it where it bears. A heel that brushes an edge, and the foot's
 // own mass in a sensor above it, load the foot on its way, and for moments.
 bool GaitMachine::has_landed(double dt, const GaitdFootState& foot) {
   const double weight = model_.total_mass * model_.gravity;
-  const double least =
-      std::max(parameters_[Gait::kTouchdownForce] * weight, parameters_[Gait::kTouchdownLeast]);
+  const double least = parameters_[Gait::kTouchdownForce] * weight;
   landed_impulse_ = foot.normal_force > least ? landed_impulse_ + dt * foot.normal_force : 0.0;
-  const double speed = std::sqrt(model_.gravity * model_.nominal_com_height);
-  const double own = model_.bodies[model_.feet[state_.next_side].body].mass * kLandedStop * speed;
+  const double own =
+      model_.bodies[model_.feet[state_.next_side].body].mass * kLandedStop * scale_.speed;
   if (landed_impulse_ < own) return false;
   Eigen::Vector3d velocity = sdk::view(foot.twist).tail<3>();
   if (foot.cop_valid != 0) {
@@ -243,7 +232,7 @@ bool GaitMachine::has_landed(double dt, const GaitdFootState& foot) {
                     .cross(sdk::quaternion(foot.orientation) * arm);
   }
   // What bears more is believed sooner: after a hard landing the foot shakes for ten milliseconds.
-  const double unit = speed * std::min(foot.normal_force / least, kLandedFirmly);
+  const double unit = scale_.speed * std::min(foot.normal_force / least, kLandedFirmly);
   return std::abs(velocity.z()) < kLandedRise * unit &&
          velocity.head<2>().norm() < kLandedSlide * unit;
 }
@@ -292,16 +281,15 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
         }
       } else if (adjustment.active != 0 && adjustment.time_shift != time_shift_) {
         adjust(adjustment);
-      } else if (over && (icp_ready(robot, plan) ||
-                          state_.time_in_phase >= end + parameters_[Gait::kTransferPatience])) {
+      } else if (over &&
+                 (icp_ready(robot, plan) || state_.time_in_phase >= end + kTransferPatience)) {
         begin_swing(robot);
       }
       break;
     }
     case GAITD_PHASE_SWING: {
       if (adjustment.active != 0) adjust(adjustment);
-      const bool credible =
-          state_.time_in_phase >= parameters_[Gait::kTouchdownFraction] * state_.phase_duration;
+      const bool credible = state_.time_in_phase >= kTouchdownFraction * state_.phase_duration;
       const bool landed = has_landed(dt, robot.feet[state_.next_side]);
       state_.late_contact = over && !landed ? 1 : 0;
       if (landed && credible) touch_down(robot, !over);

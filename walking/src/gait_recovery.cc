@@ -10,9 +10,15 @@
 namespace gaitd::walking {
 namespace {
 
+// sqrt(h / g), swing of a step that catches the robot, and the transfer before it.
+constexpr double kSwing = 1.3;
+constexpr double kTransfer = 0.173;
 constexpr double kPatience = 0.005;  // s, that the ICP has to be out of reach: no spike of a sensor
 constexpr double kLoaded = 0.5;      // of the weight on the feet: neither on a hoist nor in the air
 constexpr double kSideways = 1.7;    // away sideways by this much more than along: a side step
+// Heights of the CoM, of the ICP past the edge of the feet at which the robot steps: an ICP at the
+// edge comes back as often as not.
+constexpr double kPastEdge = 0.017;
 constexpr double kClosedGap = 0.05;  // m, feet that are as good as side by side
 
 }  // namespace
@@ -43,7 +49,7 @@ GaitdFootstep GaitMachine::recovery_step(const GaitdRobotState& robot, int side)
   sole.make_hull();
   const Eigen::Vector2d icp = sdk::view(robot.icp);
   const Eigen::Vector2d cmp = sole.closest_point(icp);
-  const double time = parameters_[Gait::kRecoverySwing] + parameters_[Gait::kRecoveryTransfer];
+  const double time = (kSwing + kTransfer) * scale_.time;
   const Eigen::Vector2d coming = cmp + std::exp(state_.omega * time) * (icp - cmp);
 
   GaitdFootstep step{};
@@ -55,16 +61,15 @@ GaitdFootstep GaitMachine::recovery_step(const GaitdRobotState& robot, int side)
   const Eigen::Vector3d middle = sdk::view(stance.pose.position);
   Eigen::Vector3d local =
       heading.conjugate() * Eigen::Vector3d(coming.x() - middle.x(), coming.y() - middle.y(), 0.0);
-  local.x() = std::clamp(local.x(), -parameters_[Gait::kMaxStepBackward],
-                         parameters_[Gait::kMaxStepForward]);
-  local.y() =
-      side_sign(side) * std::clamp(side_sign(side) * local.y(), model_.nominal_foot_separation,
-                                   parameters_[Gait::kMaxFootSeparation]);
+  const StepLimits most = limits();
+  local.x() = std::clamp(local.x(), -most.backward, most.forward);
+  local.y() = side_sign(side) * std::clamp(side_sign(side) * local.y(),
+                                           model_.nominal_foot_separation, most.largest_separation);
   sdk::view(step.pose.position).head<2>() = (middle + heading * local).head<2>();
   step.pose.position[2] -= height_offset_;
   sdk::store(heading, step.pose.orientation);
-  step.swing_duration = parameters_[Gait::kRecoverySwing];
-  step.transfer_duration = parameters_[Gait::kRecoveryTransfer];
+  step.swing_duration = kSwing * scale_.time;
+  step.transfer_duration = kTransfer * scale_.time;
   return step;
 }
 
@@ -72,8 +77,7 @@ bool GaitMachine::recover(double dt, const GaitdRobotState& robot) {
   const double load = robot.feet[GAITD_LEFT].normal_force + robot.feet[GAITD_RIGHT].normal_force;
   const ConvexPolygon feet = support_polygon(model_, state_);
   const Eigen::Vector2d icp = sdk::view(robot.icp);
-  const double margin = parameters_[Gait::kRecoveryMargin] * model_.nominal_com_height;
-  const bool held = feet.inside_distance(icp) >= margin;
+  const bool held = feet.inside_distance(icp) >= -kPastEdge * scale_.length;
   if (held || load < kLoaded * model_.total_mass * model_.gravity) {
     time_unheld_ = 0.0;
     return false;

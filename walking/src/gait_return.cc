@@ -9,6 +9,8 @@
 namespace gaitd::walking {
 namespace {
 
+// Heights of the CoM, by which a step comes back to the commanded way at most.
+constexpr double kMostBack = 0.1274;
 constexpr double kArrived = 0.2;  // nominal distances of the feet: as good as where it was told
 
 }  // namespace
@@ -16,8 +18,7 @@ constexpr double kArrived = 0.2;  // nominal distances of the feet: as good as w
 // Coming back at once would take steps that are too long for the legs.
 Eigen::Vector3d GaitMachine::kept(const Eigen::Vector3d& shift) const {
   const double length = shift.norm();
-  const double back =
-      std::min((1.0 - parameters_[Gait::kShiftKept]) * length, parameters_[Gait::kReturnLimit]);
+  const double back = std::min((1.0 - kShiftKept) * length, kMostBack * scale_.length);
   return length > 0.0 ? Eigen::Vector3d(shift * (1.0 - back / length)) : shift;
 }
 

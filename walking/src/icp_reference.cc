@@ -10,14 +10,17 @@ namespace gaitd::walking {
 namespace {
 
 constexpr double kLateTime = 0.1;  // s
+// Heights of the CoM, by which the start of a first transfer moves at most: it stays in the feet.
+constexpr double kFitLimit = 0.06796;
+// 1/s, k of the header: over within a step, and slower than the ICP, which would follow no faster.
+constexpr double kDecay = 4.0;
 
 }  // namespace
 
 using sdk::view;
 
 void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
-                          const CmpOffsets& offsets, double decay, double fit_limit,
-                          GaitdIcpPlan& plan) {
+                          const CmpOffsets& offsets, GaitdIcpPlan& plan) {
   const bool first = state_.plan_revision == kNotStarted;
   const bool changed = first || resumed_ || state_.plan_revision != gait.plan_revision;
   resumed_ = false;
@@ -34,7 +37,8 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
     // A transfer that has just begun, or one that another variant began, is fitted once.
     const bool begun = gait.phase != state_.phase || gait.time_in_phase < 0.5 * dt;
     if (begun || state_.start_ecmp_valid == 0) {
-      trajectory_.fit_start(first ? at_rest : Eigen::Vector2d(icp), fit_limit);
+      trajectory_.fit_start(first ? at_rest : Eigen::Vector2d(icp),
+                            kFitLimit * model_.nominal_com_height);
       start = trajectory_.start();
       state_.start_ecmp_valid = 1;
     } else {
@@ -63,18 +67,20 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
     delta = (first ? at_rest : Eigen::Vector2d(icp)) - s.icp;
   } else if (gait.phase != GAITD_PHASE_STAND) {
     // Who stands has no reason to shift the weight.
-    delta *= std::max(0.0, 1.0 - decay * dt);
+    delta *= std::max(0.0, 1.0 - kDecay * dt);
   }
 
   plan.size = sizeof(plan);
   view(plan.icp) = s.icp + delta;
-  const double leaving = gait.phase == GAITD_PHASE_STAND ? 0.0 : decay;
+  const double leaving = gait.phase == GAITD_PHASE_STAND ? 0.0 : kDecay;
   view(plan.ecmp) = s.ecmp + (1.0 + leaving / omega) * delta;
   view(plan.icp_velocity) = omega * (view(plan.icp) - view(plan.ecmp));
   view(plan.icp_end) = s.icp_end;
+  const int landed = gait.phase == GAITD_PHASE_TRANSFER ? 2 : 1;  // piece that begins then
+  const bool steps = gait.footstep_count > 0;
+  view(plan.icp_touchdown) = steps ? trajectory_.icp_at_start(landed) : s.icp_end;
+  view(plan.icp_transferred) = steps ? trajectory_.icp_at_start(landed + 1) : s.icp_end;
   view(plan.offset) = delta;
-  view(plan.com) = view(robot.com).head<2>();
-  view(plan.com_velocity) = omega * (view(plan.icp) - view(plan.com));
   plan.kappa =
       robot.com[2] > 0.0 ? model_.nominal_com_height * omega * omega / model_.gravity : 1.0;
   plan.time_remaining = gait.time_remaining;

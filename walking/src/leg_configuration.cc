@@ -9,7 +9,11 @@
 namespace gaitd::walking {
 namespace {
 
-constexpr double kShortestStep = 1e-3;  // m, that has a direction
+constexpr double kShortestStep = 1e-3;     // m, that has a direction
+constexpr double kCollapseDuration = 0.3;  // s, of the ramp to the collapsed knee
+// Leg lengths, of the hip from mid-stance to touchdown: a leg that stands straight lets it come
+// down no further before the other foot is on the ground.
+constexpr double kLargestDrop = 0.25;
 
 }  // namespace
 
@@ -38,8 +42,7 @@ double LegConfiguration::straightest(int side, const GaitdGaitState& gait,
   const double progress = 0.5 - 0.5 * std::min(0.5, transfer / (swing + transfer));
   const double along = step.x() / std::max(horizontal, kShortestStep);
   const double hip = progress * horizontal + along * hip_ahead_;
-  return straightest_knee(leg_, horizontal, hip, straight,
-                          p[Legs::kLargestDrop] * leg_.length(0.0));
+  return straightest_knee(leg_, horizontal, hip, straight, kLargestDrop * leg_.length(0.0));
 }
 
 // The state that the gait asks for, given the one the leg is in.
@@ -49,9 +52,9 @@ LegState LegConfiguration::next_state(bool straightened, bool lowered, int side,
       gait.phase_duration > 0.0 ? gait.time_in_phase / gait.phase_duration : 0.0;
   if (gait.phase == GAITD_PHASE_SWING) {
     if (gait.next_side == side) {
-      return fraction < p[Legs::kExtendFraction] ? LegState::kBent : LegState::kExtend;
+      return fraction < kExtendFraction ? LegState::kBent : LegState::kExtend;
     }
-    if (fraction >= p[Legs::kCollapseFraction] || lowered) return LegState::kCollapsed;
+    if (fraction >= kCollapseFraction || lowered) return LegState::kCollapsed;
   } else if (gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 &&
              gait.trailing_side == side) {
     return LegState::kCollapsed;
@@ -97,28 +100,23 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
         gait.phase != GAITD_PHASE_STAND && gait.transfer_final == 0 && gait.next_side == side;
     reference_ = {reference_.state,
                   p[Legs::kBentKnee],
-                  p[Legs::kBentStiffness],
-                  p[Legs::kBentDamping],
-                  leaving ? p[Legs::kBentWeight] : 0.0,
+                  kBentGains.stiffness,
+                  kBentGains.damping,
+                  leaving ? kBentGains.weight : 0.0,
                   0.0,
                   0.0};
     return reference_;
   }
-  const bool bent = reference_.state == LegState::kBent;
-  const bool firm =
-      reference_.state == LegState::kStraighten || reference_.state == LegState::kStraight;
-  reference_.stiffness = p[bent ? Legs::kBentStiffness : Legs::kStraightStiffness];
-  reference_.damping = p[bent ? Legs::kBentDamping : Legs::kStraightDamping];
-  reference_.weight = p[firm                                       ? Legs::kStraightWeight
-                        : reference_.state == LegState::kExtend    ? Legs::kExtendWeight
-                        : reference_.state == LegState::kCollapsed ? Legs::kCollapsedWeight
-                                                                   : Legs::kBentWeight];
+  const Gains& gains = LegConfiguration::gains(reference_.state);
+  reference_.stiffness = gains.stiffness;
+  reference_.damping = gains.damping;
+  reference_.weight = gains.weight;
   switch (reference_.state) {
     case LegState::kStraighten: {
       const bool standing = gait.phase == GAITD_PHASE_STAND;
-      const double rate = p[standing ? Legs::kSettleRate : Legs::kStraightenRate];
+      const double rate = standing ? kSettleRate : kStraightenRate;
       const double ramp = knee_at_entry_ - rate * time_in_state_;
-      reference_.knee = std::max({straight, ramp, knee - p[Legs::kMaxLead]});
+      reference_.knee = std::max({straight, ramp, knee - kMaxLead});
       break;
     }
     case LegState::kCollapsed: {
@@ -127,7 +125,7 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
         reference_.knee = std::max(knee, p[Legs::kCollapsedKnee]);
         break;
       }
-      const double s = std::min(1.0, time_in_state_ / p[Legs::kCollapseDuration]);
+      const double s = std::min(1.0, time_in_state_ / kCollapseDuration);
       const double start = std::max(straight, knee_at_entry_);
       reference_.knee = start + (p[Legs::kCollapsedKnee] - start) * s * s * (3.0 - 2.0 * s);
       if (lowering.value() > reference_.knee) {

@@ -239,8 +239,6 @@ void shift_plan(const GaitdGaitState& gait, const GaitdTaskReferences& reference
   const Eigen::Vector2d velocity = turned(heading, moved[1]);
   const Eigen::Vector2d acceleration = turned(heading, moved[2]);
   const double omega = gait.omega;
-  sdk::view(plan.com) += shift;
-  sdk::view(plan.com_velocity) += velocity;
   sdk::view(plan.icp) += shift + velocity / omega;
   sdk::view(plan.icp_velocity) += velocity + acceleration / omega;
   sdk::view(plan.ecmp) += shift - acceleration / (omega * omega);

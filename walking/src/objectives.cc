@@ -23,7 +23,23 @@ constexpr double kHeelStrikeTime = 0.1;  // s after touchdown in which the drive
 constexpr double kLevelRate = 1.0;       // 1/s, with which a walk levels the pelvis
 constexpr double kLandingKnee = 0.5;     // of the knee of walk-bent
 constexpr double kShortestLeg = 0.3;     // of its length
-constexpr double kYawRate = 6.0;         // 1/s, of the reference filter of the heading
+// Of the tasks: the height and the pelvis come to rest without an overshoot, light limbs may swing.
+constexpr double kHeightDamping = 1.0;
+constexpr double kTrunkDamping = 0.8;
+constexpr double kPostureDamping = 0.6;
+constexpr double kHeightAcceleration = 0.5;  // g, that the height may ask for: feet keep their grip
+constexpr double kAccelerationWeight = 0.05;  // what no task decides stays where it is
+// While a touchdown is overdue the pelvis may turn so far towards the foot, rad.
+constexpr double kPelvisRoll = 0.3;
+constexpr double kPelvisYaw = 0.2;
+// A leg at the end of a transfer reaches back as long as in the nominal posture; the hip is then so
+// much of the step ahead of its ankle, and comes down for it by so many heights of the CoM at most.
+constexpr double kReachShare = 0.9;
+constexpr double kReachDrop = 0.1;
+// Drives of the legs of a robot.yaml without impedance, in effort limits: by what the leg does.
+constexpr double kDriveDamping[] = {0.012, 0.02, 0.024};  // s/rad: support, swing, strike
+constexpr double kSwingDriveStiffness = 0.2;              // 1/rad
+constexpr double kYawRate = 6.0;  // 1/s, of the reference filter of the heading
 
 double heading(const GaitdPose& pose) { return sdk::yaw_of(sdk::quaternion(pose.orientation)); }
 
@@ -42,7 +58,7 @@ double heading_target(const GaitdGaitState& gait) {
 ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
     : model_(model),
       weight_(model.total_mass * model.gravity),
-      omega_(std::sqrt(model.gravity / model.nominal_com_height)),
+      scale_(model),
       kinematics_(model),
       self_collision_(model) {
   kinematics_.update(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(), sdk::Vector6d::Zero(),
@@ -101,7 +117,7 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
   out.rho_weight = parameters_[Objective::kRhoWeight] / (weight_ * weight_);
   out.rho_rate_weight =
       parameters_[Objective::kRhoRateWeight] / (weight_ * weight_) * (1e-3 / dt) * 1e3;
-  out.acceleration_weight = parameters_[Objective::kAccelerationWeight];
+  out.acceleration_weight = kAccelerationWeight;
   std::copy(std::begin(robot.external_wrench), std::end(robot.external_wrench),
             out.external_wrench);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
@@ -122,8 +138,6 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
 }
 
 void ObjectiveBuilder::update_impedance(const GaitdGaitState& gait, GaitdObjectives& out) const {
-  constexpr Objective kDamping[] = {Objective::kSupportDriveDamping, Objective::kSwingDriveDamping,
-                                    Objective::kStrikeDriveDamping};
   auto set = [&](int joint, Impedance state) {
     const int s = static_cast<int>(state);
     if (impedance_given_) {
@@ -132,9 +146,8 @@ void ObjectiveBuilder::update_impedance(const GaitdGaitState& gait, GaitdObjecti
       return;
     }
     const double limit = model_.joints[joint].effort_limit;
-    out.joint_stiffness[joint] =
-        state == Impedance::kSwing ? parameters_[Objective::kSwingDriveStiffness] * limit : 0.0;
-    out.joint_damping[joint] = parameters_[kDamping[s]] * limit;
+    out.joint_stiffness[joint] = state == Impedance::kSwing ? kSwingDriveStiffness * limit : 0.0;
+    out.joint_damping[joint] = kDriveDamping[s] * limit;
   };
   for (int i = 0; i < model_.joint_count; ++i) {
     out.joint_stiffness[i] = out.joint_damping[i] = 0.0;
@@ -158,13 +171,12 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
                                        GaitdObjectives& out) {
   const double mass = model_.total_mass;
   const double standing = parameters_[Objective::kComHeight] * model_.nominal_com_height;
-  const LegReach reach{
-      .standing_height = standing,
-      .leg_length = leg_length_ - (model_.nominal_com_height - standing),
-      .longest = parameters_[Objective::kReachLength] * leg_length_,
-      .trailing_share = parameters_[Objective::kReachShare],
-      .nominal_separation = model_.nominal_foot_separation,
-      .largest_drop = parameters_[Objective::kReachDrop] * model_.nominal_com_height};
+  const LegReach reach{.standing_height = standing,
+                       .leg_length = leg_length_ - (model_.nominal_com_height - standing),
+                       .longest = leg_length_,
+                       .trailing_share = kReachShare,
+                       .nominal_separation = model_.nominal_foot_separation,
+                       .largest_drop = kReachDrop * model_.nominal_com_height};
   out.height_target = com_height_target(gait, reach) + references_.com_shift[2];
   const bool straight = gait.mode == GAITD_MODE_WALK_STRAIGHT;
   bool descends = false;
@@ -178,20 +190,20 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
   }
   if (gait.mode != mode_) height_.reset(robot.com[2], robot.com_velocity[2]);
   mode_ = gait.mode;
-  height_.update(dt, out.height_target, (descends ? kDescentRate : kHeightRate) * omega_);
+  height_.update(dt, out.height_target, (descends ? kDescentRate : kHeightRate) / scale_.time);
   // A controller that commands the height of straight legs as well is drawn to it softly.
   const double stiffness = (straight ? 0.5 : 1.0) * parameters_[Objective::kHeightStiffness];
-  const double limit = parameters_[Objective::kHeightAccelerationLimit] * model_.gravity;
-  const double wanted = height_.acceleration() + stiffness * (height_.value() - robot.com[2]) +
-                        damping(stiffness, parameters_[Objective::kHeightDampingRatio]) *
-                            (height_.velocity() - robot.com_velocity[2]);
+  const double limit = kHeightAcceleration * model_.gravity;
+  const double wanted =
+      height_.acceleration() + stiffness * (height_.value() - robot.com[2]) +
+      damping(stiffness, kHeightDamping) * (height_.velocity() - robot.com_velocity[2]);
   for (int i = 0; i < 3; ++i) out.momentum_rate[i] = adjustment.angular_momentum_rate[i];
   out.momentum_rate[3] = adjustment.linear_momentum_rate[0];
   out.momentum_rate[4] = adjustment.linear_momentum_rate[1];
   out.momentum_rate[5] = mass * std::clamp(wanted, -limit, limit);
-  const double horizontal = parameters_[Objective::kMomentumWeight] / (mass * mass);
-  const double vertical = parameters_[Objective::kMomentumHeightWeight] / (mass * mass);
-  for (int i = 0; i < 6; ++i) out.momentum_weight[i] = i == 5 ? vertical : horizontal;
+  for (double& weight : out.momentum_weight) {
+    weight = parameters_[Objective::kMomentumWeight] / (mass * mass);
+  }
   out.momentum_mask =
       (static_cast<std::uint32_t>(adjustment.angular_momentum_mask) & kAngularRows) |
       (straight ? 0b011000u : kLinearRows);
@@ -227,17 +239,15 @@ void ObjectiveBuilder::add_orientation_task(int body, const Eigen::Quaterniond& 
 double ObjectiveBuilder::pelvis_weight(double dt, const GaitdGaitState& gait,
                                        const Eigen::Quaterniond& goal) {
   const double full = parameters_[Objective::kPelvisWeight];
-  const double fade = parameters_[Objective::kLatePelvisFade];
-  if (fade <= 0.0) return full;
   double share = 1.0;
   if (const double late = late_time(gait); late > 0.0) {
     const Eigen::Vector3d turned =
         sdk::log_so3(goal.conjugate() * Eigen::Quaterniond(kinematics_.R_WB(0)));
-    const double used = std::max(std::abs(turned.x()) / parameters_[Objective::kPelvisRollLimit],
-                                 std::abs(turned.z()) / parameters_[Objective::kPelvisYawLimit]);
-    share = std::clamp(std::max(1.0 - late / fade, used), 0.05, 1.0);
+    const double used =
+        std::max(std::abs(turned.x()) / kPelvisRoll, std::abs(turned.z()) / kPelvisYaw);
+    share = std::clamp(std::max(1.0 - late / kPelvisFade, used), 0.05, 1.0);
   }
-  pelvis_share_ = std::min(share, pelvis_share_ + dt / fade);
+  pelvis_share_ = std::min(share, pelvis_share_ + dt / kPelvisFade);
   return full * pelvis_share_;
 }
 
@@ -256,17 +266,17 @@ void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot
   };
   const GaitdTaskReferences& r = references_;
   const Eigen::Quaterniond pelvis = turned(r.pelvis_turn);
-  add_orientation_task(
-      0, pelvis, rate + facing * view(r.pelvis_turn_rate), parameters_[Objective::kPelvisStiffness],
-      parameters_[Objective::kPelvisDampingRatio], pelvis_weight(dt, gait, pelvis), out);
+  add_orientation_task(0, pelvis, rate + facing * view(r.pelvis_turn_rate),
+                       parameters_[Objective::kPelvisStiffness], kTrunkDamping,
+                       pelvis_weight(dt, gait, pelvis), out);
   if (model_.chest_body > 0) {
-    add_orientation_task(
-        model_.chest_body, turned(r.chest_turn) * chest_in_pelvis_,
-        rate + facing * view(r.chest_turn_rate), parameters_[Objective::kChestStiffness],
-        parameters_[Objective::kChestDampingRatio], parameters_[Objective::kChestWeight], out);
+    add_orientation_task(model_.chest_body, turned(r.chest_turn) * chest_in_pelvis_,
+                         rate + facing * view(r.chest_turn_rate),
+                         parameters_[Objective::kChestStiffness], kTrunkDamping,
+                         parameters_[Objective::kChestWeight], out);
   }
   const double stiffness = parameters_[Objective::kPostureStiffness];
-  const double rate_gain = damping(stiffness, parameters_[Objective::kPostureDampingRatio]);
+  const double rate_gain = damping(stiffness, kPostureDamping);
   for (int i = 0; i < model_.joint_count; ++i) {
     out.posture_weight[i] = posture_joint_[i] ? parameters_[Objective::kPostureWeight] : 0.0;
     const bool told = (r.joint_mask >> i & 1u) != 0;
@@ -315,7 +325,7 @@ void ObjectiveBuilder::update_lowering(double dt, const GaitdRobotState& robot,
   const double high = highest_hip_of_swing(robot, gait, longest, longest) - stance.z();
   const double behind = (hip(gait.support) - stance).head<2>().norm();
   const double length = std::hypot(behind, std::max(high, kShortestLeg * longest));
-  lowering_.update(dt, leg.knee(std::min(longest, length)), kDescentRate * omega_);
+  lowering_.update(dt, leg.knee(std::min(longest, length)), kDescentRate / scale_.time);
 }
 
 void ObjectiveBuilder::update_privileged(double dt, const GaitdRobotState& robot,

@@ -16,6 +16,28 @@ using sdk::view;
 constexpr double kTouchdownTime = 0.05;    // s, in which the touchdown damping fades
 constexpr double kClosingTouchdown = 0.5;  // of the touchdown velocity
 constexpr double kNever = 1e9;             // rad
+// Of a basis vector of a contact, weights: enough for friction to hold the foot, and more than any
+// landing needs.
+constexpr double kRhoMin = 0.0023;
+constexpr double kRhoMax = 1.5;
+constexpr double kContactMargin = 0.09;  // half extents, of one foot that carries a straight leg
+// rad, tilt of a sole in contact from which it bears less and less as a whole, and on a line.
+constexpr double kTiltStart = 0.015;
+constexpr double kTiltFull = 0.04;
+constexpr double kTiltStiffness = 150.0;  // 1/s^2, with which it comes back
+// 1/s, of the twist of a foot in contact, and in the first moments after touchdown.
+constexpr double kStanceDamping = 3.0;
+constexpr double kTouchdownDamping = 30.0;
+constexpr double kStanceWeight = 1000.0;  // a foot in contact does not move
+constexpr double kToeStiffness = 100.0;   // 1/s^2, holds the toe point in toe-off
+constexpr double kToeWeight = 50.0;
+constexpr double kToeAngularStiffness = 200.0;  // 1/s^2, roll and yaw of the foot in toe-off
+constexpr double kToeAngularWeight = 5.0;
+constexpr double kToeDamping = 0.4;          // of both
+constexpr double kSwingDamping = 0.7;        // of the swing foot
+constexpr double kSwingUpright = 4.0 / 3.0;  // stiffness of height and orientation, over the rest
+constexpr double kSwingAngular = 1.0 / 6.0;  // weight of the orientation, over the position
+constexpr double kLateSwingWeight = 100.0;   // 1/s, growth of both while a touchdown is overdue
 constexpr double kToeEdge = 0.01;  // m, points this far behind the toe point are not on the edge
 
 // Of a point of the sole, in the axes of the body of the foot.
@@ -50,43 +72,38 @@ void ObjectiveBuilder::update_rests(double dt, const GaitdRobotState& robot,
       continue;
     }
     const bool flat = stiff_alone(gait) && toe_off.active == 0;
-    const double start = flat ? parameters_[Objective::kTiltStart] : kNever;
-    rests_[side].update(dt, robot.feet[side], gait.footholds[side], weight_,
-                        {start, parameters_[Objective::kTiltFull]});
+    const double start = flat ? kTiltStart : kNever;
+    rests_[side].update(dt, robot.feet[side], gait.footholds[side], weight_, {start, kTiltFull});
   }
 }
 
-bool ObjectiveBuilder::on_toe(int side) const {
-  return time_in_toe_off_[side] > parameters_[Objective::kToeRamp];
-}
+bool ObjectiveBuilder::on_toe(int side) const { return time_in_toe_off_[side] > kToeRamp; }
 
 double ObjectiveBuilder::load_share(int side, const GaitdGaitState& gait) const {
-  const double ramp = parameters_[Objective::kContactRamp];
-  if (ramp <= 0.0) return 1.0;
-  double share = std::min(1.0, time_in_contact_[side] / ramp);
+  double share = std::min(1.0, time_in_contact_[side] / kContactRamp);
   const bool leaving =
       gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 && gait.next_side == side;
   // A transfer that waits for the ICP past its time needs both feet.
   const bool waiting = gait.time_in_phase > gait.phase_duration;
-  if (leaving && !waiting) share = std::min(share, gait.time_remaining / ramp);
+  if (leaving && !waiting) share = std::min(share, gait.time_remaining / kContactRamp);
   return std::clamp(share, 0.0, 1.0);
 }
 
 void ObjectiveBuilder::update_contacts(double dt, const GaitdGaitState& gait,
                                        const GaitdToeOff& toe_off, GaitdObjectives& out) const {
-  const double rho_max = parameters_[Objective::kRhoMax] * weight_;
-  const double rho_min = parameters_[Objective::kRhoMin] * weight_;
+  const double rho_max = kRhoMax * weight_;
+  const double rho_min = kRhoMin * weight_;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdFoothold& foothold = gait.footholds[side];
     if (foothold.contact == GAITD_CONTACT_NONE) continue;
     const GaitdFoot& foot = model_.feet[side];
     const bool toe = on_toe(side);
     // On the way onto the toe the points behind it carry less and less.
-    const double unloaded = time_in_toe_off_[side] / std::max(parameters_[Objective::kToeRamp], dt);
+    const double unloaded = time_in_toe_off_[side] / std::max(kToeRamp, dt);
     const Eigen::Quaterniond sole = sdk::quaternion(foothold.pose.orientation);
     const double share = load_share(side, gait);
     const int points = toe ? 1 : foothold.polygon_count;
-    const double used = stiff_alone(gait) ? 1.0 - parameters_[Objective::kContactMargin] : 1.0;
+    const double used = stiff_alone(gait) ? 1.0 - kContactMargin : 1.0;
     const Eigen::Vector2d middle = sole_middle(foothold);
     for (int i = 0; i < points && out.contact_count < GAITD_MAX_CONTACTS; ++i) {
       GaitdContactPoint& c = out.contacts[out.contact_count++];
@@ -130,21 +147,18 @@ void ObjectiveBuilder::add_stance_foot(int side, const GaitdRobotState& robot,
   Eigen::Vector3d pivot;
   pivot << rest.pivot(), 0.0;
   view(task.point) = point_in_body(foot, pivot);
-  const double settled = parameters_[Objective::kStanceDamping];
-  const double extra = std::max(0.0, parameters_[Objective::kTouchdownDamping] - settled);
-  const double rate = settled + extra * std::exp(-time_in_contact_[side] / kTouchdownTime);
+  constexpr double kExtra = kTouchdownDamping - kStanceDamping;
+  const double rate = kStanceDamping + kExtra * std::exp(-time_in_contact_[side] / kTouchdownTime);
   sdk::Vector6d twist = view(robot.feet[side].twist);
   const Eigen::Vector3d turn = twist.head<3>();
   twist.tail<3>() += turn.cross(sdk::quaternion(robot.feet[side].orientation) * pivot);
   view(task.acceleration) = -rate * twist;
-  const double stiffness = parameters_[Objective::kTiltStiffness];
   view(task.acceleration).head<3>() +=
-      rest.share() *
-      (stiffness * rest.way_back() - std::max(0.0, damping(stiffness, 1.0) - rate) * turn);
+      rest.share() * (kTiltStiffness * rest.way_back() -
+                      std::max(0.0, damping(kTiltStiffness, 1.0) - rate) * turn);
   auto stop = view(task.acceleration).tail<3>();
-  const double hardest = parameters_[Objective::kTouchdownStop];
-  if (stop.norm() > hardest) stop *= hardest / stop.norm();
-  view(task.weight).setConstant(parameters_[Objective::kStanceWeight]);
+  if (stop.norm() > kTouchdownStop) stop *= kTouchdownStop / stop.norm();
+  view(task.weight).setConstant(kStanceWeight);
 }
 
 void ObjectiveBuilder::add_toe(int side, const GaitdRobotState& robot, const GaitdGaitState& gait,
@@ -156,12 +170,12 @@ void ObjectiveBuilder::add_toe(int side, const GaitdRobotState& robot, const Gai
   // The point is held where the foothold has it; rows along the axes of the foothold.
   GaitdTask& point = add_task(out, GAITD_TASK_FRAME, foot.body, kLinearRows);
   view(point.point) = in_body;
-  const double stiffness = parameters_[Objective::kToeStiffness];
-  const double ratio = parameters_[Objective::kToeDampingRatio];
   view(point.acceleration).tail<3>() =
-      stiffness * (sdk::transform(hold, in_sole) - kinematics_.frame_position(foot.body, in_body)) -
-      damping(stiffness, ratio) * kinematics_.frame_velocity(foot.body, in_body).tail<3>();
-  view(point.weight).setConstant(parameters_[Objective::kToeWeight]);
+      kToeStiffness *
+          (sdk::transform(hold, in_sole) - kinematics_.frame_position(foot.body, in_body)) -
+      damping(kToeStiffness, kToeDamping) *
+          kinematics_.frame_velocity(foot.body, in_body).tail<3>();
+  view(point.weight).setConstant(kToeWeight);
   // Roll and yaw of the sole are held; its pitch has no row at all, but for a foot that has to come
   // back because no step follows.
   const bool stays = gait.phase == GAITD_PHASE_STAND || gait.transfer_final != 0;
@@ -169,12 +183,12 @@ void ObjectiveBuilder::add_toe(int side, const GaitdRobotState& robot, const Gai
   view(turn.point) = in_body;
   const Eigen::Quaterniond now = sdk::quaternion(robot.feet[side].orientation);
   sdk::store(now, turn.axes);
-  const double angular = parameters_[Objective::kToeAngularStiffness];
   const Eigen::Vector3d error =
       now.conjugate() * rotation_error(sdk::quaternion(hold.orientation), now);
   const Eigen::Vector3d rate = now.conjugate() * view(robot.feet[side].twist).head<3>();
-  view(turn.acceleration).head<3>() = angular * error - damping(angular, ratio) * rate;
-  view(turn.weight).setConstant(parameters_[Objective::kToeAngularWeight]);
+  view(turn.acceleration).head<3>() =
+      kToeAngularStiffness * error - damping(kToeAngularStiffness, kToeDamping) * rate;
+  view(turn.weight).setConstant(kToeAngularWeight);
 }
 
 void ObjectiveBuilder::plan_swing(const GaitdRobotState& robot, const GaitdGaitState& gait,
@@ -182,11 +196,10 @@ void ObjectiveBuilder::plan_swing(const GaitdRobotState& robot, const GaitdGaitS
   if (gait.phase != GAITD_PHASE_SWING) return;
   const int side = gait.next_side;
   const GaitdFootstep& goal = gait.adjusted[0];
-  SwingParameters swing = swing_parameters_;
+  SwingShape swing = swing_shape(model_, swing_parameters_);
   if (goal.closing != 0) {
     // Nothing follows: there is time to meet the ground gently.
-    const int touchdown = static_cast<int>(Swing::kTouchdownVelocity);
-    swing.set(touchdown, kClosingTouchdown * swing[Swing::kTouchdownVelocity]);
+    swing.landing_speed *= kClosingTouchdown;
   }
   if (swing_step_ != gait.step_index) {
     swing_.begin(lift_off, view(robot.feet[side].twist), gait.footholds[side].pose.position[2],
@@ -206,11 +219,11 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
   const GaitdFootState& now = robot.feet[side];
   GaitdTask& task = add_task(out, GAITD_TASK_FRAME, foot.body, kAllRows);
   view(task.point) = view(foot.sole.origin);
-  const double ratio = parameters_[Objective::kSwingDampingRatio];
   const double kp_xy = parameters_[Objective::kSwingStiffness];
-  const double kp_z = parameters_[Objective::kSwingHeightStiffness];
+  const double kp_z = kSwingUpright * kp_xy;
   const Eigen::Vector3d kp(kp_xy, kp_xy, kp_z);
-  const Eigen::Vector3d kd(damping(kp_xy, ratio), damping(kp_xy, ratio), damping(kp_z, ratio));
+  const Eigen::Vector3d kd(damping(kp_xy, kSwingDamping), damping(kp_xy, kSwingDamping),
+                           damping(kp_z, kSwingDamping));
   const auto twist = view(now.twist);
   view(task.acceleration).tail<3>() = s.acceleration +
                                       kp.cwiseProduct(s.position - view(now.position)) +
@@ -218,11 +231,11 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
   view(task.acceleration).head<3>() =
       s.angular_acceleration +
       kp_z * rotation_error(s.orientation, sdk::quaternion(now.orientation)) +
-      damping(kp_z, ratio) * (s.angular_velocity - twist.head<3>());
-  const double heavier =
-      (1.0 + parameters_[Objective::kLateSwingWeight] * late_time(gait)) * hastened_weight(gait);
-  view(task.weight).head<3>().setConstant(heavier * parameters_[Objective::kSwingAngularWeight]);
-  view(task.weight).tail<3>().setConstant(heavier * parameters_[Objective::kSwingWeight]);
+      damping(kp_z, kSwingDamping) * (s.angular_velocity - twist.head<3>());
+  const double weight = parameters_[Objective::kSwingWeight];
+  const double heavier = (1.0 + kLateSwingWeight * late_time(gait)) * hastened_weight(gait);
+  view(task.weight).head<3>().setConstant(heavier * (kSwingAngular * weight));
+  view(task.weight).tail<3>().setConstant(heavier * weight);
 }
 
 }  // namespace gaitd::walking

@@ -5,12 +5,15 @@
 #include <cmath>
 
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/gait_scale.h"
 
 namespace gaitd::walking {
 namespace {
 
-constexpr double kShortest = 0.01;  // s, of one polynomial
-constexpr double kBrisk = 30.0;     // m/s^2, to reach a foothold that moved after the arrival
+constexpr double kLateSpeed = 1.0;      // m/s, down at most while a touchdown is overdue
+constexpr double kEdgeHeight = 0.1019;  // CoM heights, of what a swing takes for an edge
+constexpr double kShortest = 0.01;      // s, of one polynomial
+constexpr double kBrisk = 30.0;         // m/s^2, to reach a foothold that moved after the arrival
 constexpr double kPeakAcceleration =
     5.77;  // largest acceleration of a quintic from rest to rest, per way / time^2
 constexpr double kOnset = 0.05;  // s
@@ -18,6 +21,16 @@ constexpr double kOnset = 0.05;  // s
 // where nothing is left to be caught on; odometry is wrong by a centimetre or two after a few
 // steps.
 constexpr double kBeyondEdge = 0.035;
+// Parts of a swing: its highest point, on level ground and down an edge; onto an edge, the first
+// one in which the foot only rises, and the one after which the sole is level; down an edge, the
+// one after which the foot is above its foothold.
+constexpr double kApex = 0.45;
+constexpr double kDropApex = 0.5;
+constexpr double kRiseWait = 0.18;
+constexpr double kRiseLevel = 0.5;
+constexpr double kDropArrive = 0.75;
+// m/s^2, downwards while a touchdown is overdue: faster than the robot falls.
+constexpr double kLateAcceleration = 13.0;
 
 double blend(double a, double b, double share) { return a + share * (b - a); }
 
@@ -50,6 +63,15 @@ bool same_goal(const GaitdFootstep& a, const GaitdFootstep& b) {
 
 }  // namespace
 
+SwingShape swing_shape(const GaitdModel& model, const SwingParameters& parameters) {
+  const GaitScale scale(model);
+  const double landing_speed = parameters[Swing::kLandingSpeed] * scale.speed;
+  return {.landing_speed = landing_speed,
+          .late_velocity = landing_speed,
+          .late_speed = kLateSpeed,
+          .edge_height = kEdgeHeight * scale.length};
+}
+
 void Quintic::fit(double x0, double v0, double a0, double x1, double v1, double a1, double T) {
   const double dx = x1 - x0 - v0 * T - 0.5 * a0 * T * T;
   const double dv = v1 - v0 - a0 * T;
@@ -72,8 +94,7 @@ double Quintic::acceleration(double t) const {
 }
 
 void SwingTrajectory::begin(const GaitdPose& from, const sdk::Vector6d& twist, double ground,
-                            const GaitdFootstep& to, double duration,
-                            const SwingParameters& parameters) {
+                            const GaitdFootstep& to, double duration, const SwingShape& shape) {
   Sample now;
   now.position = sdk::view(from.position);
   now.orientation = sdk::quaternion(from.orientation);
@@ -83,44 +104,43 @@ void SwingTrajectory::begin(const GaitdPose& from, const sdk::Vector6d& twist, d
   now.angular_acceleration.setZero();
   ground_ = ground;
   lift_off_ = now.position.head<2>();
-  const double drop = std::clamp(-edge(to, parameters), 0.0, 1.0);
-  apex_ = duration * blend(parameters[Swing::kApexFraction], parameters[Swing::kDropApex], drop);
-  plan(0.0, now, to, duration, parameters);
+  const double drop = std::clamp(-edge(to, shape), 0.0, 1.0);
+  apex_ = duration * blend(kApex, kDropApex, drop);
+  plan(0.0, now, to, duration, shape);
 }
 
 // How much of an edge the way to `to` is: 1 up, -1 down, 0 level.
-double SwingTrajectory::edge(const GaitdFootstep& to, const SwingParameters& parameters) const {
-  return std::clamp((to.pose.position[2] - ground_) / parameters[Swing::kEdgeHeight], -1.0, 1.0);
+double SwingTrajectory::edge(const GaitdFootstep& to, const SwingShape& shape) const {
+  return std::clamp((to.pose.position[2] - ground_) / shape.edge_height, -1.0, 1.0);
 }
 
 void SwingTrajectory::replan(double t, const GaitdFootstep& to, double duration,
-                             const SwingParameters& parameters) {
+                             const SwingShape& shape) {
   if (t >= duration - kShortest) return;  // too late to change anything
   if (duration == duration_ && same_goal(goal_, to)) return;
   // The apex keeps its place in what is left of the swing.
   if (apex_ > t) apex_ = t + (apex_ - t) * (duration - t) / std::max(duration_ - t, kShortest);
-  plan(t, evaluate(t), to, duration, parameters);
+  plan(t, evaluate(t), to, duration, shape);
 }
 
 void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to, double duration,
-                           const SwingParameters& parameters) {
+                           const SwingShape& shape) {
   start_ = t;
   duration_ = std::max(duration, t + kShortest);
-  late_velocity_ = parameters[Swing::kLateVelocity];
+  late_velocity_ = shape.late_velocity;
   goal_ = to;
-  late_acceleration_ = parameters[Swing::kLateAcceleration];
-  late_gain_ = std::max(0.0, parameters[Swing::kLateSpeed] - late_velocity_);
+  late_gain_ = std::max(0.0, shape.late_speed - late_velocity_);
   const double T = duration_ - t;
-  const double rise = std::max(0.0, edge(to, parameters));
-  const double drop = std::max(0.0, -edge(to, parameters));
-  leave_ = std::max(t, rise * parameters[Swing::kRiseWait] * duration_);
+  const double rise = std::max(0.0, edge(to, shape));
+  const double drop = std::max(0.0, -edge(to, shape));
+  leave_ = std::max(t, rise * kRiseWait * duration_);
   const Eigen::Vector2d end = sdk::view(to.pose.position).head<2>();
   const Eigen::Vector2d beyond = drop * kBeyondEdge * (end - lift_off_);
   // A foothold that moves late is reached in its own time, and at touchdown at the latest.
   const auto needed = [](const Eigen::Vector2d& way) {
     return std::sqrt(kPeakAcceleration * way.norm() / kBrisk);
   };
-  const double arrival = blend(1.0, parameters[Swing::kDropArrive], drop) * duration_;
+  const double arrival = blend(1.0, kDropArrive, drop) * duration_;
   const auto arrive = [&](const Eigen::Vector2d& goal) {
     return std::max({arrival, std::min(leave_ + needed(goal - now.position.head<2>()), duration_),
                      leave_ + kShortest});
@@ -128,7 +148,7 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   arrive_ = arrive(end + beyond);
   const bool goes_beyond = leave_ < arrival && duration_ - arrive_ > needed(beyond);
   if (!goes_beyond) arrive_ = leave_ < arrival ? arrive(end) : duration_;
-  level_ = std::max(blend(1.0, parameters[Swing::kRiseLevel], rise) * duration_, t + kShortest);
+  level_ = std::max(blend(1.0, kRiseLevel, rise) * duration_, t + kShortest);
   const double way = arrive_ - leave_;
   // Who waits does not move.
   const Eigen::Vector3d v = leave_ > t ? Eigen::Vector3d::Zero() : now.velocity;
@@ -139,7 +159,7 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
     back_[i].fit(over, 0.0, 0.0, end[i], 0.0, 0.0, std::max(duration_ - arrive_, kShortest));
   }
   const double goal_height = to.pose.position[2];
-  const double down = -parameters[Swing::kTouchdownVelocity];
+  const double down = -shape.landing_speed;
   if (apex_ - t > kShortest) {
     apex_height_ = std::max(ground_, goal_height) + to.swing_height;
     // Curvature of a parabola of this height over the swing: no flat top, no hard corner.
@@ -189,7 +209,7 @@ SwingTrajectory::Sample SwingTrajectory::evaluate(double t) const {
   s.angular_acceleration = acceleration + 0.5 * turn.cross(acceleration);
   if (t > duration_) {
     const double late = t - duration_;
-    const auto [gain, way] = hurry(late, late_acceleration_, late_gain_);
+    const auto [gain, way] = hurry(late, kLateAcceleration, late_gain_);
     s.position.z() -= late_velocity_ * late + way;
     s.velocity = {0.0, 0.0, -late_velocity_ - gain};
     s.acceleration.setZero();

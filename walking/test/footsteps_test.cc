@@ -18,10 +18,9 @@ using testing::atlas;
 using testing::footstep;
 using testing::SyntheticWalk;
 
-const GaitParameters& parameters() {
-  // Of a machine: it fills in what the table leaves to the robot.
-  static const GaitParameters p = GaitMachine(atlas()).parameters();
-  return p;
+const StepLimits& limits() {
+  static const StepLimits limits = GaitMachine(atlas()).limits();
+  return limits;
 }
 
 GaitdPose pose(double x, double y, double yaw) {
@@ -62,7 +61,7 @@ const Named kWalks[] = {
 TEST(FootstepGenerator, TheFeetEndWhereTheMovesOfAllStepsLead) {
   for (const Named& n : kWalks) {
     const GaitdPose start = pose(1.0, -2.0, 0.7);
-    FootstepGenerator generator(n.walk, start, GAITD_LEFT, 0.25, parameters());
+    FootstepGenerator generator(n.walk, start, GAITD_LEFT, 0.25, limits().least_separation);
     ASSERT_EQ(generator.count(), n.walk.steps + 1) << n.name;
     GaitdPose feet[2];
     for (int i = 0; i < generator.count(); ++i) {
@@ -101,7 +100,7 @@ TEST(FootstepGenerator, TheRobotThatWalksThemEndsThereToo) {
 TEST(FootstepGenerator, SidesAlternateFromTheFirst) {
   for (int first : {GAITD_LEFT, GAITD_RIGHT}) {
     FootstepGenerator generator({.steps = 5, .length = 0.3}, pose(0, 0, 0), first, 0.25,
-                                parameters());
+                                limits().least_separation);
     int expected = first;
     for (int i = 0; i < generator.count(); ++i) {
       const GaitdFootstep step = generator.next();
@@ -114,7 +113,7 @@ TEST(FootstepGenerator, SidesAlternateFromTheFirst) {
 
 TEST(FootstepGenerator, TheWidthIsTheDistanceOfTheSoles) {
   FootstepGenerator generator({.steps = 4, .length = 0.3}, pose(0, 0, 0), GAITD_LEFT, 0.31,
-                              parameters());
+                              limits().least_separation);
   double last = -0.155;
   for (int i = 0; i < generator.count(); ++i) {
     const double y = generator.next().pose.position[1];
@@ -131,22 +130,21 @@ double separation(const GaitdPose& stance, const GaitdFootstep& step) {
 }
 
 TEST(FootstepGenerator, TheLeastSeparationIsARealOne) {
-  EXPECT_GT(parameters()[Gait::kMinFootSeparation], 0.1);
-  EXPECT_LT(parameters()[Gait::kMinFootSeparation], atlas().nominal_foot_separation);
+  EXPECT_GT(limits().least_separation, 0.1);
+  EXPECT_LT(limits().least_separation, atlas().nominal_foot_separation);
 }
 
 TEST(FootstepGenerator, SidewaysWalksNeverBringTheFeetCloserThanAllowed) {
   for (double lateral = -0.3; lateral <= 0.3; lateral += 0.05) {
     for (int first : {GAITD_LEFT, GAITD_RIGHT}) {
       const WalkCommand walk{.steps = 5, .lateral = lateral};
-      FootstepGenerator generator(walk, pose(0, 0, 0), first, 0.2264, parameters());
+      FootstepGenerator generator(walk, pose(0, 0, 0), first, 0.2264, limits().least_separation);
       GaitdPose stance{};
       for (int i = 0; i < generator.count(); ++i) {
         const GaitdFootstep step = generator.next();
         // The first is taken from where the feet stand, not from a generated footstep.
         if (i > 0) {
-          EXPECT_GE(separation(stance, step), parameters()[Gait::kMinFootSeparation] - 1e-9)
-              << lateral;
+          EXPECT_GE(separation(stance, step), limits().least_separation - 1e-9) << lateral;
         }
         stance = step.pose;
       }
@@ -172,8 +170,7 @@ TEST(FootstepGenerator, WhatAMachineAcceptsNeverBringsTheFeetTooClose) {
     GaitdPose stance = g.footholds[other_side(g.commanded[0].side)].pose;
     for (int i = 0; i < g.footstep_count; ++i) {
       // Half a centimetre is what check_footstep() forgives.
-      EXPECT_GE(separation(stance, g.commanded[i]),
-                parameters()[Gait::kMinFootSeparation] - 0.005 - 1e-9);
+      EXPECT_GE(separation(stance, g.commanded[i]), limits().least_separation - 0.005 - 1e-9);
       stance = g.commanded[i].pose;
     }
   }

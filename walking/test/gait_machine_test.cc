@@ -61,8 +61,8 @@ TEST(GaitMachine, WalksTransferAndSwingInTurnWithTheirDurations) {
   walk.first_side = GAITD_RIGHT;
   ASSERT_FALSE(w.machine.walk(walk).refused());
   const std::vector<Stretch> phases = phases_of(w);
-  const double first = w.machine.parameters()[Gait::kInitialTransferDuration];
-  const double last = w.machine.parameters()[Gait::kFinalTransferDuration];
+  const double first = GaitMachine::kInitialTransfer;
+  const double last = kFinalTransfer;
   const Stretch expected[] = {
       {GAITD_PHASE_TRANSFER, 1, GAITD_BOTH, first},
       {GAITD_PHASE_SWING, 1, GAITD_LEFT, 0.5},
@@ -101,7 +101,7 @@ TEST(GaitMachine, ShortTransfersOutOfStandingAreStretched) {
   SyntheticWalk w;
   ASSERT_FALSE(w.machine.walk({.steps = 1, .length = 0.2, .transfer_duration = 0.1}).refused());
   w.tick();
-  EXPECT_EQ(w.gait().phase_duration, w.machine.parameters()[Gait::kInitialTransferDuration]);
+  EXPECT_EQ(w.gait().phase_duration, GaitMachine::kInitialTransfer);
 }
 
 TEST(GaitMachine, TheSwingFootHasNoContactAndTheOtherOneHas) {
@@ -148,7 +148,7 @@ TEST(GaitMachine, EarlyContactEndsTheSwingAtOnce) {
 
 TEST(GaitMachine, ALoadedFootJustAfterLiftOffIsNoTouchdown) {
   SyntheticWalk w;
-  const double fraction = w.machine.parameters()[Gait::kTouchdownFraction];
+  const double fraction = GaitMachine::kTouchdownFraction;
   ASSERT_GT(fraction, 0.1);
   w.landing_delay = -10.0;  // never unloaded
   ASSERT_FALSE(w.machine.walk({.steps = 2, .length = 0.3, .swing_duration = 0.6}).refused());
@@ -250,7 +250,7 @@ TEST(GaitMachine, LaterFootholdsMoveWithTheGroundThatWasMet) {
 }
 
 TEST(GaitMachine, ATransferWaitsForTheIcpButNotForEver) {
-  const double patience = SyntheticWalk().machine.parameters()[Gait::kTransferPatience];
+  const double patience = GaitMachine::kTransferPatience;
   double seconds[2];
   int i = 0;
   for (double error : {0.0, -0.12}) {
@@ -302,7 +302,7 @@ TEST(GaitMachine, AShiftFadesOverTheStepsThatFollow) {
   EXPECT_NE(g.plan_revision, revision);
   EXPECT_NEAR(g.adjusted[0].pose.position[0] - g.commanded[0].pose.position[0], 0.04, 1e-12);
   EXPECT_NEAR(g.adjusted[0].pose.position[1] - g.commanded[0].pose.position[1], -0.01, 1e-12);
-  const double kept = w.machine.parameters()[Gait::kShiftKept];
+  const double kept = GaitMachine::kShiftKept;
   EXPECT_NEAR(g.adjusted[1].pose.position[0] - g.commanded[1].pose.position[0], kept * 0.04, 1e-12);
   EXPECT_NEAR(g.adjusted[2].pose.position[0] - g.commanded[2].pose.position[0], kept * kept * 0.04,
               1e-12);
@@ -356,13 +356,9 @@ TEST(GaitMachine, RemembersWhereTheSwingFootLeftTheGround) {
   EXPECT_NEAR(w.machine.lift_off().position[1], stood.position[1], 1e-12);
 }
 
-TEST(GaitMachine, OmegaIsTheParameterOrThatOfTheNominalHeight) {
-  SyntheticWalk w;
-  const int index = static_cast<int>(Gait::kOmega);
-  w.machine.set_parameter(index, 3.3);
-  EXPECT_EQ(w.gait().omega, 3.3);
-  w.machine.set_parameter(index, 0.0);
-  EXPECT_NEAR(w.gait().omega, std::sqrt(atlas().gravity / atlas().nominal_com_height), 1e-12);
+TEST(GaitMachine, OmegaIsThatOfAPendulumAsHighAsTheCoMInAWalk) {
+  const double height = GaitMachine::kWalkingHeight * atlas().nominal_com_height;
+  EXPECT_NEAR(SyntheticWalk().gait().omega, std::sqrt(atlas().gravity / height), 1e-12);
 }
 
 TEST(GaitMachine, AResetStandsWhereTheRobotIs) {

@@ -32,11 +32,11 @@ TEST(GaitRecovery, StepsTowardsTheIcpAndClosesTheFeetAgain) {
   ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 1, 0.2));
   const GaitdFootstep step = w.gait().commanded[0];
   EXPECT_GT(step.pose.position[0], kLost);
-  EXPECT_LE(step.pose.position[0], w.machine.parameters()[Gait::kMaxStepForward] + 1e-9);
+  EXPECT_LE(step.pose.position[0], w.machine.limits().forward + 1e-9);
   const double apart =
       std::abs(step.pose.position[1] - w.gait().footholds[w.gait().support].pose.position[1]);
   EXPECT_GE(apart, atlas().nominal_foot_separation - 1e-9);
-  EXPECT_LE(apart, w.machine.parameters()[Gait::kMaxFootSeparation] + 1e-9);
+  EXPECT_LE(apart, w.machine.limits().largest_separation + 1e-9);
   w.icp_error = 0.0;
   ASSERT_TRUE(w.run_until_stand());
   const GaitdPose& left = w.gait().footholds[GAITD_LEFT].pose;

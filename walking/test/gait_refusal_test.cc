@@ -54,11 +54,11 @@ std::vector<Case> cases() {
       {"too wide", {footstep(GAITD_LEFT, 0.2, 1.9)}, {"footstep 1", "2.013", "at most"}},
       {"too far", {footstep(GAITD_LEFT, 2.9, 0.12)}, {"footstep 1", "2.900", "ahead"}},
       {"too far back", {footstep(GAITD_LEFT, -2.9, 0.12)}, {"footstep 1", "-2.900"}},
-      {"too high", {footstep(GAITD_LEFT, 0.2, 0.12, 1.5)}, {"1.500", "max_step_height"}},
-      {"too low", {footstep(GAITD_LEFT, 0.2, 0.12, -1.5)}, {"-1.500", "max_step_height"}},
+      {"too high", {footstep(GAITD_LEFT, 0.2, 0.12, 1.5)}, {"1.500", "highest_step"}},
+      {"too low", {footstep(GAITD_LEFT, 0.2, 0.12, -1.5)}, {"-1.500", "highest_step"}},
       {"turned", {footstep(GAITD_LEFT, 0.2, 0.12, 0.0, 2.5)}, {"2.500", "max_step_turn"}},
-      {"rolled", {tilted(0.9, 0.0)}, {"0.900", "max_step_tilt"}},
-      {"pitched", {tilted(0.0, -0.9)}, {"0.900", "max_step_tilt"}},
+      {"rolled", {tilted(0.9, 0.0)}, {"0.900", "flatter"}},
+      {"pitched", {tilted(0.0, -0.9)}, {"0.900", "flatter"}},
       {"NaN position", {footstep(GAITD_LEFT, kNaN, 0.12)}, {"footstep 1", "finite"}},
       {"infinite", {footstep(GAITD_LEFT, 0.2, 0.12, INFINITY)}, {"footstep 1", "finite"}},
       {"NaN turn", {footstep(GAITD_LEFT, 0.2, 0.12, 0.0, kNaN)}, {"footstep 1", "finite"}},
@@ -189,7 +189,7 @@ TEST(GaitRefusal, ALongWalkIsRefusedExactlyWhenOneOfItsFootstepsIs) {
     const GaitdPose middle = middle_pose(by_walk.gait().footholds[GAITD_LEFT].pose,
                                          by_walk.gait().footholds[GAITD_RIGHT].pose);
     FootstepGenerator generator(walk, middle, walk.first_side, atlas().nominal_foot_separation,
-                                by_walk.machine.parameters());
+                                by_walk.machine.limits().least_separation);
     std::vector<GaitdFootstep> all;
     for (int k = 0; k < generator.count(); ++k) all.push_back(generator.next());
     const Refusal one_by_one =

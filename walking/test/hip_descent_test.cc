@@ -23,7 +23,7 @@ class HipDescent : public ::testing::Test {
     to.pose.position[0] = 0.3;
     to.pose.position[2] = -below;
     to.swing_height = 0.1;
-    swing.begin(from, sdk::Vector6d::Zero(), 0.0, to, kDuration, SwingParameters(kSwingParameters));
+    swing.begin(from, sdk::Vector6d::Zero(), 0.0, to, kDuration, {});
   }
   double at(double t) const { return highest_hip(swing, t, kDuration, leg); }
   // m: of the leg at touchdown with its hip at that height.

@@ -232,10 +232,10 @@ TEST(IcpReference, AnotherInstanceContinuesFromItsState) {
   bool handed_over = false;
   double difference = 0.0;
   w.planner = [&](const GaitdRobotState& r, const GaitdGaitState& g, GaitdIcpPlan& p) {
-    a.update(w.dt, r, g, {}, 4.0, 0.08, p);
+    a.update(w.dt, r, g, {}, p);
     if (!handed_over) return;
     GaitdIcpPlan other{};
-    b.update(w.dt, r, g, {}, 4.0, 0.08, other);
+    b.update(w.dt, r, g, {}, other);
     difference = std::max(
         difference,
         (Eigen::Vector2d(sdk::view(p.icp)) - Eigen::Vector2d(sdk::view(other.icp))).norm());

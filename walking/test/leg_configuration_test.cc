@@ -77,7 +77,7 @@ TEST(LegConfiguration, GoesThroughTheStatesOfAStraightLegInOrder) {
 TEST(LegConfiguration, BendsForLiftOffAndReachesForTouchdown) {
   LegsOfAWalk w(GAITD_MODE_WALK_STRAIGHT);
   ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3}).refused());
-  const double extend = parameters()[Legs::kExtendFraction];
+  const double extend = LegConfiguration::kExtendFraction;
   int bent = 0;
   int extended = 0;
   w.check = [&](int side, const LegConfiguration::Reference& r) {
@@ -103,7 +103,7 @@ TEST(LegConfiguration, BendsForLiftOffAndReachesForTouchdown) {
 TEST(LegConfiguration, CollapsesLateInTheOtherLegsSwingAndWhileTrailing) {
   LegsOfAWalk w(GAITD_MODE_WALK_STRAIGHT);
   ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3}).refused());
-  const double collapse = parameters()[Legs::kCollapseFraction];
+  const double collapse = LegConfiguration::kCollapseFraction;
   int collapsed = 0;
   w.check = [&](int side, const LegConfiguration::Reference& r) {
     const GaitdGaitState& g = w.gait();
@@ -165,7 +165,7 @@ TEST(LegConfiguration, StraighteningStartsAtTheMeasuredKneeAndKeepsItsRate) {
   for (int i = 0; i < 2000; ++i) {
     const auto& r = leg.update(0.001, GAITD_LEFT, knee, ReferenceFilter(), g, parameters());
     ASSERT_LE(r.knee, last + 1e-12);
-    ASSERT_GE(r.knee, last - 1.001 * parameters()[Legs::kSettleRate] * 0.001);
+    ASSERT_GE(r.knee, last - 1.001 * LegConfiguration::kSettleRate * 0.001);
     last = r.knee;
     knee = r.knee;  // a leg that follows
   }
@@ -182,7 +182,7 @@ TEST(LegConfiguration, NeverRunsAwayFromALegThatDoesNotFollow) {
   for (int i = 0; i < 5000; ++i) {
     const auto& r = leg.update(0.001, GAITD_LEFT, 1.2, ReferenceFilter(), g, parameters());
     ASSERT_EQ(r.state, LegState::kStraighten);
-    ASSERT_GE(r.knee, 1.2 - parameters()[Legs::kMaxLead] - 1e-12);
+    ASSERT_GE(r.knee, 1.2 - LegConfiguration::kMaxLead - 1e-12);
   }
 }
 
@@ -192,9 +192,9 @@ TEST(LegConfiguration, EveryStateOfABentWalkHasTheBentKneeAndOnlyASwingLegIsTold
   w.check = [&](int side, const LegConfiguration::Reference& r) {
     const GaitdGaitState& g = w.gait();
     ASSERT_EQ(r.knee, parameters()[Legs::kBentKnee]);
-    ASSERT_EQ(r.stiffness, parameters()[Legs::kBentStiffness]);
+    ASSERT_EQ(r.stiffness, LegConfiguration::kBentGains.stiffness);
     if (g.phase == GAITD_PHASE_SWING) {
-      ASSERT_EQ(r.weight, g.next_side == side ? parameters()[Legs::kBentWeight] : 0.0);
+      ASSERT_EQ(r.weight, g.next_side == side ? LegConfiguration::kBentGains.weight : 0.0);
     }
   };
   w.tick();
@@ -205,14 +205,12 @@ TEST(LegConfiguration, StraightLegsAreHeldWithTheStraightGains) {
   LegsOfAWalk w(GAITD_MODE_WALK_STRAIGHT);
   ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3}).refused());
   w.check = [](int, const LegConfiguration::Reference& r) {
-    const bool bent = r.state == LegState::kBent;
-    const Legs weight = bent                              ? Legs::kBentWeight
-                        : r.state == LegState::kCollapsed ? Legs::kCollapsedWeight
-                        : r.state == LegState::kExtend    ? Legs::kExtendWeight
-                                                          : Legs::kStraightWeight;
-    ASSERT_EQ(r.weight, parameters()[weight]);
-    ASSERT_EQ(r.stiffness, parameters()[bent ? Legs::kBentStiffness : Legs::kStraightStiffness]);
-    ASSERT_EQ(r.damping, parameters()[bent ? Legs::kBentDamping : Legs::kStraightDamping]);
+    const LegConfiguration::Gains& gains = LegConfiguration::gains(r.state);
+    ASSERT_EQ(r.weight, gains.weight);
+    ASSERT_EQ(r.stiffness, gains.stiffness);
+    ASSERT_EQ(r.damping, gains.damping);
+    const bool firm = r.state == LegState::kStraighten || r.state == LegState::kStraight;
+    ASSERT_EQ(r.weight == LegConfiguration::kStraightGains.weight, firm);
   };
   w.tick();
   ASSERT_TRUE(w.run_until_stand());

@@ -21,7 +21,6 @@ class WalkWithObjectives : public SyntheticWalk {
  public:
   explicit WalkWithObjectives(int mode = GAITD_MODE_WALK_BENT) : builder(atlas()) {
     EXPECT_FALSE(machine.set_mode(mode).refused());
-    builder.set_objective_parameter(static_cast<int>(Objective::kToeRamp), 0.0);  // at once
     tick();
     builder.reset(robot, gait());
     on_update = [this] { update(); };
@@ -38,6 +37,7 @@ class WalkWithObjectives : public SyntheticWalk {
       std::copy_n(atlas().feet[toe.side].toe_point, 3, toe.toe_point);
     }
     toe_off = toe;
+    time_on_toe = toe.active != 0 ? time_on_toe + dt : 0.0;
     GaitdStepAdjustment wanted{};
     wanted.linear_momentum_rate[0] = 12.0;
     wanted.linear_momentum_rate[1] = -7.0;
@@ -57,7 +57,13 @@ class WalkWithObjectives : public SyntheticWalk {
 
   ObjectiveBuilder builder;
   std::unique_ptr<GaitdObjectives> objectives;
+  // Whether the sole is unloaded but for its toe.
+  bool on_toe(int side) const {
+    return toe.active != 0 && toe.side == side && time_on_toe > ObjectiveBuilder::kToeRamp;
+  }
+
   GaitdToeOff toe{};
+  double time_on_toe = 0.0;  // s
   bool with_toe_off = false;
   int angular_mask = 0;
   int allocations = 0;
@@ -78,7 +84,7 @@ TEST(ObjectiveBuilder, ContactsAreThoseThatTheGaitCommands) {
     w.check = [&](const GaitdObjectives& o) {
       for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
         const bool in_air = w.gait().footholds[side].contact == GAITD_CONTACT_NONE;
-        const bool on_toe = w.toe.active != 0 && w.toe.side == side;
+        const bool on_toe = w.on_toe(side);
         const int expected = in_air ? 0 : on_toe ? 1 : atlas().feet[side].point_count;
         ASSERT_EQ(contacts_of(o, side), expected);
         toe_ticks += on_toe ? 1 : 0;
@@ -146,8 +152,7 @@ TEST(ObjectiveBuilder, LoadLimitsHaveNoSteps) {
     }
   };
   w.walk(4);
-  const ObjectiveParameters p(kObjectiveParameters);
-  const double ticks = p[Objective::kContactRamp] / w.dt;
+  const double ticks = ObjectiveBuilder::kContactRamp / w.dt;
   ASSERT_GT(ticks, 5.0);
   EXPECT_GT(full, 100.0);
   // A square ramp is steepest at its upper end: twice the mean slope.
@@ -187,7 +192,7 @@ TEST(ObjectiveBuilder, TasksAreFewFiniteAndOneSetPerFoot) {
         }
       }
       for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
-        const bool on_toe = w.toe.active != 0 && w.toe.side == side;
+        const bool on_toe = w.on_toe(side);
         ASSERT_EQ(feet[side], on_toe ? 2 : 1);
       }
     };
@@ -200,7 +205,7 @@ TEST(ObjectiveBuilder, ThePitchOfAFootOnItsToeIsLeftFree) {
   w.with_toe_off = true;
   int seen = 0;
   w.check = [&](const GaitdObjectives& o) {
-    if (w.toe.active == 0) return;
+    if (!w.on_toe(w.toe.side)) return;
     std::uint32_t rows = 0;
     int count = 0;
     for (int t = 0; t < o.task_count; ++t) {
@@ -336,7 +341,7 @@ TEST(ObjectiveBuilder, AFootThatComesDownHardIsNotStoppedHarderThanItMayBe) {
   WalkWithObjectives w;
   w.run_for(0.5);
   const int body = atlas().feet[GAITD_LEFT].body;
-  const double hardest = ObjectiveParameters(kObjectiveParameters)[Objective::kTouchdownStop];
+  const double hardest = ObjectiveBuilder::kTouchdownStop;
   for (double speed : {1.0, 100.0}) {
     w.robot.feet[GAITD_LEFT].twist[5] = -speed;
     w.tick();
@@ -364,7 +369,7 @@ TEST(ObjectiveBuilder, ThePelvisLetsGoForALateFootAndComesBackWithoutAStep) {
   w.tick();
   ASSERT_TRUE(w.run_until_stand());
   EXPECT_LT(least, 0.2 * full);
-  EXPECT_LE(fastest, full * w.dt / p[Objective::kLatePelvisFade] * (1.0 + 1e-6));
+  EXPECT_LE(fastest, full * w.dt / ObjectiveBuilder::kPelvisFade * (1.0 + 1e-6));
   EXPECT_EQ(before, full);
 }
 

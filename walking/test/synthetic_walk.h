@@ -21,7 +21,7 @@ class SyntheticWalk {
       : dt(period), machine(atlas()), robot(standing_state(atlas())), reference_(atlas()) {
     machine.reset(robot);
     planner = [this](const GaitdRobotState& r, const GaitdGaitState& g, GaitdIcpPlan& p) {
-      reference_.update(dt, r, g, offsets, 4.0, 0.08, p);
+      reference_.update(dt, r, g, offsets, p);
     };
   }
 

@@ -47,7 +47,7 @@ TEST(RobotInit, FindsWhatIsKnownOfAtlas) {
   EXPECT_NEAR(polygon_area(guess.soles[0].outline), 0.2604 * 0.1286, 1e-4);
   EXPECT_NEAR(model.nominal_position[guess.legs[0].knee], 0.5, 1e-6);
   EXPECT_NEAR(model.nominal_foot_separation, 0.2264, 2e-3);
-  EXPECT_NEAR(guess.proportions.omega, 3.0, 0.1);
+  EXPECT_NEAR(guess.proportions.scale, 1.0, 0.05);
 }
 
 TEST(RobotInit, SaysWhyItEnds) {

@@ -137,7 +137,6 @@ TEST_F(Atlas, KeepsItsArmsAwayFromTheirStops) {
 }
 
 TEST_F(Atlas, GivesTheParametersOfTheProfileOverItsOwn) {
-  EXPECT_EQ(settings_.peek("gait.omega")->text, "3.0");
   EXPECT_EQ(settings_.peek("gait.swing_duration")->text, "0.6");
   Settings hardware;
   Issues issues;
@@ -363,7 +362,7 @@ TEST(Robot, ReducesAnOutlineOfManyPoints) {
 TEST(Robot, ReportsErrorsOfAllSectionsTogether) {
   const std::string errors =
       errors_with("chest: utorso\n", "chest: nothing\ncolour: blue\n") +
-      errors_with("gait.omega: 3.0", "omega: 3.0\n  gait.x: [1]") +
+      errors_with("profiles:", "parameters:\n  omega: 3.0\n  gait.x: [1]\nprofiles:") +
       errors_with("urdf: atlas.urdf", "urdf: other.urdf") +
       errors_with("schema: gaitd.robot/1", "schema: gaitd.robot/9") +
       errors_with("rotor_inertia: {\"*\": 0.0}", "rotor_inertia: {\"left_*\": 0.0, \"*\": -1}");

@@ -113,6 +113,31 @@ TEST(Settings, ReportsWhatNobodyKnowsWithASuggestion) {
             "transfer_duration");
 }
 
+TEST(Settings, ARemovedKeySaysWhatToDo) {
+  Settings settings;
+  set(&settings, SettingSource::kRobot, "gait.omega", "3", 7);
+  set(&settings, SettingSource::kRobot, "gait.max_step_forward", "1", 8);
+  Issues issues;
+  settings.resolve("gait", kGait, &issues);
+  settings.report_unknown(&issues);
+  EXPECT_EQ(issues.error_text(),
+            "file.yaml:7: gait.omega: was removed, it follows from the size of the robot now; "
+            "remove the key\n"
+            "file.yaml:8: gait.max_step_forward: was removed; remove the key, set "
+            "gait.longest_step, in heights of the CoM");
+}
+
+// A plugin of somebody else may call its parameters as it likes.
+TEST(Settings, ARemovedNameThatAVariantHasIsItsOwn) {
+  const std::vector<GaitdParameter> kTable = {parameter("decay", GAITD_PARAMETER_REAL, 0, 20, 4)};
+  Settings settings;
+  set(&settings, SettingSource::kRobot, "icp_planner.decay", "3", 7);
+  Issues issues;
+  EXPECT_EQ(settings.resolve("icp_planner", kTable, &issues, "another")[0], 3.0);
+  settings.report_unknown(&issues);
+  EXPECT_TRUE(issues.ok()) << issues.error_text();
+}
+
 TEST(Settings, AValueForAVariantHoldsOnlyForThatVariant) {
   Settings settings;
   set(&settings, SettingSource::kRobot, "gait/quick.swing_duration", "1");

@@ -53,8 +53,8 @@ TEST(CaptureCheck, ItsLimitIsWhereStepsBeginToFail) {
   Scene scene;
   scene.ticks_until_lost(0.1, 1);
   const double reach = safety_parameter(P::kCaptureReach) * atlas().nominal_com_height;
-  EXPECT_TRUE(steps_catch(0.99 * scene.check.limit(), reach, safety_parameter(P::kCaptureStep)));
-  EXPECT_FALSE(steps_catch(1.01 * scene.check.limit(), reach, safety_parameter(P::kCaptureStep)));
+  EXPECT_TRUE(steps_catch(0.99 * scene.check.limit(), reach, CaptureCheck::kStepTime));
+  EXPECT_FALSE(steps_catch(1.01 * scene.check.limit(), reach, CaptureCheck::kStepTime));
   EXPECT_NEAR(scene.check.distance(), 0.1, 1e-9);
 }
 
@@ -62,7 +62,7 @@ TEST(CaptureCheck, IsLostBeyondTheLimitForItsTime) {
   Scene scene;
   scene.ticks_until_lost(0.0, 1);
   const double limit = scene.check.limit();
-  const int time = static_cast<int>(std::lround(safety_parameter(P::kCaptureTime) / kPeriod));
+  const int time = static_cast<int>(std::lround(CaptureCheck::kPatience / kPeriod));
   EXPECT_EQ(scene.ticks_until_lost(0.99 * limit, 1000), 1000);
   EXPECT_EQ(scene.ticks_until_lost(1.01 * limit, time - 1), time - 1);
   EXPECT_EQ(scene.ticks_until_lost(0.99 * limit, 1), 1);  // once inside, it begins anew

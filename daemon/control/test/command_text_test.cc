@@ -114,11 +114,12 @@ TEST(CommandText, AChangeOfAParameterIsThereToTheLastBit) {
   EXPECT_EQ(nlohmann::json::parse(text),
             (nlohmann::json{
                 {"name", "gait.swing_height"}, {"old", 0.1}, {"new", 1.0 / 3.0}, {"request", 5}}));
-  text = parameter_text("gait.omega", command, reply_of("it \"walks\""), buffer, sizeof(buffer));
+  text = parameter_text("gait.swing_height", command, reply_of("it \"walks\""), buffer,
+                        sizeof(buffer));
   EXPECT_EQ(nlohmann::json::parse(text), (nlohmann::json{{"command", "param.set"},
                                                          {"request", 5},
                                                          {"accepted", false},
-                                                         {"name", "gait.omega"},
+                                                         {"name", "gait.swing_height"},
                                                          {"value", 1.0 / 3.0},
                                                          {"reason", "it \"walks\""}}));
 }

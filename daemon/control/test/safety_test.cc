@@ -41,7 +41,7 @@ TEST(Safety, ReadyingHandsOverOnceWhenThePostureIsReachedAndTheFeetAreLoaded) {
     first = i;
   }
   EXPECT_EQ(handed_over, 1);
-  EXPECT_NEAR(first * kPeriod, safety_parameter(SafetyParameter::kReadySettle), 2e-3);
+  EXPECT_NEAR(first * kPeriod, Safety::kReadySettle, 2e-3);
   EXPECT_EQ(b.safety.state(), SafetyState::kStanding);
   EXPECT_TRUE(b.safety.controlled());
 }
@@ -85,8 +85,8 @@ TEST(Safety, ReadyingGivesUpIntoDampingWhenItDoesNotGetThere) {
     Bench b;
     obstacle(*b.data);
     ASSERT_EQ(b.safety.arm(), nullptr);
-    const double limit = 2.0 * safety_parameter(SafetyParameter::kReadyDuration) +
-                         safety_parameter(SafetyParameter::kReadySettle);
+    const double limit =
+        2.0 * safety_parameter(SafetyParameter::kReadyDuration) + Safety::kReadySettle;
     b.tick(static_cast<int>(limit / kPeriod) - 10);
     EXPECT_EQ(b.safety.state(), SafetyState::kReadying);
     b.tick(20);
@@ -167,12 +167,12 @@ std::vector<FaultRow> fault_table() {
        [](Bench& b) {
          stand_on_soles(b.data->robot, b.data->gait);
          b.data->robot.icp[0] = 3.0;
-         b.tick(static_cast<int>(safety_parameter(SafetyParameter::kCaptureTime) / kPeriod) + 1);
+         b.tick(static_cast<int>(CaptureCheck::kPatience / kPeriod) + 1);
        }},
       {"no solution", kFaultSolver,
        [](Bench& b) {
          b.control_ok = false;
-         b.tick(static_cast<int>(safety_parameter(SafetyParameter::kSolverPatience) / kPeriod) + 2);
+         b.tick(static_cast<int>(Safety::kSolverPatience / kPeriod) + 2);
        }},
       {"layer", kFaultLayer, [](Bench& b) { b.safety.raise(kFaultLayer); }},
       {"backend", kFaultBackend, [](Bench& b) { b.safety.raise(kFaultBackend); }},
@@ -280,8 +280,7 @@ TEST(Safety, WithoutASolutionTheTorquesFadeIntoDampingAndThenItFaults) {
   b.stand();
   ASSERT_NEAR(b.command(0).torque, 10.0, 1e-9);
   b.control_ok = false;
-  const int patience =
-      static_cast<int>(safety_parameter(SafetyParameter::kSolverPatience) / kPeriod + 0.5);
+  const int patience = static_cast<int>(Safety::kSolverPatience / kPeriod + 0.5);
   ASSERT_GT(patience, 10);
   double torque = b.command(0).torque;
   double damping = 0.0;

@@ -85,10 +85,16 @@ TEST_F(Live, AKeyMayNameTheVariantThatIsInUseAndNoOther) {
   EXPECT_HAS(error, "needs a restart");
 }
 
+TEST_F(Live, RemovedNamesSayWhatToDo) {
+  EXPECT_EQ(error_of("gait.omega", 3.0),
+            "gait.omega: was removed, it follows from the size of the robot now; remove the key");
+  EXPECT_HAS(error_of("state_estimator/invariant_ekf.trust_on", 0.3), "a constant now");
+}
+
 TEST_F(Live, UnknownNamesAreAnsweredWithTheNearest) {
   EXPECT_HAS(error_of("gait.swing_hight", 0.1), "did you mean 'gait.swing_height'?");
   EXPECT_HAS(error_of("icp_planner.entry_y2", 0.1), "did you mean 'icp_planner.entry_x'?");
-  EXPECT_HAS(error_of("swing.quickness", 0.1), "swing.apex_fraction");
+  EXPECT_HAS(error_of("swing.quickness", 0.1), "swing.landing_speed");
   EXPECT_HAS(error_of("walk.swing_height", 0.1), "gait.swing_height");
   EXPECT_HAS(error_of("nothing of the kind", 0.1), "gaitctl param list");
   EXPECT_LT(error_of(std::string(100000, 'x'), 0.1).size(), 1000u);
@@ -122,9 +128,9 @@ TEST_F(Live, ValuesAreCheckedAgainstTypeRangeAndUnit) {
 }
 
 TEST_F(Live, RequestsThatAreNoneSayWhatIsExpected) {
-  for (const char* text :
-       {"null", "[]", "{}", R"({"name": "gait.omega"})", R"({"value": 1})",
-        R"({"name": 1, "value": 1})", R"({"name": "gait.omega", "value": 1, "force": true})"}) {
+  for (const char* text : {"null", "[]", "{}", R"({"name": "gait.swing_height"})",
+                           R"({"value": 1})", R"({"name": 1, "value": 1})",
+                           R"({"name": "gait.swing_height", "value": 1, "force": true})"}) {
     std::string error;
     EXPECT_FALSE(parameters_.parse_set(json::parse(text), &error)) << text;
     EXPECT_HAS(error, R"("name")") << text;
@@ -144,6 +150,7 @@ TEST_F(Live, ARowIsDescribedWithItsPresentValue) {
   EXPECT_EQ(parameters_.describe(0), (json{{"name", "icp_planner.entry_x"},
                                            {"variant", "heel_to_toe"},
                                            {"type", "real"},
+                                           {"rank", "tuning"},
                                            {"unit", "m"},
                                            {"min", -1.0},
                                            {"max", 1.0},
@@ -178,7 +185,7 @@ TEST_F(Live, EveryRuleIsAboutAParameterThatThereIs) {
   }
   EXPECT_EQ(with_rule, parameter_rule_count());
   std::string error;
-  EXPECT_EQ(parameters_.row(parameters_.find("gait.omega", &error)).effect.kind,
+  EXPECT_EQ(parameters_.row(parameters_.find("safety.ready_duration", &error)).effect.kind,
             ParameterEffect::kAtRest);
 }
 

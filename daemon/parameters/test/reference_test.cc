@@ -36,9 +36,10 @@ TEST(Reference, HasATableForEachScopeAndVariant) {
   EXPECT_HAS(text, "\n## step_adjuster: two\n");
   EXPECT_EQ(text.find("broken"), std::string::npos);
   EXPECT_HAS(text,
-             "\n| `step_adjuster.gain` | 1/s | 0..1e+05 | 2.5 | at once | of a \\| b |\n"
-             "| `step_adjuster.eager` |  | true, false | true | at once | whether it hurries |\n");
-  EXPECT_HAS(text, "| `gait.omega` | 1/s | 0..10 | 0 | at rest: ");
+             "\n| `step_adjuster.gain` | tuning | 1/s | 0..1e+05 | 2.5 | at once | of a \\| b |\n"
+             "| `step_adjuster.eager` | tuning |  | true, false | true | at once | whether it "
+             "hurries |\n");
+  EXPECT_HAS(text, "| `safety.ready_duration` | porting | s | 0.1..60 | 3 | at rest: ");
 }
 
 TEST(Reference, NumbersAreAsShortAsTheyCanBe) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gaitd/sdk/layer.h"
+#include "gaitd/walking/gait_scale.h"
 #include "gaitd/walking/icp_reference.h"
 
 namespace gaitd::plugins {
@@ -10,21 +11,17 @@ namespace gaitd::plugins {
 // double support (Englsberger et al. 2014).
 class HeelToToe {
  public:
-  enum class P { kEntryX, kEntryY, kExitX, kExitY, kExitStepLength, kMargin, kDecay, kFit, kCount };
-  static constexpr std::array<GaitdParameter, 8> kParameters = {
-      sdk::real_parameter("entry_x", "half lengths", -1, 1, -0.08,
-                          "entry CMP ahead of the middle of the foothold"),
+  enum class P { kEntryX, kEntryY, kExitX, kExitY, kCount };
+  static constexpr std::array<GaitdParameter, 4> kParameters = {
+      sdk::real_parameter(
+          "entry_x", "half lengths", -1, 1, -0.08,
+          "CMP at touchdown, ahead of the middle; low: heel tips, high: toes carry"),
       sdk::real_parameter("entry_y", "half widths", -1, 1, -0.08,
-                          "entry CMP towards the other foot"),
+                          "CMP at touchdown, inwards; low: outer edge tips, high: the robot sways"),
       sdk::real_parameter("exit_x", "half lengths", -1, 1, 0.73,
-                          "exit CMP ahead of the middle of the foothold, for long steps"),
-      sdk::real_parameter("exit_y", "half widths", -1, 1, 0.31, "exit CMP towards the other foot"),
-      sdk::real_parameter("exit_step_length", "m", 0, 2, 0.2,
-                          "step from which on the whole of exit_x is used"),
-      sdk::real_parameter("margin", "m", 0, 0.1, 0.015, "of the CMPs to the edge of the foothold"),
-      sdk::real_parameter("decay", "1/s", 0, 20, 4, "of what is left of the old plan"),
-      sdk::real_parameter("fit_limit", "m", 0, 0.5, 0.08,
-                          "furthest that the start of a first transfer is moved"),
+                          "CMP at lift-off, ahead; low: late toe-off, high: the sole tips early"),
+      sdk::real_parameter("exit_y", "half widths", -1, 1, 0.31,
+                          "CMP at lift-off, inwards; low: outer edge tips, high: inner edge tips"),
   };
 
   explicit HeelToToe(const GaitdModel& model);
@@ -36,6 +33,7 @@ class HeelToToe {
 
  private:
   sdk::Parameters<P> p_{kParameters};
+  walking::GaitScale scale_;
   walking::IcpReference reference_;
 };
 

@@ -10,13 +10,10 @@ namespace gaitd::plugins {
 // plan there is, for comparison and for robots with small feet.
 class SingleCmp {
  public:
-  enum class P { kInwards, kDecay, kFit, kCount };
-  static constexpr std::array<GaitdParameter, 3> kParameters = {
+  enum class P { kInwards, kCount };
+  static constexpr std::array<GaitdParameter, 1> kParameters = {
       sdk::real_parameter("inwards", "half widths", -1, 1, 0.1,
-                          "CMP towards the other foot, from the middle of the foothold"),
-      sdk::real_parameter("decay", "1/s", 0, 20, 4, "of what is left of the old plan"),
-      sdk::real_parameter("fit_limit", "m", 0, 0.5, 0.08,
-                          "furthest that the start of a first transfer is moved"),
+                          "CMP from the middle of the foothold; low: outer edge tips, high: inner"),
   };
 
   explicit SingleCmp(const GaitdModel& model) : reference_(model) {}

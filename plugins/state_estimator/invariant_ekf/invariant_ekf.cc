@@ -22,18 +22,12 @@ constexpr double kStartAccelerometerBias = 0.05;  // m/s^2
 // s, in which a robot that is set on its feet sways: its CoP tells nothing.
 constexpr double kJolt = 0.1;
 
+// A foot gives way under its load, mostly down: its random walk there is so many times that across.
+constexpr double kGivesWay = 2.5;
+constexpr double kStandingShare = 0.1;  // of both, while the robot stands and its feet are at rest
+constexpr double kTiltNoise = 3e-3;     // rad/sqrt(Hz), of an IMU that measures its orientation
+
 double low_pass(double pole, double dt) { return 1.0 - std::exp(-pole * dt); }
-
-constexpr double kBalancedLoad = 0.5;  // weights; less is flight, or a robot that hangs
-
-constexpr double kStandingBalance = 0.2;  // of the noise of a walk
-constexpr double kPushStanding = 0.6;     // m/s^2 that only a push makes
-constexpr double kPushWalking = 3.0;
-
-// Standard deviation of one sample, from a density.
-constexpr double kHoistNoise = 0.05;  // m/sqrt(Hz), by which a robot on its hoist moves about
-
-double per_sample(double density, double dt) { return density / std::sqrt(dt); }
 
 }  // namespace
 
@@ -137,7 +131,7 @@ void InvariantEkf::set_state(const GaitdStateEstimatorState& s) {
 
 bool InvariantEkf::read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
   const double dt = in.time.period;
-  const double shares[] = {low_pass(p_[P::kUpperBodyPole], dt), low_pass(p_[P::kLegPole], dt)};
+  const double share = low_pass(p_[P::kJointPole], dt);
   bool complete = true;
   for (int i = 0; i < model_.joint_count; ++i) {
     const GaitdJointSensor& joint = in.sensors->joints[i];
@@ -153,7 +147,7 @@ bool InvariantEkf::read_joints(const GaitdStateEstimatorInput& in, GaitdRobotSta
       // What a command makes of a leg is decided by the contacts: nothing is expected there.
       const double expected = is_late_joint_[i] ? 0.0 : in.commands->joints[i].acceleration;
       const double measured = (joint.position - joint_[i]) / dt;
-      rate.update(measured, expected, shares[is_late_joint_[i] ? 1 : 0], dt);
+      rate.update(measured, expected, share, dt);
       joint_[i] = joint.position;
     }
     out.joint_position[i] = joint_[i];
@@ -180,41 +174,6 @@ Eigen::Quaterniond InvariantEkf::sole_orientation(int side) const {
   return Eigen::Quaterniond(kinematics_.R_WB(foot.body)) * sdk::quaternion(foot.sole.orientation);
 }
 
-void InvariantEkf::read_forces(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
-  const double share = low_pass(2.0 * M_PI * p_[P::kForceFilter], in.time.period);
-  // What the thresholds are shares of.
-  const double full = std::max(weight_, p_[P::kContactLeast] / p_[P::kContactOn]);
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    Foot& f = feet_[side];
-    GaitdFootState& state = out.feet[side];
-    const bool sensed = sdk::has_force_sensor(model_.feet[side]);
-    const sdk::Vector6d wrench = sensed
-                                     ? sdk::sole_wrench(model_.feet[side], in.sensors->feet[side])
-                                     : ground_->wrench(side);
-    view(state.wrench) = wrench;
-    f.normal_force += (sensed ? share : 1.0) * (std::max(0.0, wrench[5]) - f.normal_force);
-    const P threshold = f.contact == GAITD_CONTACT_NONE ? P::kContactOn : P::kContactOff;
-    f.contact = f.normal_force > p_[threshold] * full ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
-    state.contact = f.contact;
-    state.normal_force = f.normal_force;
-    state.cop_valid = f.contact != GAITD_CONTACT_NONE && wrench[5] > 0.01 * weight_ ? 1 : 0;
-    if (state.cop_valid != 0) {
-      state.cop[0] = -wrench[1] / wrench[5];
-      state.cop[1] = wrench[0] / wrench[5];
-    }
-  }
-}
-
-void InvariantEkf::observe_ground(const GaitdStateEstimatorInput& in) {
-  if (!ground_) return;
-  const dynamics::FootWrenches::Motion motion = {
-      .imu = imu_,
-      .orientation = filter_.orientation,
-      .rate = rate_ + place_.rate - filter_.gyro_bias,
-      .specific_force = specific_force_ - filter_.accelerometer_bias};
-  ground_->update(motion, p_[P::kForceFilter], in.time.period, *in.sensors);
-}
-
 // What the operator says of the heading and the place, and what gravity says of the tilt.
 void InvariantEkf::initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints) {
   filter_.reset();
@@ -236,8 +195,8 @@ void InvariantEkf::initialise(const GaitdStateEstimatorInput& in, const GaitdRob
   filter_.velocity.setZero();
   set_covariance(view(in.start.position), true);
   for (Foot& foot : feet_) {
-    foot.time_above = p_[P::kTrustDelay];
-    foot.time_trusted = p_[P::kRestDelay];
+    foot.time_above = kTrustDelay;
+    foot.time_trusted = kRestDelay;
   }
 }
 
@@ -299,9 +258,9 @@ void InvariantEkf::predict(const GaitdStateEstimatorInput& in, const GaitdRobotS
   noise.gyro_bias = p_[P::kGyroBiasNoise];
   noise.accelerometer_bias = p_[P::kAccelerometerBiasNoise];
   // In a walk every foot turns and settles a little under its load.
-  const double share = in.gait->phase == GAITD_PHASE_STAND ? p_[P::kStandingShare] : 1.0;
-  noise.point_horizontal = share * p_[P::kHorizontalNoise];
-  noise.point_vertical = share * p_[P::kVerticalNoise];
+  const double share = in.gait->phase == GAITD_PHASE_STAND ? kStandingShare : 1.0;
+  noise.point_horizontal = share * p_[P::kContactNoise];
+  noise.point_vertical = share * (kGivesWay * p_[P::kContactNoise]);
   Eigen::Vector3d turn = rate_;
   if (same && !place_.fixed && in.time.period > 0.0) {
     turn =
@@ -310,84 +269,8 @@ void InvariantEkf::predict(const GaitdStateEstimatorInput& in, const GaitdRobotS
   filter_.predict(turn, specific_force_, in.time.period, noise);
   if (imu >= 0 && in.sensors->imus[imu].has_orientation != 0) {
     filter_.correct_tilt(sdk::quaternion(in.sensors->imus[imu].orientation) * mount.conjugate(),
-                         per_sample(p_[P::kTiltNoise], in.time.period));
+                         kTiltNoise / std::sqrt(in.time.period));
   }
-}
-
-void InvariantEkf::update_trust(const GaitdStateEstimatorInput& in) {
-  const double total = feet_[0].normal_force + feet_[1].normal_force;
-  const double least = 0.2 * weight_;  // in flight no share means anything
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    Foot& f = feet_[side];
-    const double share = f.normal_force / std::max(total, least);
-    const bool swings = in.gait->phase == GAITD_PHASE_SWING && in.gait->next_side == side;
-    f.time_above = share > p_[P::kTrustOn] && !swings ? f.time_above + in.time.period : 0.0;
-    const bool earned = f.time_above > 0.0 && f.time_above >= p_[P::kTrustDelay];
-    f.trusted = earned || (f.trusted && share >= p_[P::kTrustOff] && !swings);
-    f.time_trusted = f.trusted ? f.time_trusted + in.time.period : 0.0;
-  }
-}
-
-// The frame itself is a point that stays about where it is.
-void InvariantEkf::hold_on_hoist(double dt) {
-  const double sigma = per_sample(kHoistNoise, dt);
-  const int here = index(GAITD_LEFT, kToe);
-  if (filter_.has_point(here)) {
-    filter_.correct_point(here, Eigen::Vector3d::Zero(), sigma);
-  } else {
-    filter_.add_point(here, Eigen::Vector3d::Zero(), kHoistNoise);
-  }
-}
-
-void InvariantEkf::correct(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints) {
-  update_joint_kinematics(joints);
-  const bool carried = feet_[GAITD_LEFT].trusted || feet_[GAITD_RIGHT].trusted;
-  time_unsupported_ = carried ? 0.0 : time_unsupported_ + in.time.period;
-  const bool hung = hangs_;
-  hangs_ = time_unsupported_ > sdk::kLongestFlight;
-  if (hung && !hangs_) filter_.remove_point(index(GAITD_LEFT, kToe));
-  if (hangs_) return hold_on_hoist(in.time.period);
-  const double sigma = per_sample(p_[P::kKinematicNoise], in.time.period);
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    const bool only_toe = in.gait->footholds[side].contact == GAITD_CONTACT_TOE ||
-                          feet_[side].time_trusted < p_[P::kRestDelay];
-    for (const Point point : {kToe, kHeel}) {
-      const int i = index(side, point);
-      const Eigen::Vector3d place = sole_point(side, feet_[side].points[point]) - lever();
-      if (!feet_[side].trusted || (only_toe && point == kHeel)) {
-        filter_.remove_point(i);
-      } else if (!filter_.has_point(i)) {
-        filter_.add_point(i, place, sigma);
-      } else {
-        filter_.correct_point(i, place, sigma);
-      }
-    }
-  }
-}
-
-void InvariantEkf::observe_balance(const GaitdStateEstimatorInput& in,
-                                   const GaitdRobotState& robot) {
-  if (sdk::first_usable_imu(model_, *in.sensors) < 0) return;
-  double load = 0.0;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero(), loaded = Eigen::Vector3d::Zero();
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    if (sdk::has_force_sensor(model_.feet[side]) && !sdk::usable(in.sensors->feet[side])) return;
-    const GaitdFootState& foot = robot.feet[side];
-    if (foot.cop_valid == 0) continue;
-    load += foot.wrench[5];
-    loaded += foot.wrench[5] * sole_point(side, {foot.cop[0], foot.cop[1], 0.0});
-    force += sole_orientation(side) * view(foot.wrench).tail<3>();
-  }
-  if (load < kBalancedLoad * weight_) return;
-  const Eigen::Vector3d line = (kinematics_.com() - loaded / load).normalized();
-  const Eigen::Vector3d balanced = line.dot(force) / model_.total_mass * line;
-  // A push is in it too.
-  const Eigen::Vector3d error = specific_force_ - balanced - filter_.accelerometer_bias;
-  const bool standing = in.gait->phase == GAITD_PHASE_STAND;
-  if (error.head<2>().norm() > (standing ? kPushStanding : kPushWalking)) return;
-  const double share = standing ? kStandingBalance : 1.0;
-  filter_.correct_specific_force(specific_force_, balanced,
-                                 per_sample(share * p_[P::kBalanceNoise], in.time.period));
 }
 
 void InvariantEkf::write(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
@@ -395,7 +278,7 @@ void InvariantEkf::write(const GaitdStateEstimatorInput& in, GaitdRobotState& ou
   // The rates of joints between pelvis and IMU are late already.
   twist << rate_ - filter_.gyro_bias + place_.rate,
       filter_.orientation.conjugate() * pelvis_velocity();
-  const double share = low_pass(p_[P::kLegPole], in.time.period);
+  const double share = low_pass(p_[P::kJointPole], in.time.period);
   for (int k = 0; k < 6; ++k) {
     if (!twist_begun_) twist_[k] = {twist[k], twist[k]};
     twist_[k].update(twist[k], 0.0, share, in.time.period);
@@ -416,28 +299,6 @@ void InvariantEkf::write(const GaitdStateEstimatorInput& in, GaitdRobotState& ou
   const Eigen::Matrix3d covariance = filter_.velocity_covariance();
   std::copy_n(covariance.data(), 9, out.pelvis_velocity_covariance);  // symmetric
   std::fill_n(out.external_wrench, 6, 0.0);
-}
-
-void InvariantEkf::write_feet(GaitdRobotState& out) {
-  Eigen::Vector2d weighted = Eigen::Vector2d::Zero();
-  double total = 0.0;
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    GaitdFootState& state = out.feet[side];
-    const GaitdFoot& foot = model_.feet[side];
-    view(state.position) = sole_point(side, Eigen::Vector3d::Zero());
-    sdk::store(sole_orientation(side), state.orientation);
-    view(state.twist) = kinematics_.frame_velocity(foot.body, view(foot.sole.origin));
-    view(state.cop_world) = sole_point(side, {state.cop[0], state.cop[1], 0.0});
-    if (feet_[side].trusted) {
-      feet_[side].anchor = view(state.position);
-      feet_[side].anchor_yaw = sdk::yaw_of(sdk::quaternion(state.orientation));
-    }
-    if (state.cop_valid == 0) continue;
-    weighted += state.normal_force * view(state.cop_world).head<2>();
-    total += state.normal_force;
-  }
-  if (total > 0.0) last_cop_ = weighted / total;
-  view(out.cop) = last_cop_;
 }
 
 GaitdStatus InvariantEkf::process(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "foot_trust.h"
 #include "gaitd/dynamics/foot_wrenches.h"
 #include "gaitd/dynamics/kinematics.h"
 #include "gaitd/sdk/imu_place.h"
@@ -27,60 +28,37 @@ namespace gaitd::plugins {
 class InvariantEkf {
  public:
   enum class P {
-    kTrustOn,
-    kTrustOff,
-    kTrustDelay,
-    kRestDelay,
     kContactOn,
-    kContactOff,
-    kContactLeast,
     kForceFilter,
-    kLegPole,
-    kUpperBodyPole,
+    kJointPole,
     kGyroNoise,
     kAccelerometerNoise,
     kGyroBiasNoise,
     kAccelerometerBiasNoise,
-    kHorizontalNoise,
-    kVerticalNoise,
-    kStandingShare,
-    kKinematicNoise,
-    kTiltNoise,
-    kBalanceNoise,
+    kContactNoise,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 20> kParameters = {
-      sdk::real_parameter("trust_on", "load", 0, 1, 0.35, "share that makes a foot a contact"),
-      sdk::real_parameter("trust_off", "load", 0, 1, 0.30, "share below which it is none"),
-      sdk::real_parameter("trust_delay", "s", 0, 0.5, 0.02, "that the share must last"),
-      sdk::real_parameter("rest_delay", "s", 0, 1, 0.1,
-                          "after which a foot has come to rest and holds the heading too"),
-      sdk::real_parameter("contact_on", "weight", 0.001, 1, 0.05,
-                          "normal force of a reported contact"),
-      sdk::real_parameter("contact_off", "weight", 0, 1, 0.03, "normal force of no contact"),
-      sdk::real_parameter("contact_least", "N", 0, 1000, 40,
-                          "normal force of a contact of a light robot: above offset and noise of "
-                          "its sensors"),
-      sdk::real_parameter("force_filter", "Hz", 5, 500, 80, "low-pass of the normal force"),
-      sdk::real_parameter("leg_pole", "1/s", 50, 2000, 300,
-                          "two low-passes of the rates of leg joints and of the pelvis twist"),
-      sdk::real_parameter("upper_body_pole", "1/s", 50, 2000, 300,
-                          "the same for all other joints, which follow their commands closely"),
-      sdk::real_parameter("gyro_noise", "rad/s/sqrtHz", 0, 1, 3e-4, "density"),
-      sdk::real_parameter("accelerometer_noise", "m/s^2/sqrtHz", 0, 10, 0.01, "density"),
-      sdk::real_parameter("gyro_bias_noise", "rad/s^2/sqrtHz", 0, 1, 2e-5, "random walk"),
-      sdk::real_parameter("accelerometer_bias_noise", "m/s^3/sqrtHz", 0, 1, 5e-4, "random walk"),
-      sdk::real_parameter("horizontal_noise", "m/s/sqrtHz", 0, 10, 0.004,
-                          "random walk of a contact"),
-      sdk::real_parameter("vertical_noise", "m/s/sqrtHz", 0, 10, 0.01, "random walk of a contact"),
-      sdk::real_parameter("standing_share", "", 0, 1, 0.1,
-                          "of these two while the robot stands and its feet are at rest"),
-      sdk::real_parameter("kinematic_noise", "m/sqrtHz", 1e-6, 1, 5e-5,
-                          "density, of a contact seen through the encoders"),
-      sdk::real_parameter("tilt_noise", "rad/sqrtHz", 1e-5, 1, 3e-3,
-                          "density, of an IMU that measures its orientation"),
-      sdk::real_parameter("balance_noise", "m/s^2/sqrtHz", 1e-3, 1e6, 0.12,
-                          "density, of the specific force that CoP and CoM tell"),
+  static constexpr std::array<GaitdParameter, 8> kParameters = {
+      kContactOnParameter,
+      kForceFilterParameter,
+      sdk::porting(sdk::real_parameter(
+          "joint_pole", "1/s", 50, 2000, 300,
+          "low-passes of joint rates and pelvis twist; low: they lag, high: noise")),
+      sdk::porting(sdk::real_parameter(
+          "gyro_noise", "rad/s/sqrtHz", 0, 1, 3e-4,
+          "density; low: feet that slip turn the robot less, high: they turn it")),
+      sdk::porting(sdk::real_parameter(
+          "accelerometer_noise", "m/s^2/sqrtHz", 0, 10, 0.01,
+          "density; low: a wrong tilt stays, high: velocity follows the encoders")),
+      sdk::porting(sdk::real_parameter(
+          "gyro_bias_noise", "rad/s^2/sqrtHz", 0, 1, 2e-5,
+          "random walk; low: a drifting bias stays, high: a walk is taken for one")),
+      sdk::porting(sdk::real_parameter(
+          "accelerometer_bias_noise", "m/s^3/sqrtHz", 0, 1, 5e-4,
+          "random walk; low: a drifting bias stays, high: a push is taken for one")),
+      sdk::real_parameter(
+          "contact_noise", "m/s/sqrtHz", 0, 4, 0.004,
+          "random walk of a foot in contact; low: slips are motion, high: it drifts"),
   };
 
   explicit InvariantEkf(const GaitdModel& model);

@@ -13,32 +13,17 @@ namespace {
 using sdk::usable;
 using sdk::view;
 
-// The first attitude comes from one noisy sample. Until kAveragingTime (s) the mean over all
-// samples so far, carried along by the gyroscope, takes its place: what the robot does averages
-// out. A robot that is set on its feet sways: the means begin after kJolt.
-constexpr double kAveragingTime = 0.4;
+// A robot that is set on its feet sways: the means of the start begin after kJolt (s).
 constexpr double kJolt = 0.1;
 constexpr double kFirstSample = 0.02;  // s, as which the first one counts
 
 // Anchors are at their best while standing: the attitude is levelled this many times faster then.
 constexpr double kStandingFactor = 3.0;
-constexpr double kStandingBalanceFactor = 6.0;  // likewise, of the accelerometer bias
 
-// Share of the weight that the feet must carry before CoP and CoM tell anything.
-constexpr double kBalancedShare = 0.5;
-// m/s^2, most that the accelerometer may show beside the balance: a push is in it too.
-constexpr double kLargestError = 2.0;
+constexpr double kHoistPole = 1.0;  // 1/s, with which a robot on its hoist is held in its place
 
-// A robot at rest: for so long (s) no more of that (m/s^2), and no foot turned faster (rad/s).
-constexpr double kQuietTime = 0.1;
-constexpr double kQuiet = 1.0;
-constexpr double kShakingPole = 50.0;  // 1/s: what the drives shake the IMU by averages out
-constexpr double kStill = 0.2;
-constexpr double kLargestDrift = 0.01;  // rad/s, taken for a bias
-constexpr double kStillTime = 0.2;      // s
-constexpr double kHoistPole = 1.0;      // 1/s, with which a robot on its hoist is held in its place
-
-double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * hertz * dt); }
+constexpr double kTiltBias = 0.05;  // 1/s^2, gyroscope bias from levelling
+constexpr double kBiasLimit = 0.4;  // m/s^2, of the accelerometer's error
 
 // Smallest rotation that takes the measured specific force to the vertical.
 Eigen::Quaterniond level(const Eigen::Vector3d& specific_force) {
@@ -131,18 +116,17 @@ const GaitdImuSensor* KinematicInertial::imu(const GaitdSensors& sensors, int& i
 
 void KinematicInertial::read_joints(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
   const double dt = in.time.period;
-  const double decays[] = {std::exp(-p_[P::kUpperBodyPole] * dt), std::exp(-p_[P::kLegPole] * dt)};
+  // Critically damped, both poles of the discrete observer at `decay`.
+  const double decay = std::exp(-p_[P::kJointPole] * dt);
   for (int i = 0; i < model_.joint_count; ++i) {
     const GaitdJointSensor& joint = in.sensors->joints[i];
     if (!usable(joint)) {
       // Keeps its last position; the host decides what the fault means.
       joint_rate_[i] = 0.0;
-    } else if (!joints_seen_ || p_[late_joint_[i] ? P::kLegPole : P::kUpperBodyPole] <= 0.0) {
+    } else if (!joints_seen_ || p_[P::kJointPole] <= 0.0) {
       joint_[i] = joint.position;
       joint_rate_[i] = joint.velocity;
     } else {
-      // Critically damped, both poles of the discrete observer at `decay`.
-      const double decay = decays[late_joint_[i] ? 1 : 0];
       const double expected = late_joint_[i] ? 0.0 : in.commands->joints[i].acceleration;
       joint_[i] += dt * (joint_rate_[i] + 0.5 * dt * expected);
       joint_rate_[i] += dt * expected;
@@ -259,163 +243,6 @@ void KinematicInertial::update_attitude(const GaitdStateEstimatorInput& in,
   orientation_ = (sdk::exp_so3(std::min(1.0, share) * tilt) * orientation_).normalized();
 }
 
-void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
-  const double blend = low_pass(p_[P::kForceFilter], in.time.period);
-  // What the thresholds are shares of.
-  const double full = std::max(weight_, p_[P::kContactLeast] / p_[P::kContactOn]);
-  Eigen::Vector2d weighted = Eigen::Vector2d::Zero();
-  double total = 0.0;
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    const GaitdFoot& foot = model_.feet[side];
-    const GaitdFootForceSensor& sensor = in.sensors->feet[side];
-    GaitdFootState& state = out.feet[side];
-    Foot& f = feet_[side];
-    const bool sensed = sdk::has_force_sensor(foot);
-    const sdk::Vector6d wrench = sensed ? sdk::sole_wrench(foot, sensor) : ground_->wrench(side);
-    view(state.wrench) = wrench;
-    const Eigen::Vector3d moment = wrench.head<3>();
-    const Eigen::Vector3d force = wrench.tail<3>();
-    f.normal_force += (sensed ? blend : 1.0) * (std::max(0.0, force.z()) - f.normal_force);
-    state.normal_force = f.normal_force;
-    const double threshold =
-        p_[f.contact == GAITD_CONTACT_NONE ? P::kContactOn : P::kContactOff] * full;
-    f.contact = f.normal_force > threshold ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
-    state.contact = f.contact;
-    state.cop_valid = f.contact != GAITD_CONTACT_NONE && force.z() > 0.01 * weight_ ? 1 : 0;
-    if (state.cop_valid != 0) {
-      state.cop[0] = -moment.y() / force.z();
-      state.cop[1] = moment.x() / force.z();
-    }
-    view(state.cop_world) = sole_point(side, {state.cop[0], state.cop[1], 0.0});
-    if (state.cop_valid != 0) {
-      weighted += f.normal_force * view(state.cop_world).head<2>();
-      total += f.normal_force;
-    }
-  }
-  if (total > 0.0) last_cop_ = weighted / total;
-  view(out.cop) = last_cop_;
-}
-
-void KinematicInertial::observe_bias(const GaitdStateEstimatorInput& in,
-                                     const GaitdRobotState& robot) {
-  int index = 0;
-  const GaitdImuSensor* sensor = imu(*in.sensors, index);
-  if (sensor == nullptr || sensor->has_orientation != 0) return;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero(), cop = Eigen::Vector3d::Zero();
-  double total = 0.0;
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    if (sdk::has_force_sensor(model_.feet[side]) && !usable(in.sensors->feet[side])) return;
-    const GaitdFootState& foot = robot.feet[side];
-    if (foot.cop_valid == 0) continue;
-    force += sole_orientation(side) * view(foot.wrench).tail<3>();
-    cop += foot.wrench[5] * view(foot.cop_world);
-    total += foot.wrench[5];
-  }
-  if (total < kBalancedShare * weight_) return;  // in flight, or hanging
-  const Eigen::Vector3d arm = kinematics_.com() - cop / total;
-  const Eigen::Vector3d balanced = force.dot(arm) / arm.squaredNorm() / model_.total_mass * arm;
-  // The difference of a noisy rate over one tick would be cut off below, and no longer average out.
-  const Eigen::Vector3d turning = kShakingPole * (about_ - about_slow_);
-  Eigen::Vector3d error = specific_force_ - orientation_.conjugate() * (balanced + turning);
-  error.z() = 0.0;
-  const bool starting = time_since_start_ < kAveragingTime;
-  const bool standing = in.gait->phase == GAITD_PHASE_STAND;
-  shaking_ += std::min(1.0, kShakingPole * in.time.period) * (error - shaking_);
-  if (!standing || shaking_.norm() > kQuiet) time_quiet_ = 0.0;
-  if (standing && !starting && time_quiet_ < kQuietTime) return;
-  error = error.cwiseMax(-kLargestError).cwiseMin(kLargestError);
-  const double faster = standing ? kStandingBalanceFactor : 1.0;
-  const double share = starting ? averaging_share(in.time.period)
-                                : std::min(1.0, faster * p_[P::kBalanceRate] * in.time.period);
-  const double limit = p_[P::kBalanceLimit];
-  const Eigen::Vector3d before = balance_bias_;
-  balance_bias_ = (before + share * error).cwiseMax(-limit).cwiseMin(limit);
-  if (!standing) return;  // levelling does it, smoothly
-  // The accelerometer has tilted the attitude by this bias.
-  const Eigen::Vector3d change = orientation_ * (balance_bias_ - before);
-  const Eigen::Vector3d tilt(-change.y() / model_.gravity, change.x() / model_.gravity, 0.0);
-  orientation_ = (sdk::exp_so3(tilt) * orientation_).normalized();
-}
-
-void KinematicInertial::update_trust(const GaitdStateEstimatorInput& in, double dt) {
-  const double total = feet_[0].normal_force + feet_[1].normal_force;
-  const double least = 0.2 * weight_;  // in flight no share means anything
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    Foot& f = feet_[side];
-    const double share = f.normal_force / std::max(total, least);
-    const bool swinging = in.gait->phase == GAITD_PHASE_SWING && in.gait->next_side == side;
-    f.time_above = share > p_[P::kTrustOn] && !swinging ? f.time_above + dt : 0.0;
-    const bool was = f.trusted;
-    if (!f.trusted) f.trusted = f.time_above > 0.0 && f.time_above >= p_[P::kTrustDelay];
-    if (share < p_[P::kTrustOff] || swinging) f.trusted = false;
-    f.time_trusted = f.trusted && was ? f.time_trusted + dt : 0.0;
-    if (f.trusted && !was) {
-      f.anchored_point.setZero();
-      f.anchor = sole_point(side, f.anchored_point);
-      f.orientation_anchored = false;
-    }
-  }
-}
-
-// Feet on which the robot stands do not turn. Only whole windows of rest count, so that the onset
-// of a push is no bias.
-void KinematicInertial::observe_gyro_bias(double dt) {
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
-  double total = 0.0;
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    const Foot& f = feet_[side];
-    rate += f.normal_force * kinematics_.body_twist(model_.feet[side].body).head<3>();
-    total += f.normal_force;
-  }
-  rate /= std::max(total, 1.0);
-  if (rate.norm() > kStill) time_quiet_ = 0.0;
-  if (time_quiet_ < kQuietTime) {
-    time_still_ = 0.0;
-    turned_.setZero();
-    return;
-  }
-  time_still_ += dt;
-  // What the attitude has turned by, which the rates of joints between pelvis and IMU are not in.
-  turned_ += dt * (orientation_.conjugate() * rate + (turn_ - rate_));
-  if (time_still_ < kStillTime) return;
-  const Eigen::Vector3d found = turned_ / time_still_;
-  if (found.norm() < kLargestDrift) gyro_bias_ += p_[P::kStillShare] * found;
-  time_still_ = 0.0;
-  turned_.setZero();
-}
-
-void KinematicInertial::update_anchors(const GaitdStateEstimatorInput& in, double dt) {
-  Eigen::Vector3d error = Eigen::Vector3d::Zero();
-  double total = 0.0;
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    Foot& f = feet_[side];
-    if (!f.trusted) continue;
-    const bool toe = in.gait->footholds[side].contact == GAITD_CONTACT_TOE;
-    const Eigen::Vector3d point =
-        toe ? Eigen::Vector3d(view(model_.feet[side].toe_point)) : Eigen::Vector3d::Zero();
-    if (point != f.anchored_point) {  // the foot begins to roll over its toe, or comes down again
-      f.anchored_point = point;
-      f.anchor = sole_point(side, point);
-    }
-    if (toe) f.orientation_anchored = false;
-    if (toe || f.time_trusted < p_[P::kAnchorDelay]) continue;
-    const Eigen::Quaterniond now = sole_orientation(side);
-    if (!f.orientation_anchored) {
-      f.orientation_anchored = true;
-      f.anchor_orientation = now;
-    }
-    // The heading only: under load a foot tilts by some milliradians.
-    error.z() += f.normal_force * sdk::log_so3(f.anchor_orientation * now.conjugate()).z();
-    total += f.normal_force;
-  }
-  if (total <= 0.0) return;
-  error /= total;
-  orientation_ = (sdk::exp_so3(p_[P::kAnchorRate] * dt * error) * orientation_).normalized();
-  // In a walk every foot turns a little when it is loaded: that must not look like a bias.
-  const double share = in.gait->phase == GAITD_PHASE_STAND ? 1.0 : 0.05;
-  gyro_bias_ -= share * p_[P::kBiasRate] * dt * (orientation_.conjugate() * error);
-}
-
 void KinematicInertial::update_position(const GaitdStateEstimatorInput& in, double dt) {
   const Eigen::Vector3d acceleration = orientation_ * (specific_force_ - accelerometer_bias_) -
                                        model_.gravity * Eigen::Vector3d::UnitZ();
@@ -447,8 +274,7 @@ void KinematicInertial::update_position(const GaitdStateEstimatorInput& in, doub
   position_ += 3.0 * pole * dt * correction;
   velocity_W_ += 3.0 * pole * pole * dt * correction;
   accelerometer_bias_ -= pole * pole * pole * dt * (orientation_.conjugate() * correction);
-  const double limit = p_[P::kBiasLimit];
-  accelerometer_bias_ = accelerometer_bias_.cwiseMax(-limit).cwiseMin(limit);
+  accelerometer_bias_ = accelerometer_bias_.cwiseMax(-kBiasLimit).cwiseMin(kBiasLimit);
   level_attitude(dt, in.gait->phase == GAITD_PHASE_STAND);
 }
 
@@ -461,19 +287,19 @@ void KinematicInertial::level_attitude(double dt, bool standing) {
   accelerometer_bias_ -=
       share * (orientation_.conjugate() * Eigen::Vector3d(error.x(), error.y(), 0.0));
   orientation_ = (sdk::exp_so3(-share * tilt) * orientation_).normalized();
-  gyro_bias_ += faster * faster * p_[P::kTiltBiasRate] * dt * (orientation_.conjugate() * tilt);
+  gyro_bias_ += faster * faster * kTiltBias * dt * (orientation_.conjugate() * tilt);
 }
 
 void KinematicInertial::update_lagged_twist(double dt) {
   sdk::Vector6d twist;
   // The rates of joints between pelvis and IMU are late already.
   twist << rate_ + imu_rate_, orientation_.conjugate() * velocity_W_;
-  if (p_[P::kLegPole] <= 0.0 || time_since_start_ < kAveragingTime || !lag_begun_) {
+  if (p_[P::kJointPole] <= 0.0 || time_since_start_ < kAveragingTime || !lag_begun_) {
     half_lagged_ = lagged_ = twist;
     lag_begun_ = true;
     return;
   }
-  const double share = 1.0 - std::exp(-p_[P::kLegPole] * dt);
+  const double share = 1.0 - std::exp(-p_[P::kJointPole] * dt);
   half_lagged_ += share * (twist - half_lagged_);
   lagged_ += share * (half_lagged_ - lagged_);
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "foot_trust.h"
 #include "gaitd/dynamics/foot_wrenches.h"
 #include "gaitd/dynamics/kinematics.h"
 #include "gaitd/sdk/layer.h"
@@ -30,61 +31,18 @@ namespace gaitd::plugins {
 // specific force too; the mean difference is the bias of the accelerometer.
 class KinematicInertial {
  public:
-  enum class P {
-    kTrustOn,
-    kTrustOff,
-    kTrustDelay,
-    kContactOn,
-    kContactOff,
-    kContactLeast,
-    kForceFilter,
-    kLegPole,
-    kUpperBodyPole,
-    kPositionRate,
-    kTiltRate,
-    kTiltBiasRate,
-    kAnchorRate,
-    kBiasRate,
-    kStillShare,
-    kAnchorDelay,
-    kBiasLimit,
-    kBalanceRate,
-    kBalanceLimit,
-    kCount
-  };
-  static constexpr std::array<GaitdParameter, 19> kParameters = {
-      sdk::real_parameter("trust_on", "load", 0, 1, 0.48,
-                          "share that makes a foot an anchor: near half, as feet sink in under "
-                          "their load, and rise as they lose it"),
-      sdk::real_parameter("trust_off", "load", 0, 1, 0.30, "share below which it is none"),
-      sdk::real_parameter("trust_delay", "s", 0, 0.5, 0.02, "that the share must last"),
-      sdk::real_parameter("contact_on", "weight", 0.001, 1, 0.05, "normal force of a contact"),
-      sdk::real_parameter("contact_off", "weight", 0, 1, 0.03, "normal force of no contact"),
-      sdk::real_parameter("contact_least", "N", 0, 1000, 40,
-                          "normal force of a contact of a light robot: above offset and noise of "
-                          "its sensors"),
-      sdk::real_parameter("force_filter", "Hz", 5, 500, 80, "low-pass of the normal force"),
-      sdk::real_parameter("leg_pole", "1/s", 0, 2000, 300,
-                          "observer of the rates of leg joints; 0: the rates of the sensors"),
-      sdk::real_parameter("upper_body_pole", "1/s", 0, 2000, 300,
-                          "the same for all other joints, which follow their commands closely"),
-      sdk::real_parameter("position_rate", "1/s", 0.5, 200, 12,
-                          "pole of the observer of position, velocity and bias"),
+  enum class P { kContactOn, kForceFilter, kJointPole, kPositionRate, kTiltRate, kCount };
+  static constexpr std::array<GaitdParameter, 5> kParameters = {
+      kContactOnParameter,
+      kForceFilterParameter,
+      sdk::porting(sdk::real_parameter(
+          "joint_pole", "1/s", 0, 2000, 300,
+          "observer of joint rates; 0: sensor rates, low: they lag, high: noise")),
+      sdk::real_parameter(
+          "position_rate", "1/s", 0.5, 200, 12,
+          "observer of the pelvis; low: accelerometer errors, high: feet that ring"),
       sdk::real_parameter("tilt_rate", "1/s", 0, 3, 0.5,
-                          "levelling in a walk; three times faster when standing"),
-      sdk::real_parameter("tilt_bias_rate", "1/s^2", 0, 1, 0.05, "gyroscope bias from the same"),
-      sdk::real_parameter("anchor_rate", "1/s", 0, 50, 2,
-                          "correction of the heading by feet at rest"),
-      sdk::real_parameter("bias_rate", "1/s^2", 0, 50, 0.5,
-                          "gyroscope bias from the same while standing; a twentieth in a walk"),
-      sdk::real_parameter("still_share", "", 0, 1, 0.8,
-                          "of what the feet of a robot at rest tell of the gyroscope bias"),
-      sdk::real_parameter("anchor_delay", "s", 0, 1, 0.1,
-                          "after which an anchored foot is taken to be at rest"),
-      sdk::real_parameter("bias_limit", "m/s^2", 0, 5, 0.4, "of the accelerometer's error"),
-      sdk::real_parameter("balance_rate", "1/s", 0, 10, 0.08,
-                          "accelerometer bias from CoP and CoM; six times faster standing"),
-      sdk::real_parameter("balance_limit", "m/s^2", 0, 5, 0.2, "of that bias"),
+                          "levelling; low: a wrong tilt stays, high: accelerations tilt the robot"),
   };
 
   explicit KinematicInertial(const GaitdModel& model);
@@ -95,6 +53,13 @@ class KinematicInertial {
   void set_state(const GaitdStateEstimatorState& s);
 
  private:
+  // The first attitude comes from one noisy sample. Until kAveragingTime (s) the mean over all
+  // samples so far, carried along by the gyroscope, takes its place: what the robot does averages
+  // out.
+  static constexpr double kAveragingTime = 0.4;
+  // 1/s: what the drives shake the IMU by averages out.
+  static constexpr double kShakingPole = 50.0;
+
   struct Foot {
     bool trusted = false;
     double time_above = 0.0;    // s, load share above the threshold

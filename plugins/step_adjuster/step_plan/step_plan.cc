@@ -13,10 +13,13 @@ namespace {
 constexpr int kUnknownPhase = -1;
 constexpr double kLeastGamma = 0.2;
 constexpr double kRestMargin = 0.04;  // m, of an ICP that comes to rest, to the edge of the feet
+constexpr double kLeastSpeed = 0.1;   // m/s, of the ICP, that time is reckoned with
 constexpr double kClearance = 0.02;   // m, between soles that pass each other
 // sqrt(h/g), before touchdown: no leg follows a change any more.
 constexpr double kHold = 0.09;
 constexpr double kLeastLeft = 1.3 * kHold;
+// sqrt(h/g), after touchdown: the landing and not the feedback decides where the CMP is.
+constexpr double kSettling = 0.3;
 
 double square(double x) { return x * x; }
 
@@ -36,6 +39,12 @@ walking::ConvexPolygon turned(const walking::ConvexPolygon& polygon, double yaw,
   const Eigen::Rotation2Dd rotation(yaw);
   for (int i = 0; i < polygon.size(); ++i) result.add(origin + rotation * polygon.vertex(i));
   return result;
+}
+
+// Constant CMP that an ICP goes from `start` to `end` with, growing by `growth`.
+Eigen::Vector2d planned_cmp(const Eigen::Vector2d& start, const Eigen::Vector2d& end,
+                            double growth) {
+  return (growth * start - end) / (growth - 1.0);
 }
 
 }  // namespace
@@ -148,6 +157,52 @@ CaptureSet StepPlan::capture_set(const GaitdGaitState& gait) const {
           std::exp(gait.omega * time)};
 }
 
+walking::ConvexPolygon StepPlan::stance_sole(const GaitdGaitState& gait) const {
+  const int stance = walking::other_side(gait.next_side);
+  walking::ConvexPolygon sole;
+  walking::add_foothold(gait.footholds[stance], model_.feet[stance].toe_point, sole);
+  sole.make_hull();
+  return sole;
+}
+
+LaterPhase StepPlan::swing_to_come(const GaitdGaitState& gait, const GaitdIcpPlan& plan) const {
+  const double growth = std::exp(gait.omega * gait.adjusted[0].swing_duration);
+  LaterPhase phase;
+  phase.share = growth - 1.0;
+  phase.region = stance_sole(gait).inset(feedback_[walking::Feedback::kMargin]);
+  phase.cmp =
+      phase.region.closest_point(planned_cmp(view(plan.icp_end), view(plan.icp_touchdown), growth));
+  return phase;
+}
+
+// With the foothold as it is now.
+LaterPhase StepPlan::next_transfer(const GaitdGaitState& gait, const GaitdIcpPlan& plan) const {
+  LaterPhase phase;
+  const bool last = gait.footstep_count == 1;
+  phase.region = stance_sole(gait);
+  walking::add_foothold(walking::foothold_of(model_, gait.adjusted[0]),
+                        model_.feet[gait.next_side].toe_point, phase.region);
+  phase.region.make_hull();
+  phase.region = phase.region.inset(last ? kRestMargin : feedback_[walking::Feedback::kMargin]);
+  const double settling = gait.omega * kSettling * time_;
+  if (last) {
+    // All the time to come to rest: the ICP stays where the CMP is, once that follows. A step that
+    // the gait chose itself can be followed by another one: it need not be as sure.
+    phase.share = gait.commanded[0].closing != 0 ? 1.0 : std::exp(-settling);
+    phase.cmp = phase.region.closest_point(view(plan.icp_touchdown));
+    return phase;
+  }
+  const double exponent = gait.omega * gait.adjusted[1].transfer_duration;
+  const double growth = std::exp(exponent);
+  const double used = std::max(exponent - settling, 0.0);
+  const double gain = feedback_[walking::Feedback::kGainOrthogonal];
+  phase.share = std::expm1(used) / growth;
+  phase.left = std::exp(-(1.0 + gain / gait.omega) * used);
+  phase.cmp = phase.region.closest_point(
+      planned_cmp(view(plan.icp_touchdown), view(plan.icp_transferred), growth));
+  return phase;
+}
+
 StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
   const GaitdGaitState& gait = *in.gait;
   const GaitdFootstep& step = gait.commanded[0];
@@ -157,40 +212,35 @@ StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
   c.com = view(in.robot->com).head<2>();
   c.icp = view(in.robot->icp);
   const double growth = std::exp(c.omega * gait.time_remaining);
-  c.gamma = std::max(in.plan->gamma[0] * growth, kLeastGamma);
+  if (gait.phase == GAITD_PHASE_TRANSFER) {
+    c.swing = gait.adjusted[0].swing_duration;
+    c.growth = std::exp(c.omega * c.swing);
+    c.later[StepProblem::kSwing] = swing_to_come(gait, *in.plan);
+  }
+  c.later[StepProblem::kTransfer] = next_transfer(gait, *in.plan);
+  c.gamma = std::max(in.plan->gamma[0] * growth * c.growth, kLeastGamma);
+  // Where the robot comes to rest, the edge of the feet that binds moves along with the foothold.
+  if (gait.footstep_count == 1) c.gamma = 1.0;
   const Eigen::Vector2d made =
       (view(gait.adjusted[0].pose.position) - view(step.pose.position)).head<2>();
   c.start_shift = start_shift_;
-  c.icp_end = view(in.plan->icp_end) + c.gamma * (start_shift_ - made);
+  c.icp_end = view(in.plan->icp_touchdown) + c.gamma * (start_shift_ - made);
   const Eigen::Vector2d planned = view(in.plan->icp) - view(in.plan->offset);
-  const Eigen::Vector2d ecmp =
-      growth > 1.0 + 1e-6
-          ? Eigen::Vector2d((growth * planned - view(in.plan->icp_end)) / (growth - 1.0))
-          : Eigen::Vector2d(view(in.plan->ecmp));
+  const Eigen::Vector2d ecmp = growth > 1.0 + 1e-6
+                                   ? planned_cmp(planned, view(in.plan->icp_end), growth)
+                                   : Eigen::Vector2d(view(in.plan->ecmp));
   c.cmp_region = feedback_.cmp_region(gait);
   c.cmp = c.cmp_region.closest_point(walking::cmp_of(ecmp, c.com, c.kappa));
   c.commanded = view(step.pose.position).head<2>();
   c.foot = view(in.robot->feet[gait.next_side].position).head<2>();
-  if (gait.footstep_count == 1) {
-    // The step ends in standing: the ICP may come to rest anywhere well between the feet.
-    walking::ConvexPolygon both;
-    for (const GaitdFoothold& f :
-         {gait.footholds[gait.support], walking::foothold_of(model_, gait.adjusted[0])}) {
-      walking::add_foothold(f, model_.feet[step.side].toe_point, both);
-    }
-    both.make_hull();
-    const Eigen::Vector2d stance_ecmp = c.ecmp();
-    const Eigen::Vector2d coming = stance_ecmp + growth * (c.icp - stance_ecmp);
-    c.icp_end = both.inset(kRestMargin).closest_point(coming) - (made - start_shift_);
-    c.gamma = 1.0;
-  }
   return c;
 }
 
 void StepPlan::add_limits(const GaitdStepAdjusterInput& in, StepProblem& c) const {
   const GaitdGaitState& gait = *in.gait;
   const GaitdFootstep& step = gait.commanded[0];
-  const GaitdPose& stance = gait.footholds[gait.support].pose;
+  const bool transfer = gait.phase == GAITD_PHASE_TRANSFER;
+  const GaitdPose& stance = gait.footholds[walking::other_side(gait.next_side)].pose;
   const Eigen::Vector2d origin = view(stance.position).head<2>();
   const double yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
   const Eigen::Rotation2Dd heading(yaw);
@@ -208,8 +258,13 @@ void StepPlan::add_limits(const GaitdStepAdjusterInput& in, StepProblem& c) cons
 
   c.planned = gait.time_remaining - time_shift_;
   const double duration = gait.phase_duration - time_shift_;
-  c.shortest = std::max(time_ * p_[P::kShortestSwing] - gait.time_in_phase, kLeastLeft * time_);
-  c.longest = p_[P::kLongestSwing] * duration - gait.time_in_phase;
+  if (transfer) {
+    c.shortest = std::max(time_ * p_[P::kShortestTransfer] - gait.time_in_phase, 0.0);
+    c.longest = std::max(c.planned, c.shortest);
+  } else {
+    c.shortest = std::max(time_ * p_[P::kShortestSwing] - gait.time_in_phase, kLeastLeft * time_);
+    c.longest = p_[P::kLongestSwing] * duration - gait.time_in_phase;
+  }
   c.foot_speed = p_[P::kFootSpeed] * length_ / time_;
 }
 
@@ -218,41 +273,32 @@ void StepPlan::adjust(const GaitdStepAdjusterInput& in) {
   StepProblem step = problem(in);
   const double now = gait.time_remaining;
   const double dead_band = p_[P::kDeadBand] * length_;
-  if (step.missed(shift_, now).norm() < dead_band * step.gamma) return;
+  const bool transfer = gait.phase == GAITD_PHASE_TRANSFER;
+  // What the CMP brings back moves no foothold; but a transfer may rather end earlier.
+  const bool held = step.missed(shift_, now).norm() < dead_band * step.gamma;
+  if (held && !transfer) return;
   add_limits(in, step);
   // What a step leaves to the next costs the shift that the next will need for it, and so on:
   // E^2 - 1 of the Riccati equation of x' = E x - u, for steps of the commanded pace.
   const GaitdFootstep& next = gait.adjusted[std::min(1, gait.footstep_count - 1)];
   const double growth = std::exp(gait.omega * (next.transfer_duration + next.swing_duration));
+  // Time costs the way of the foot in it, which has to hurry or wait. In a transfer no foot is on
+  // its way: time is free, and only a change of it costs, as much as the way of the ICP.
+  const double speed =
+      transfer ? std::max(view(in.plan->icp_velocity).norm(), kLeastSpeed) : step.foot_speed;
   const StepWeights weights{.cmp = p_[P::kCmpWeight],
                             .change = p_[P::kChangeWeight],
-                            .time = square(step.foot_speed),
+                            .time = transfer ? 0.0 : square(speed),
+                            .time_change = p_[P::kChangeWeight] * square(speed),
                             .missed = growth * growth - 1.0};
   Eigen::Vector2d shift = shift_;
   double remaining = now;
   if (!qp_.solve(step, weights, shift, remaining)) return;
-  // A later touchdown is as much of a change as the way of the foot in that time.
-  const double change = (shift - shift_).norm() + step.foot_speed * std::abs(remaining - now);
+  if (held) shift = shift_;
+  const double change = (shift - shift_).norm() + speed * std::abs(remaining - now);
   if (change < dead_band) return;
   shift_ = shift;
   time_shift_ = remaining - step.planned;
-}
-
-// A transfer whose ICP runs ahead ends as much earlier as the plan would need for the lead.
-void StepPlan::shorten_transfer(const GaitdStepAdjusterInput& in) {
-  const Eigen::Vector2d planned = view(in.plan->icp) - view(in.plan->offset);
-  const Eigen::Vector2d velocity = view(in.plan->icp_velocity);
-  const double speed = velocity.norm();
-  if (speed < 1e-3) return;
-  const GaitdGaitState& gait = *in.gait;
-  double lead = velocity.dot(view(in.robot->icp) - planned) / speed;
-  // Feet that cannot hold the ICP had better step.
-  const walking::ConvexPolygon feet = walking::support_polygon(model_, gait);
-  if (feet.inside_distance(view(in.robot->icp)) < 0.0) lead = speed * gait.time_remaining;
-  if (lead <= p_[P::kLead] * length_) return;
-  const double least = std::max(time_ * p_[P::kShortestTransfer] - gait.time_in_phase, 0.0);
-  const double left = std::max(gait.time_remaining - lead / speed, least);
-  time_shift_ += std::min(0.0, left - gait.time_remaining);
 }
 
 GaitdStatus StepPlan::process(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out) {
@@ -265,11 +311,7 @@ GaitdStatus StepPlan::process(const GaitdStepAdjusterInput& in, GaitdStepAdjustm
     return GAITD_OK;
   }
   if (gait.step_index != step_index_ || gait.phase != phase_) begin_phase(gait);
-  if (transfer) {
-    shorten_transfer(in);
-  } else if (gait.time_remaining > kHold * time_) {
-    adjust(in);
-  }
+  if (transfer ? gait.time_remaining > 0.0 : gait.time_remaining > kHold * time_) adjust(in);
   out.active = 1;
   view(out.shift) = Eigen::Vector3d(shift_.x(), shift_.y(), 0.0);
   out.time_shift = time_shift_;

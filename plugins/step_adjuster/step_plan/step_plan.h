@@ -23,7 +23,6 @@ class StepPlan {
     kLongestSwing,
     kFootSpeed,
     kShortestTransfer,
-    kLead,
     kCount
   };
   static constexpr int kFeedbackCount = static_cast<int>(walking::Feedback::kCount);
@@ -49,8 +48,6 @@ class StepPlan {
                           "mean speed of the swing foot that a moved foothold may ask for"),
       sdk::real_parameter("shortest_transfer", "sqrt(h/g)", 0.15, 6, 0.29,
                           "that a transfer is shortened to"),
-      sdk::real_parameter("lead", "com heights", 0, 1, 0.0425,
-                          "of the ICP along its motion that shortens a transfer"),
   };
   static constexpr auto kParameters = [] {
     std::array<GaitdParameter, static_cast<int>(P::kCount)> all{};
@@ -69,6 +66,9 @@ class StepPlan {
  private:
   void begin_phase(const GaitdGaitState& gait);
   // What the step as it stands misses, and then what binds a better one.
+  walking::ConvexPolygon stance_sole(const GaitdGaitState& gait) const;
+  LaterPhase swing_to_come(const GaitdGaitState& gait, const GaitdIcpPlan& plan) const;
+  LaterPhase next_transfer(const GaitdGaitState& gait, const GaitdIcpPlan& plan) const;
   StepProblem problem(const GaitdStepAdjusterInput& in) const;
   void add_limits(const GaitdStepAdjusterInput& in, StepProblem& problem) const;
   // Footholds of foot `side` in the frame of the other one: as far as legs reach, and not across.
@@ -76,7 +76,6 @@ class StepPlan {
   HalfPlane clear(const Eigen::Vector2d& foot, const Eigen::Vector2d& goal, int side) const;
   CaptureSet capture_set(const GaitdGaitState& gait) const;
   void adjust(const GaitdStepAdjusterInput& in);
-  void shorten_transfer(const GaitdStepAdjusterInput& in);
 
   const GaitdModel model_;
   double length_, time_;  // m, s: h and sqrt(h/g), h the nominal height of the CoM

@@ -13,7 +13,7 @@ constexpr double kShortestEdge = 1e-9;  // m
 constexpr double kLeastGrowth = 1e-6;   // of the ICP error, below which no CMP changes anything
 // A robot that cannot be caught any more is worth any shift.
 constexpr double kLostWeight = 1e4;
-enum { kShift = 0, kMoment = 2, kLost = 4, kTau = 6 };
+enum { kShift = 0, kMoment = 2, kLost = 4, kLater = 6, kTau = 10 };
 
 Eigen::Vector2d inwards(const walking::ConvexPolygon& polygon, int i, double& length) {
   const Eigen::Vector2d edge = polygon.vertex((i + 1) % polygon.size()) - polygon.vertex(i);
@@ -28,11 +28,22 @@ Eigen::Vector2d StepProblem::missed(const Eigen::Vector2d& shift, double remaini
   const Eigen::Vector2d end = icp_end + gamma * (shift - start_shift);
   Eigen::Vector2d best = ecmp();
   if (growth > 1.0 + kLeastGrowth) {
-    const Eigen::Vector2d ideal = (growth * icp - end) / (growth - 1.0);
+    // The end of this phase from where the later ones as planned lead to the end of the step.
+    const Eigen::Vector2d goal = (end + later[kSwing].share * later[kSwing].cmp) / this->growth;
+    const Eigen::Vector2d ideal = (growth * icp - goal) / (growth - 1.0);
     const Eigen::Vector2d inside = cmp_region.closest_point(walking::cmp_of(ideal, com, kappa));
     best = walking::ecmp_of(inside, com, kappa);
   }
-  return best + growth * (icp - best) - end;
+  Eigen::Vector2d error =
+      this->growth * (best + growth * (icp - best)) - later[kSwing].share * later[kSwing].cmp - end;
+  for (const LaterPhase& phase : later) {
+    if (phase.free()) error -= phase.share * (phase.moved(error) - phase.cmp);
+  }
+  return error;
+}
+
+Eigen::Vector2d LaterPhase::moved(const Eigen::Vector2d& error) const {
+  return region.closest_point(cmp + (1.0 - left) / share * error);
 }
 
 StepQp::StepQp() : solver_({kUnknowns, 0, kRows}) {}
@@ -62,28 +73,37 @@ void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vecto
   const double tau = std::exp(p.omega * remaining);
   const double lever = std::max(tau - 1.0, kLeastGrowth);
   const Eigen::Vector2d ecmp = p.ecmp();
-  const Eigen::Vector2d grown = tau * (p.icp - ecmp);  // d xi_T / d (tau / tau')
-  const Eigen::Vector2d reached = ecmp + grown;
+  const LaterPhase& swing = p.later[StepProblem::kSwing];
+  const Eigen::Vector2d grown = p.growth * tau * (p.icp - ecmp);  // d xi / d (tau / tau')
+  const Eigen::Vector2d reached = p.growth * ecmp + grown - swing.share * swing.cmp;
   const Eigen::Vector2d miss = reached - p.icp_end + p.gamma * p.start_shift;
 
   H_.setZero();
   g_.setZero();
   for (int k = 0; k < 2; ++k) {
-    // e = miss - gamma D - m + grown t, along axis k
+    // e = miss - gamma D - growth m - sum s q + grown t, along axis k
     Row e = Row::Zero();
     e[kShift + k] = -p.gamma;
-    e[kMoment + k] = -1.0;
+    e[kMoment + k] = -p.growth;
+    for (int j = 0; j < StepProblem::kLater; ++j) e[kLater + 2 * j + k] = -p.later[j].share;
     e[kTau] = grown[k];
     H_ += w.missed * e.transpose() * e;
     g_ += w.missed * miss[k] * e.transpose();
     H_(kShift + k, kShift + k) += 1.0 + w.change;
     g_[kShift + k] -= p.start_shift[k] + w.change * shift[k];
     H_(kMoment + k, kMoment + k) += w.cmp / (lever * lever);
+    for (int j = 0; j < StepProblem::kLater; ++j) {
+      // With it the best q leaves the share `left` of e where no bound holds it.
+      const LaterPhase& later = p.later[j];
+      const double law = later.free() ? later.left / (1.0 - later.left) : 0.0;
+      H_(kLater + 2 * j + k, kLater + 2 * j + k) +=
+          w.cmp + w.missed * later.share * later.share * law;
+    }
     H_(kLost + k, kLost + k) += kLostWeight;
   }
   // T = remaining + t / w
   const double per_tau = 1.0 / (p.omega * p.omega);
-  H_(kTau, kTau) += w.time * (1.0 + w.change) * per_tau;
+  H_(kTau, kTau) += (w.time + w.time_change) * per_tau;
   g_[kTau] += w.time * (remaining - p.planned) / p.omega;
 
   rows_ = 0;
@@ -102,19 +122,35 @@ void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vecto
     row[kTau] = tau * room;
     add(row, -lever * room);
   }
+  for (int j = 0; j < StepProblem::kLater; ++j) {
+    const walking::ConvexPolygon& region = p.later[j].region;
+    for (int i = 0; p.later[j].free() && i < region.size(); ++i) {
+      double length;
+      const Eigen::Vector2d n = inwards(region, i, length);
+      if (length < kShortestEdge) continue;
+      row.setZero();
+      row.segment<2>(kLater + 2 * j) = n.transpose();
+      add(row, n.dot(region.vertex(i) - p.later[j].cmp));
+    }
+  }
   for (int i = 0; i < CaptureSet::kDirections; ++i) {
     const Eigen::Vector2d n = CaptureSet::direction(i);
     row.setZero();
     row.segment<2>(kShift) = n.transpose();
-    row.segment<2>(kMoment) = n.transpose();
+    row.segment<2>(kMoment) = p.growth * n.transpose();
+    // A robot at the edge of what can be caught spends no time in the transfer after touchdown.
+    row.segment<2>(kLater + 2 * StepProblem::kSwing) = swing.share * n.transpose();
     row.segment<2>(kLost) = n.transpose();
     row[kTau] = -n.dot(grown);
     add(row, n.dot(reached - p.commanded) - p.capture.limit[i]);
   }
   // |foothold - foot| <= v T. A foot that has to be faster already may keep its speed. T is concave
   // in tau: its tangents at a few times, evenly spaced, let it be a hundredth of a second faster.
-  const double speed = std::max(p.foot_speed, (p.commanded + shift - p.foot).norm() / remaining);
-  for (int k = 0; k < kTangents; ++k) {
+  const bool to_come = p.swing > 0.0;  // its duration is known
+  const double speed = std::max(
+      p.foot_speed, (p.commanded + shift - p.foot).norm() / (to_come ? p.swing : remaining));
+  const int tangents = to_come ? 1 : kTangents;
+  for (int k = 0; k < tangents; ++k) {
     const double time = p.shortest + (p.longest - p.shortest) * k / (kTangents - 1);
     const double at = std::exp(p.omega * time);
     for (int i = 0; i < kSpeedDirections; ++i) {
@@ -122,12 +158,21 @@ void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vecto
       const Eigen::Vector2d n(std::cos(angle), std::sin(angle));
       row.setZero();
       row.segment<2>(kShift) = -n.transpose();
-      row[kTau] = speed * tau / (at * p.omega);
-      add(row, n.dot(p.commanded - p.foot) - speed * (time + (tau - at) / (at * p.omega)));
+      double way = speed * p.swing;
+      if (!to_come) {
+        row[kTau] = speed * tau / (at * p.omega);
+        way = speed * (time + (tau - at) / (at * p.omega));
+      }
+      add(row, n.dot(p.commanded - p.foot) - way);
     }
   }
   lower_.setConstant(-kInfinity);
   upper_.setConstant(kInfinity);
+  for (int j = 0; j < StepProblem::kLater; ++j) {
+    if (p.later[j].free()) continue;
+    lower_.segment<2>(kLater + 2 * j).setZero();
+    upper_.segment<2>(kLater + 2 * j).setZero();
+  }
   lower_[kTau] = std::min(0.0, std::exp(p.omega * (p.shortest - remaining)) - 1.0);
   upper_[kTau] = std::max(0.0, std::exp(p.omega * (p.longest - remaining)) - 1.0);
 }

@@ -13,6 +13,17 @@ namespace {
 using sdk::view;
 using walking::ConvexPolygon;
 
+// Bounds of the criteria. The ICPs must be in the polygon, nearer to the leading foot than to the
+// toe; the CoP may be anywhere but at the heel, which the toe could not carry at once.
+constexpr double kIcpDistance = 0.25;
+constexpr double kCopDistance = 0.8;      // foot lengths
+constexpr double kCmpDistance = 0.02548;  // CoM heights
+// CoM heights, up or down, that a shorter step has toe-off for.
+constexpr double kMinHeight = 0.08495;
+constexpr double kHoldTime = 0.002;  // s: longer than one tick's noise
+// Part of a swing after which its stance foot may roll, and the step (leg lengths) that needs it.
+constexpr double kSwingStart = 0.7;
+constexpr double kSwingReach = 0.75;
 constexpr double kFlat = 0.03;  // rad, pitch of a foot that is back on the ground
 
 double distance(const ConvexPolygon& polygon, const Eigen::Vector2d& p) {
@@ -54,7 +65,8 @@ bool IcpCriteria::far_enough(const GaitdFoothold& trailing, const GaitdFoothold&
   const Eigen::Vector3d d =
       sdk::from_yaw(-yaw) * (view(leading.pose.position) - view(trailing.pose.position));
   const double least = p_[P::kMinForward] * foot_length_;
-  return d.x() >= least || (std::abs(d.z()) >= p_[P::kMinHeight] && d.x() >= 0.5 * least);
+  return d.x() >= least ||
+         (std::abs(d.z()) >= kMinHeight * model_.nominal_com_height && d.x() >= 0.5 * least);
 }
 
 IcpCriteria::Candidate IcpCriteria::candidate(const GaitdGaitState& gait) const {
@@ -64,11 +76,11 @@ IcpCriteria::Candidate IcpCriteria::candidate(const GaitdGaitState& gait) const 
     c.side = gait.trailing_side;
     c.leading = gait.footholds[walking::other_side(c.side)];
   } else if (gait.phase == GAITD_PHASE_SWING && gait.footstep_count > 1 &&
-             gait.time_in_phase >= p_[P::kSwingStart] * gait.phase_duration) {
+             gait.time_in_phase >= kSwingStart * gait.phase_duration) {
     c.leading = walking::foothold_of(model_, gait.adjusted[0]);
     const Eigen::Vector3d step =
         view(c.leading.pose.position) - view(gait.footholds[gait.support].pose.position);
-    if (step.norm() >= p_[P::kSwingReach] * leg_length_) c.side = gait.support;
+    if (step.norm() >= kSwingReach * leg_length_) c.side = gait.support;
   }
   if (c.side != GAITD_BOTH && !far_enough(gait.footholds[c.side], c.leading)) c.side = GAITD_BOTH;
   return c;
@@ -106,12 +118,12 @@ bool IcpCriteria::evaluate(const GaitdToeOffInput& in, const Candidate& c, Gaitd
   value[GAITD_TOE_OFF_ANKLE] = p_[P::kAnkleLimit] - dorsiflexion;
 
   int32_t* ok = out.satisfied;
-  ok[GAITD_TOE_OFF_ICP] = value[GAITD_TOE_OFF_ICP] >= p_[P::kIcpMargin];
-  ok[GAITD_TOE_OFF_ICP_DISTANCE] = value[GAITD_TOE_OFF_ICP_DISTANCE] <= p_[P::kIcpDistance];
-  ok[GAITD_TOE_OFF_COP] = value[GAITD_TOE_OFF_COP] <= p_[P::kCopDistance] * foot_length_;
-  ok[GAITD_TOE_OFF_CMP] = value[GAITD_TOE_OFF_CMP] <= p_[P::kCmpDistance];
+  ok[GAITD_TOE_OFF_ICP] = value[GAITD_TOE_OFF_ICP] >= 0.0;
+  ok[GAITD_TOE_OFF_ICP_DISTANCE] = value[GAITD_TOE_OFF_ICP_DISTANCE] <= kIcpDistance;
+  ok[GAITD_TOE_OFF_COP] = value[GAITD_TOE_OFF_COP] <= kCopDistance * foot_length_;
+  ok[GAITD_TOE_OFF_CMP] = value[GAITD_TOE_OFF_CMP] <= kCmpDistance * model_.nominal_com_height;
   ok[GAITD_TOE_OFF_ANKLE] = value[GAITD_TOE_OFF_ANKLE] <= 0.0;
-  return distance(predicted, view(in.plan->ecmp)) <= p_[P::kCmpDistance];
+  return distance(predicted, view(in.plan->ecmp)) <= kCmpDistance * model_.nominal_com_height;
 }
 
 bool IcpCriteria::rolling_on(const GaitdRobotState& robot, const GaitdGaitState& gait) const {
@@ -144,7 +156,7 @@ GaitdStatus IcpCriteria::process(const GaitdToeOffInput& in, GaitdToeOff& out) {
                      ok[GAITD_TOE_OFF_COP] && ok[GAITD_TOE_OFF_CMP];
     const bool limit = ok[GAITD_TOE_OFF_ICP] && ok[GAITD_TOE_OFF_ANKLE] && heel_free;
     state_.time_satisfied = all || limit ? state_.time_satisfied + in.time.period : 0.0;
-    out.active = state_.time_satisfied > p_[P::kHoldTime] ? 1 : 0;
+    out.active = state_.time_satisfied > kHoldTime ? 1 : 0;
   }
   state_.active = out.active;
   state_.side = out.active != 0 ? side : GAITD_BOTH;

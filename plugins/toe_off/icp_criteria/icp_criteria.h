@@ -14,7 +14,7 @@ namespace gaitd::plugins {
 //   icp           m, how far the worse of measured and desired ICP is inside the predicted support
 //                 polygon (toe point and leading foothold); at least 0 expected
 //   icp_distance  the larger distance of the two to the leading foothold over the distance of the
-//                 toe point to it; at most `icp_distance` expected
+//                 toe point to it; at most kIcpDistance expected
 //   cop           m, from the CoP of the trailing foot to its toe point
 //   cmp           m, from the desired CMP to the predicted polygon
 //   ankle         rad, dorsiflexion of the trailing ankle that is left
@@ -22,39 +22,13 @@ namespace gaitd::plugins {
 // point and the coming foothold.
 class IcpCriteria {
  public:
-  enum class P {
-    kMinForward,
-    kMinHeight,
-    kIcpMargin,
-    kIcpDistance,
-    kCopDistance,
-    kCmpDistance,
-    kAnkleLimit,
-    kHoldTime,
-    kSwingStart,
-    kSwingReach,
-    kCount
-  };
-  static constexpr std::array<GaitdParameter, 10> kParameters = {
+  enum class P { kMinForward, kAnkleLimit, kCount };
+  static constexpr std::array<GaitdParameter, 2> kParameters = {
       sdk::real_parameter("min_forward", "foot lengths", 0, 10, 0.75,
-                          "leading foot ahead of the trailing one"),
-      sdk::real_parameter("min_height", "m", 0.01, 1, 0.1,
-                          "or higher or lower by this much, and ahead"),
-      sdk::real_parameter("icp_margin", "m", -0.1, 0.1, 0,
-                          "how far inside the predicted polygon both ICPs must be"),
-      sdk::real_parameter("icp_distance", "", 0, 2, 0.25,
-                          "of the ICPs to the leading foothold, over that of the toe point"),
-      sdk::real_parameter("cop_distance", "foot lengths", 0, 1, 0.8,
-                          "of the trailing CoP to the toe point"),
-      sdk::real_parameter("cmp_distance", "m", 0, 0.5, 0.03,
-                          "of the CMP, desired or planned, to the predicted polygon"),
-      sdk::real_parameter("ankle_limit", "rad", 0, 1.5, 0.6,
-                          "dorsiflexion after which toe-off starts wherever the CoP is"),
-      sdk::real_parameter("hold_time", "s", 0, 0.2, 0.002, "for which the criteria must hold"),
-      sdk::real_parameter("swing_start", "", 0.3, 1, 0.7,
-                          "part of a swing after which the stance foot may roll"),
-      sdk::real_parameter("swing_reach", "leg lengths", 0, 3, 0.75,
-                          "step from which on the stance foot may roll before touchdown"),
+                          "step that has toe-off; low: short steps have one too, high: none has"),
+      sdk::porting(sdk::real_parameter(
+          "ankle_limit", "rad", 0, 1.5, 0.6,
+          "dorsiflexion that starts toe-off; low: too soon, high: the stop is met")),
   };
 
   explicit IcpCriteria(const GaitdModel& model);

@@ -13,37 +13,22 @@ class ComHeightQp {
  public:
   enum class P {
     kPrivilegedScale,
-    kJointRateGain,
-    kHorizon,
-    kJointAcceleration,
-    kBaseAcceleration,
     kTorqueScale,
-    kRiseSpeed,
-    kRiseTime,
-    kTorqueRate,
-    kTorqueRateWeight,
+    kJointAcceleration,
     kMaxIterations,
     kReferenceLeak,
     kFootFeedback,
-    kFootFeedbackLimit,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 14> kParameters = {
-      sdk::real_parameter("privileged_scale", "", 0, 10, 0.1,
-                          "of the privileged weights; small: it must not disturb the tasks"),
-      kJointRateGainParameter,
-      kHorizonParameter,
-      kJointAccelerationParameter,
-      kBaseAccelerationParameter,
+  static constexpr std::array<GaitdParameter, 6> kParameters = {
+      sdk::expert(sdk::real_parameter(
+          "privileged_scale", "", 0, 10, 0.1,
+          "of the privileged weights; low: knees drift, high: tasks are disturbed")),
       kTorqueScaleParameter,
-      kRiseSpeedParameter,
-      kRiseTimeParameter,
-      kTorqueRateParameter,
-      kTorqueRateWeightParameter,
+      kJointAccelerationParameter,
       kMaxIterationsParameter,
       kReferenceLeakParameter,
       kFootFeedbackParameter,
-      kFootFeedbackLimitParameter,
   };
 
   explicit ComHeightQp(const GaitdModel& model);

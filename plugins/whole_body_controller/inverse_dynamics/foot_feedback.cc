@@ -70,8 +70,8 @@ void FootFeedback::integrate(int side, double dt, double gain, const GaitdFootSt
   }
 }
 
-void FootFeedback::add(int side, double limit, const dynamics::Dynamics& dynamics,
-                       const GaitdFootState& foot, GaitdJointCommands& commands) {
+void FootFeedback::add(int side, const dynamics::Dynamics& dynamics, const GaitdFootState& foot,
+                       GaitdJointCommands& commands) {
   const GaitdLeg& leg = model_.legs[side];
   const Eigen::Quaterniond sole = sdk::quaternion(foot.orientation);
   double scale = 1.0;  // both joints alike: half of a correction would turn it
@@ -82,7 +82,7 @@ void FootFeedback::add(int side, double limit, const dynamics::Dynamics& dynamic
     const Eigen::Vector3d axis = dynamics.R_WB(joint.child_body) * view(joint.axis);
     const Eigen::Vector3d in_sole = sole.conjugate() * axis;
     torque[k] = -in_sole.head<2>().dot(moment_[side]);
-    const double most = limit * joint.effort_limit;
+    const double most = kLimit * joint.effort_limit;
     if (std::abs(torque[k]) > most) scale = std::min(scale, most / std::abs(torque[k]));
   }
   moment_[side] *= scale;
@@ -93,14 +93,14 @@ void FootFeedback::add(int side, double limit, const dynamics::Dynamics& dynamic
   }
 }
 
-void FootFeedback::update(double dt, double gain, double limit, const dynamics::Dynamics& dynamics,
+void FootFeedback::update(double dt, double gain, const dynamics::Dynamics& dynamics,
                           const GaitdRobotState& robot, const GaitdObjectives& objectives,
                           const GaitdWbcInfo& wanted, GaitdJointCommands& commands) {
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     // Without a sensor the load comes from the torques: what friction takes of them is in none.
     if (!sdk::has_force_sensor(model_.feet[side])) continue;
     integrate(side, dt, gain, robot.feet[side], objectives, wanted);
-    add(side, limit, dynamics, robot.feet[side], commands);
+    add(side, dynamics, robot.feet[side], commands);
   }
 }
 

@@ -17,6 +17,9 @@ namespace gaitd::plugins {
 // there whatever the ankle does, and near an edge a correction would tilt it.
 class FootFeedback {
  public:
+  // Effort limits of a joint, that a correction takes: what friction hides, and not what balances.
+  static constexpr double kLimit = 0.012;
+
   explicit FootFeedback(const GaitdModel& model) : model_(model) { reset(); }
   void reset() {
     moment_.fill(Eigen::Vector2d::Zero());
@@ -24,8 +27,8 @@ class FootFeedback {
   }
 
   // Adds to the torques of the ankles. `wanted` is what the controller found for this tick. `gain`
-  // in 1/s, `limit` of a correction in effort limits of the joint.
-  void update(double dt, double gain, double limit, const dynamics::Dynamics& dynamics,
+  // in 1/s.
+  void update(double dt, double gain, const dynamics::Dynamics& dynamics,
               const GaitdRobotState& robot, const GaitdObjectives& objectives,
               const GaitdWbcInfo& wanted, GaitdJointCommands& commands);
 
@@ -38,7 +41,7 @@ class FootFeedback {
   void integrate(int side, double dt, double gain, const GaitdFootState& foot,
                  const GaitdObjectives& objectives, const GaitdWbcInfo& wanted);
   // Adds it to the torques of the ankle, within the limit.
-  void add(int side, double limit, const dynamics::Dynamics& dynamics, const GaitdFootState& foot,
+  void add(int side, const dynamics::Dynamics& dynamics, const GaitdFootState& foot,
            GaitdJointCommands& commands);
 
   const GaitdModel model_;

@@ -373,8 +373,7 @@ void InverseDynamicsQp::write(double dt, const Drives& drives, const GaitdRobotS
   remember(objectives);
   write_commands(dt, drives.reference_leak, robot, objectives, out.commands);
   write_figures(objectives, info);
-  foot_feedback_.update(dt, drives.foot_feedback, drives.foot_feedback_limit, dynamics_, robot,
-                        objectives, info, out.commands);
+  foot_feedback_.update(dt, drives.foot_feedback, dynamics_, robot, objectives, info, out.commands);
 }
 
 void InverseDynamicsQp::write_commands(double dt, double reference_leak,

@@ -15,37 +15,21 @@
 namespace gaitd::plugins {
 
 // Parameters that every variant has.
-inline constexpr GaitdParameter kJointRateGainParameter = sdk::real_parameter(
-    "joint_rate_gain", "1/s", 1, 500, 30, "allowed joint rate per distance to a position limit");
-inline constexpr GaitdParameter kHorizonParameter = sdk::real_parameter(
-    "limit_horizon", "s", 0.001, 0.2, 0.02, "in which a joint may reach its allowed rate");
-inline constexpr GaitdParameter kJointAccelerationParameter =
-    sdk::real_parameter("joint_acceleration_limit", "rad/s^2", 10, 1e5, 2000, "of every joint");
-inline constexpr GaitdParameter kBaseAccelerationParameter = sdk::real_parameter(
-    "base_acceleration_limit", "m/s^2", 10, 1e5, 1000, "of the pelvis, also in rad/s^2");
-inline constexpr GaitdParameter kTorqueScaleParameter =
-    sdk::real_parameter("torque_scale", "", 0.4, 1, 1, "share of the effort limits in use");
-inline constexpr GaitdParameter kRiseSpeedParameter =
-    sdk::real_parameter("rise_speed", "m/s", 0, 100, 0.7,
-                        "of the CoM, upwards, that the contacts may build up: no jumps");
-inline constexpr GaitdParameter kRiseTimeParameter =
-    sdk::real_parameter("rise_time", "s", 0.01, 10, 0.15, "in which they may");
-inline constexpr GaitdParameter kTorqueRateParameter =
-    sdk::real_parameter("torque_rate", "limits/s", 1, 1e5, 120,
-                        "change of a joint's torque above which it is penalised");
-inline constexpr GaitdParameter kTorqueRateWeightParameter = sdk::real_parameter(
-    "torque_rate_weight", "", 0, 1e12, 1e6, "of what is above, squared, in effort limits");
-inline constexpr GaitdParameter kMaxIterationsParameter =
-    sdk::integer_parameter("max_iterations", "", 20, 10000, 300,
-                           "changes of the active set after which the solver gives up");
-inline constexpr GaitdParameter kReferenceLeakParameter =
-    sdk::real_parameter("reference_leak", "1/s", 0, 1000, 8,
-                        "with which the references of the drives follow the joints");
+inline constexpr GaitdParameter kTorqueScaleParameter = sdk::porting(sdk::real_parameter(
+    "torque_scale", "", 0.4, 1, 1,
+    "share of the effort limits in use; low: long steps sag, high: none is left"));
+inline constexpr GaitdParameter kJointAccelerationParameter = sdk::expert(
+    sdk::real_parameter("joint_acceleration_limit", "rad/s^2", 10, 1e5, 2000,
+                        "of every joint; low: legs too weak for a step, high: noise is followed"));
+inline constexpr GaitdParameter kMaxIterationsParameter = sdk::expert(sdk::integer_parameter(
+    "max_iterations", "", 20, 10000, 300,
+    "of the solver; low: it gives up in a push, high: a tick takes too long"));
+inline constexpr GaitdParameter kReferenceLeakParameter = sdk::real_parameter(
+    "reference_leak", "1/s", 0, 1000, 8,
+    "of drive references to the joints; low: they wind up, high: friction wins");
 inline constexpr GaitdParameter kFootFeedbackParameter =
     sdk::real_parameter("foot_feedback", "1/s", 0, 200, 15,
-                        "of the ankles, on what the foot sensors tell of the CoP; 0: none");
-inline constexpr GaitdParameter kFootFeedbackLimitParameter = sdk::real_parameter(
-    "foot_feedback_limit", "limits", 0, 1, 0.012, "of an ankle's torque, for it");
+                        "of the measured CoP by the ankles; 0: none, low: slow, high: feet shake");
 
 // The quadratic program that every whole-body controller here solves (theory section 4):
 //   unknowns   z = [vdot (6+n); rho], rho the multipliers of the friction-pyramid edges
@@ -67,40 +51,32 @@ class InverseDynamicsQp {
   static constexpr int kMaxRows = 6 * GAITD_MAX_TASKS + 6;
 
   struct Limits {
-    double joint_rate_gain;     // 1/s, allowed rate per distance to a position limit
-    double horizon;             // s, in which a limit may be reached
-    double joint_acceleration;  // rad/s^2
-    double base_acceleration;   // rad/s^2, m/s^2
-    double torque_scale;        // share of the effort limits that may be used
-    double rise_speed;          // m/s, of the CoM that the contacts may build up
-    double rise_time;           // s, in which they may
-    double torque_rate;         // effort limits per s, above which a change costs
-    double torque_rate_weight;  // of the square of what is above, in effort limits
+    double torque_scale = 1.0;           // share of the effort limits that may be used
+    double joint_acceleration = 2000.0;  // rad/s^2
+    // Faster than any joint that its drive can stop within its range.
+    double joint_rate_gain = 30.0;      // 1/s, allowed rate per distance to a position limit
+    double horizon = 0.02;              // s, in which a limit may be reached
+    double base_acceleration = 1000.0;  // rad/s^2, m/s^2, beyond what a fall or a blow makes
+    // Of the CoM, upwards, that the contacts may build up: more of it is a jump.
+    double rise_speed = 0.7;  // m/s
+    double rise_time = 0.15;  // s, in which they may
+    // A change of torque that a drive follows costs nothing, a faster one as much as counts.
+    double torque_rate = 120.0;       // effort limits per s, above which a change costs
+    double torque_rate_weight = 1e6;  // of the square of what is above, in effort limits
   };
   // How the drives follow what was solved.
   struct Drives {
-    double reference_leak;       // 1/s, of the references
-    double foot_feedback;        // 1/s, see FootFeedback
-    double foot_feedback_limit;  // effort limits
+    double reference_leak = 8.0;  // 1/s, of the references
+    double foot_feedback = 15.0;  // 1/s, see FootFeedback
   };
   // From the parameters of a variant, `P` the enumeration that names them.
   template <class P>
   static Limits limits_of(const sdk::Parameters<P>& p) {
-    return {.joint_rate_gain = p[P::kJointRateGain],
-            .horizon = p[P::kHorizon],
-            .joint_acceleration = p[P::kJointAcceleration],
-            .base_acceleration = p[P::kBaseAcceleration],
-            .torque_scale = p[P::kTorqueScale],
-            .rise_speed = p[P::kRiseSpeed],
-            .rise_time = p[P::kRiseTime],
-            .torque_rate = p[P::kTorqueRate],
-            .torque_rate_weight = p[P::kTorqueRateWeight]};
+    return {.torque_scale = p[P::kTorqueScale], .joint_acceleration = p[P::kJointAcceleration]};
   }
   template <class P>
   static Drives drives_of(const sdk::Parameters<P>& p) {
-    return {.reference_leak = p[P::kReferenceLeak],
-            .foot_feedback = p[P::kFootFeedback],
-            .foot_feedback_limit = p[P::kFootFeedbackLimit]};
+    return {.reference_leak = p[P::kReferenceLeak], .foot_feedback = p[P::kFootFeedback]};
   }
 
   explicit InverseDynamicsQp(const GaitdModel& model);

@@ -16,37 +16,22 @@ class NullspaceQp {
  public:
   enum class P {
     kDamping,
-    kJointRateGain,
-    kHorizon,
-    kJointAcceleration,
-    kBaseAcceleration,
     kTorqueScale,
-    kRiseSpeed,
-    kRiseTime,
-    kTorqueRate,
-    kTorqueRateWeight,
+    kJointAcceleration,
     kMaxIterations,
     kReferenceLeak,
     kFootFeedback,
-    kFootFeedbackLimit,
     kCount
   };
-  static constexpr std::array<GaitdParameter, 14> kParameters = {
-      sdk::real_parameter("damping", "", 1e-5, 1, 0.005,
-                          "of the projector, for task rows of unit length"),
-      kJointRateGainParameter,
-      kHorizonParameter,
-      kJointAccelerationParameter,
-      kBaseAccelerationParameter,
+  static constexpr std::array<GaitdParameter, 6> kParameters = {
+      sdk::expert(sdk::real_parameter(
+          "damping", "", 1e-5, 1, 0.005,
+          "of the projector; low: knees jump near a singularity, high: they go limp")),
       kTorqueScaleParameter,
-      kRiseSpeedParameter,
-      kRiseTimeParameter,
-      kTorqueRateParameter,
-      kTorqueRateWeightParameter,
+      kJointAccelerationParameter,
       kMaxIterationsParameter,
       kReferenceLeakParameter,
       kFootFeedbackParameter,
-      kFootFeedbackLimitParameter,
   };
 
   explicit NullspaceQp(const GaitdModel& model);

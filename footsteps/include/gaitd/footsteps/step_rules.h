@@ -31,7 +31,7 @@ class StepRules {
                           std::vector<GaitdFootstep>* footsteps) const;
 
  private:
-  bool give_time(const Start& start, double final_transfer, std::size_t landing,
+  bool give_time(const Start& start, std::size_t landing,
                  std::vector<GaitdFootstep>* footsteps) const;
 
   const GaitdModel model_;

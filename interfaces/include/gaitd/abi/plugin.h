@@ -53,13 +53,20 @@ enum {
 
 enum { GAITD_PARAMETER_REAL = 0, GAITD_PARAMETER_INTEGER = 1, GAITD_PARAMETER_BOOLEAN = 2 };
 
+/* Whom a parameter is for. */
+enum {
+  GAITD_RANK_TUNING = 0,  /* who makes a robot walk better, or otherwise */
+  GAITD_RANK_PORTING = 1, /* who brings gaitd to another robot, its sensors, its drives */
+  GAITD_RANK_EXPERT = 2   /* who knows the code that it is read in */
+};
+
 /* Every value crosses the boundary as a double; integers and booleans must be whole. */
 typedef struct GaitdParameter {
   char name[GAITD_NAME_SIZE];
   char unit[GAITD_UNIT_SIZE];
   char description[GAITD_DESCRIPTION_SIZE];
   int32_t type;
-  int32_t reserved;
+  int32_t rank; /* GAITD_RANK_* */
   double minimum;
   double maximum;
   double default_value;

@@ -372,9 +372,11 @@ typedef struct GaitdIcpPlan {
   double icp[2];          /* m, W */
   double icp_velocity[2]; /* m/s */
   double ecmp[2];         /* m, W */
-  double com[2];          /* m, W, of the plan */
-  double com_velocity[2];
   double icp_end[2];     /* m, at the end of the phase */
+  /* m, at the next touchdown, and at the end of the transfer that follows it; icp_end when no step
+     is ahead */
+  double icp_touchdown[2];
+  double icp_transferred[2];
   double kappa;          /* kappa reference, section 1 of the theory */
   double time_remaining; /* s, of the phase */
   double offset[2];      /* m, decaying difference between this reference and the pure plan */

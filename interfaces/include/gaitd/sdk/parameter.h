@@ -47,6 +47,16 @@ constexpr GaitdParameter boolean_parameter(std::string_view name, bool default_v
   return p;
 }
 
+// Parameters are for tuning unless they are said to be for whoever ports gaitd, or knows its code.
+constexpr GaitdParameter porting(GaitdParameter parameter) {
+  parameter.rank = GAITD_RANK_PORTING;
+  return parameter;
+}
+constexpr GaitdParameter expert(GaitdParameter parameter) {
+  parameter.rank = GAITD_RANK_EXPERT;
+  return parameter;
+}
+
 // Whether the declaration allows the value: in its range, and whole unless it is a real number.
 constexpr bool allowed(const GaitdParameter& parameter, double value) {
   if (!(value >= parameter.minimum && value <= parameter.maximum)) return false;  // NaN as well

@@ -12,6 +12,23 @@ namespace gaitd::walking {
 
 using GaitParameters = sdk::Parameters<Gait>;
 
+// rad, roll or pitch of a foothold: on steeper ones friction and ankles are at their end.
+inline constexpr double kMaxStepTilt = 0.4;
+
+inline constexpr double kFinalTransfer = 0.8;  // s, of the transfer into standing
+
+// What a footstep may be from where the other foot stands, m and rad.
+struct StepLimits {
+  StepLimits(const GaitdModel& model, const GaitParameters& parameters);
+  double least_separation;  // sideways: closer the legs get in each other's way
+  double largest_separation;
+  double forward;
+  double backward;
+  double travel;  // from the foothold of the same foot before
+  double height;  // up and down
+  double turn;
+};
+
 // Footsteps ahead, first in first out, storage taken at construction.
 class FootstepQueue {
  public:
@@ -40,9 +57,9 @@ class FootstepQueue {
 class FootstepGenerator {
  public:
   // `middle` is the pose half-way between the feet (the last footfall's M when already walking).
-  // A lateral walk is widened so that the feet never come closer than the least separation.
+  // A lateral walk is widened so that the feet never come closer than `least_separation` (m).
   FootstepGenerator(const WalkCommand& walk, const GaitdPose& middle, int first_side, double width,
-                    const GaitParameters& parameters);
+                    double least_separation);
   int count() const { return walk_.steps + 1; }
   // Footstep i of count(), in order; call with i = 0, 1, 2, …
   GaitdFootstep next();
@@ -64,6 +81,6 @@ GaitdPose middle_pose(const GaitdPose& a, const GaitdPose& b);
 // Whether `step` can be taken from `stance`, the pose of the other foot, by the foot that stands at
 // `from` before. `number` names the footstep in the message, from 1.
 Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
-                       int number, const GaitParameters& parameters);
+                       int number, const StepLimits& limits);
 
 }  // namespace gaitd::walking

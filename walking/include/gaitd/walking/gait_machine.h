@@ -8,6 +8,7 @@
 #include "gaitd/walking/capture_check.h"
 #include "gaitd/walking/commands.h"
 #include "gaitd/walking/footsteps.h"
+#include "gaitd/walking/gait_scale.h"
 #include "gaitd/walking/refusal.h"
 #include "gaitd/walking/step_timing.h"
 #include "gaitd/walking/swing_limits.h"
@@ -20,11 +21,23 @@ namespace gaitd::walking {
 // Swing k owns the transfer before it. All of it runs at tick boundaries; nothing allocates.
 class GaitMachine {
  public:
+  // s, least duration of the transfer out of standing: the weight has all the way to go.
+  static constexpr double kInitialTransfer = 1.0;
+  // s, for which a transfer waits for the ICP: longer, and it falls to where the robot came from.
+  static constexpr double kTransferPatience = 0.3;
+  // Of h: in a walk the CoM is lower than in the nominal posture.
+  static constexpr double kWalkingHeight = 0.926;
+  // Part of a swing before which a touchdown is not believed: a foot that leaves is loaded too.
+  static constexpr double kTouchdownFraction = 0.6;
+  // Part of the shift of an adjusted foothold that the next one keeps.
+  static constexpr double kShiftKept = 0.5;
+
   explicit GaitMachine(const GaitdModel& model);
 
   void set_parameter(int index, double value);
   void set_drive_parameter(int index, double value) { drive_.set_parameter(index, value); }
   const GaitParameters& parameters() const { return parameters_; }
+  StepLimits limits() const { return {model_, parameters_}; }
 
   // Stands on both feet where `robot` says they are; drops all footsteps. Keeps the mode.
   void reset(const GaitdRobotState& robot);
@@ -151,7 +164,7 @@ class GaitMachine {
   double height_offset_ = 0.0;  // m, measured minus commanded height of the ground so far
   int pending_mode_ = GAITD_MODE_WALK_BENT;
   std::uint32_t next_id_ = 1;
-  double nominal_omega_;
+  GaitScale scale_;
   double closest_ = 0.0;  // m, sideways, of the middles of two soles that do not touch
 };
 

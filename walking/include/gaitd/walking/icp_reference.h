@@ -28,10 +28,9 @@ class IcpReference {
     resumed_ = true;
   }
 
-  // One tick of `dt` seconds. `decay` is k (1/s); `fit_limit` bounds how far the start of a first
-  // transfer may move (m).
+  // One tick of `dt` seconds.
   void update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
-              const CmpOffsets& offsets, double decay, double fit_limit, GaitdIcpPlan& plan);
+              const CmpOffsets& offsets, GaitdIcpPlan& plan);
 
  private:
   const GaitdModel model_;

@@ -45,6 +45,8 @@ class IcpTrajectory {
   // Reference with `remaining` seconds left in the current piece; below zero it goes on around the
   // last eCMP of the piece, as the robot does. Not for an empty trajectory.
   Sample evaluate(double remaining) const;
+  // ICP at the start of piece `first`, seen as the end of the piece before (m).
+  Eigen::Vector2d icp_at_start(int first) const;
   // d icp / d (footstep i and all after it), with `remaining` seconds left in the current piece.
   double gamma(int footstep, double remaining) const;
 
@@ -71,9 +73,6 @@ class IcpTrajectory {
   };
   void add(const Eigen::Vector2d& start, int start_step, const Eigen::Vector2d& end, int end_step,
            double duration, double end_share = 1.0);
-  // ICP at the start of piece `first`, seen as the end of the piece before.
-  Eigen::Vector2d icp_at_start(int first) const;
-
   std::array<Piece, kMaxPieces> pieces_;
   int count_ = 0;
   double omega_ = 3.0;

@@ -22,6 +22,30 @@ enum class LegState { kStraighten = 0, kStraight, kCollapsed, kBent, kExtend };
 // In walk-bent every state has the bent angle. Knee angles here are positive when bent.
 class LegConfiguration {
  public:
+  // How a knee is drawn to its reference: stiffness (1/s^2), damping (1/s), and a weight that lets
+  // nothing but the tasks bend a straight leg, while one that swings only leans to it.
+  struct Gains {
+    double stiffness, damping, weight;
+  };
+  static constexpr Gains kBentGains{100.0, 6.0, 5.0};
+  static constexpr Gains kStraightGains{80.0, 10.0, 150.0};
+  static constexpr Gains kCollapsedGains{80.0, 10.0, 50.0};
+  static constexpr Gains kExtendGains{80.0, 10.0, 5.0};
+  static constexpr const Gains& gains(LegState state) {
+    return state == LegState::kBent        ? kBentGains
+           : state == LegState::kExtend    ? kExtendGains
+           : state == LegState::kCollapsed ? kCollapsedGains
+                                           : kStraightGains;
+  }
+  // rad/s, of a knee that straightens when its leg stands alone again, and of a robot at rest.
+  static constexpr double kStraightenRate = 4.0;
+  static constexpr double kSettleRate = 0.5;
+  // rad: no reference runs further ahead of a knee that something holds.
+  static constexpr double kMaxLead = 0.4;
+  // Parts of a swing after which its leg reaches out, and the one that stands gives way.
+  static constexpr double kExtendFraction = 0.5;
+  static constexpr double kCollapseFraction = 0.65;
+
   struct Reference {
     LegState state;
     double knee;       // rad, privileged

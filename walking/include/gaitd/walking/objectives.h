@@ -6,6 +6,7 @@
 #include "gaitd/abi/types.h"
 #include "gaitd/dynamics/kinematics.h"
 #include "gaitd/walking/com_height.h"
+#include "gaitd/walking/gait_scale.h"
 #include "gaitd/walking/leg_configuration.h"
 #include "gaitd/walking/parameters.h"
 #include "gaitd/walking/self_collision.h"
@@ -20,6 +21,15 @@ using ObjectiveParameters = sdk::Parameters<Objective>;
 // feedback laws live here, the controller is a pure inverse-dynamics optimisation.
 class ObjectiveBuilder {
  public:
+  // s, in which a foot is loaded after touchdown and unloaded before lift-off.
+  static constexpr double kContactRamp = 0.05;
+  // s, in which the rest of a sole is unloaded before it may roll over its toe.
+  static constexpr double kToeRamp = 0.03;
+  // m/s^2, most that a foot in contact is asked to slow down by: the ground stops it anyway.
+  static constexpr double kTouchdownStop = 9.0;
+  // s, of an overdue touchdown, in which the pelvis orientation loses its weight.
+  static constexpr double kPelvisFade = 0.1;
+
   explicit ObjectiveBuilder(const GaitdModel& model);
 
   void set_objective_parameter(int index, double value) { parameters_.set(index, value); }
@@ -28,7 +38,7 @@ class ObjectiveBuilder {
 
   // What the drives add around their references, by what the leg of the joint does. Joints of no
   // leg follow `kSupport`. N m/rad and N m s/rad, one per joint. Without it the drives of the legs
-  // get shares of their effort limits (parameters), the others nothing.
+  // get shares of their effort limits, the others nothing.
   enum class Impedance { kSupport = 0, kSwing, kHeelStrike, kCount };
   using PerJoint = std::array<double, GAITD_MAX_JOINTS>;
   void set_impedance(Impedance state, const PerJoint& stiffness, const PerJoint& damping) {
@@ -93,8 +103,8 @@ class ObjectiveBuilder {
   double load_share(int side, const GaitdGaitState& gait) const;
 
   const GaitdModel model_;
-  double weight_;      // N
-  double omega_;       // 1/s, sqrt(g / h) of the nominal posture
+  double weight_;  // N
+  GaitScale scale_;
   double leg_length_;  // m, hip to ankle in the nominal posture
   dynamics::Kinematics kinematics_;
   Eigen::Quaterniond chest_in_pelvis_;

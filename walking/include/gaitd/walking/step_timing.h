@@ -13,10 +13,10 @@ namespace gaitd::walking {
 
 // What the legs may be asked for at touchdown and lift-off.
 struct TimingLimits {
-  double knee;    // rad, wanted bend
-  double drop;    // leg lengths, how far the hip may be below its height in mid-stance
-  double roll;    // rad, to which a trailing foot may have rolled over its toes
-  double change;  // largest change of a duration, over the duration
+  double knee = 0.2;    // rad, wanted bend
+  double drop = 0.25;   // leg lengths, how far the hip may be below its height in mid-stance
+  double roll = 0.9;    // rad, to which a trailing foot may have rolled over its toes
+  double change = 0.6;  // largest change of a duration, over the duration
 };
 
 // Step time optimisation (theory section 3; Griffin et al., "Capture point trajectories for reduced

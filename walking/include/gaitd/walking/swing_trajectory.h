@@ -13,6 +13,15 @@ namespace gaitd::walking {
 
 using SwingParameters = sdk::Parameters<Swing>;
 
+// What is the robot's of a swing.
+struct SwingShape {
+  double landing_speed = 0.3;  // m/s, downwards at its end
+  double late_velocity = 0.3;  // m/s, downwards when the touchdown is due
+  double late_speed = 1.0;     // m/s, downwards at most while the touchdown is overdue
+  double edge_height = 0.12;   // m, a step up or down that is an edge in full; less, in proportion
+};
+SwingShape swing_shape(const GaitdModel& model, const SwingParameters& parameters);
+
 // Quintic polynomial in time through position, velocity and acceleration at both ends.
 class Quintic {
  public:
@@ -41,17 +50,16 @@ class SwingTrajectory {
   // A new swing, `duration` seconds long, from `from` with `twist` (of the sole origin, W axes,
   // angular first). `ground` is the height of the foothold that is left (m, W).
   void begin(const GaitdPose& from, const sdk::Vector6d& twist, double ground,
-             const GaitdFootstep& to, double duration, const SwingParameters& parameters);
+             const GaitdFootstep& to, double duration, const SwingShape& shape);
   // The foothold or the timing changed at time t of the swing: goes on from the present reference,
   // continuous in acceleration, and ends at `to` at `duration`.
-  void replan(double t, const GaitdFootstep& to, double duration,
-              const SwingParameters& parameters);
+  void replan(double t, const GaitdFootstep& to, double duration, const SwingShape& shape);
   Sample evaluate(double t) const;
 
  private:
-  double edge(const GaitdFootstep& to, const SwingParameters& parameters) const;
+  double edge(const GaitdFootstep& to, const SwingShape& shape) const;
   void plan(double t, const Sample& now, const GaitdFootstep& to, double duration,
-            const SwingParameters& parameters);
+            const SwingShape& shape);
 
   double start_ = 0.0;     // s, of the polynomials below
   double apex_ = 0.0;      // s, where z changes polynomial
@@ -61,7 +69,6 @@ class SwingTrajectory {
   double level_ = 0.0;     // s, after which it has the orientation of its foothold
   double apex_height_ = 0.0;
   double late_velocity_ = 0.0;
-  double late_acceleration_ = 0.0;
   double late_gain_ = 0.0;               // m/s, on top of late_velocity_ at most
   std::array<Quintic, 2> ahead_, back_;  // from above: to the arrival, then to the foothold
   Quintic z_up_, z_down_;

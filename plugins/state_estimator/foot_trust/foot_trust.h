@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every state estimator takes a foot for, by the force on it.
+#pragma once
+
+#include "gaitd/sdk/parameter.h"
+
+namespace gaitd::plugins {
+
+// Parameters that every variant has.
+inline constexpr GaitdParameter kContactOnParameter = sdk::porting(sdk::real_parameter(
+    "contact_on", "weight", 0.001, 1, 0.05,
+    "force of a contact; low: sensor offsets are contacts, high: one is seen late"));
+inline constexpr GaitdParameter kForceFilterParameter = sdk::porting(sdk::real_parameter(
+    "force_filter", "Hz", 5, 500, 80,
+    "low-pass of the foot forces; low: contacts come late, high: they chatter"));
+
+// Of the force that makes a contact: less is none. Between the two a foot stays what it is.
+inline constexpr double kContactOff = 0.6;
+// Share of the load below which a trusted foot is so no more, and the time (s) for which a foot
+// must carry its share before it is: the ring of the landing is over.
+inline constexpr double kTrustOff = 0.30;
+inline constexpr double kTrustDelay = 0.02;
+// s, after which a trusted foot has come to rest, and holds the heading too.
+inline constexpr double kRestDelay = 0.1;
+
+}  // namespace gaitd::plugins

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the feet tell: contacts, anchors, and the errors of the IMU.
+#include <algorithm>
+#include <cmath>
+
+#include "gaitd/sdk/sensors.h"
+#include "kinematic_inertial.h"
+
+namespace gaitd::plugins {
+namespace {
+
+using sdk::usable;
+using sdk::view;
+
+// The accelerometer bias is found this many times faster while standing.
+constexpr double kStandingBalanceFactor = 6.0;
+// Share of the weight that the feet must carry before CoP and CoM tell anything.
+constexpr double kBalancedShare = 0.5;
+// m/s^2, most that the accelerometer may show beside the balance: a push is in it too.
+constexpr double kLargestError = 2.0;
+// A robot at rest: for so long (s) no more of that (m/s^2), and no foot turned faster (rad/s).
+constexpr double kQuietTime = 0.1;
+constexpr double kQuiet = 1.0;
+constexpr double kStill = 0.2;
+constexpr double kLargestDrift = 0.01;  // rad/s, taken for a bias
+constexpr double kStillTime = 0.2;      // s
+// Share of the load that makes a foot an anchor: near half, as feet sink in under their load, and
+// rise as they lose it.
+constexpr double kTrustOn = 0.48;
+constexpr double kHeadingRate = 2.0;  // 1/s, of the heading by feet at rest
+// 1/s^2, gyroscope bias from the same; in a walk every foot turns a little when it is loaded.
+constexpr double kHeadingBias = 0.5;
+constexpr double kHeadingBiasWalking = 0.05;  // of it
+constexpr double kStillShare = 0.8;    // of what the feet of a robot at rest tell of the bias
+constexpr double kBalanceRate = 0.08;  // 1/s, accelerometer bias from CoP and CoM
+constexpr double kBalanceLimit = 0.2;  // m/s^2, of that bias
+
+double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * hertz * dt); }
+
+}  // namespace
+
+void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
+  const double blend = low_pass(p_[P::kForceFilter], in.time.period);
+  Eigen::Vector2d weighted = Eigen::Vector2d::Zero();
+  double total = 0.0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const GaitdFoot& foot = model_.feet[side];
+    const GaitdFootForceSensor& sensor = in.sensors->feet[side];
+    GaitdFootState& state = out.feet[side];
+    Foot& f = feet_[side];
+    const bool sensed = sdk::has_force_sensor(foot);
+    const sdk::Vector6d wrench = sensed ? sdk::sole_wrench(foot, sensor) : ground_->wrench(side);
+    view(state.wrench) = wrench;
+    const Eigen::Vector3d moment = wrench.head<3>();
+    const Eigen::Vector3d force = wrench.tail<3>();
+    f.normal_force += (sensed ? blend : 1.0) * (std::max(0.0, force.z()) - f.normal_force);
+    state.normal_force = f.normal_force;
+    const double held = f.contact == GAITD_CONTACT_NONE ? 1.0 : kContactOff;
+    f.contact = f.normal_force > held * p_[P::kContactOn] * weight_ ? GAITD_CONTACT_FULL
+                                                                    : GAITD_CONTACT_NONE;
+    state.contact = f.contact;
+    state.cop_valid = f.contact != GAITD_CONTACT_NONE && force.z() > 0.01 * weight_ ? 1 : 0;
+    if (state.cop_valid != 0) {
+      state.cop[0] = -moment.y() / force.z();
+      state.cop[1] = moment.x() / force.z();
+    }
+    view(state.cop_world) = sole_point(side, {state.cop[0], state.cop[1], 0.0});
+    if (state.cop_valid != 0) {
+      weighted += f.normal_force * view(state.cop_world).head<2>();
+      total += f.normal_force;
+    }
+  }
+  if (total > 0.0) last_cop_ = weighted / total;
+  view(out.cop) = last_cop_;
+}
+
+void KinematicInertial::observe_bias(const GaitdStateEstimatorInput& in,
+                                     const GaitdRobotState& robot) {
+  int index = 0;
+  const GaitdImuSensor* sensor = imu(*in.sensors, index);
+  if (sensor == nullptr || sensor->has_orientation != 0) return;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), cop = Eigen::Vector3d::Zero();
+  double total = 0.0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    if (sdk::has_force_sensor(model_.feet[side]) && !usable(in.sensors->feet[side])) return;
+    const GaitdFootState& foot = robot.feet[side];
+    if (foot.cop_valid == 0) continue;
+    force += sole_orientation(side) * view(foot.wrench).tail<3>();
+    cop += foot.wrench[5] * view(foot.cop_world);
+    total += foot.wrench[5];
+  }
+  if (total < kBalancedShare * weight_) return;  // in flight, or hanging
+  const Eigen::Vector3d arm = kinematics_.com() - cop / total;
+  const Eigen::Vector3d balanced = force.dot(arm) / arm.squaredNorm() / model_.total_mass * arm;
+  // The difference of a noisy rate over one tick would be cut off below, and no longer average out.
+  const Eigen::Vector3d turning = kShakingPole * (about_ - about_slow_);
+  Eigen::Vector3d error = specific_force_ - orientation_.conjugate() * (balanced + turning);
+  error.z() = 0.0;
+  const bool starting = time_since_start_ < kAveragingTime;
+  const bool standing = in.gait->phase == GAITD_PHASE_STAND;
+  shaking_ += std::min(1.0, kShakingPole * in.time.period) * (error - shaking_);
+  if (!standing || shaking_.norm() > kQuiet) time_quiet_ = 0.0;
+  if (standing && !starting && time_quiet_ < kQuietTime) return;
+  error = error.cwiseMax(-kLargestError).cwiseMin(kLargestError);
+  const double faster = standing ? kStandingBalanceFactor : 1.0;
+  const double share = starting ? averaging_share(in.time.period)
+                                : std::min(1.0, faster * kBalanceRate * in.time.period);
+  const Eigen::Vector3d before = balance_bias_;
+  balance_bias_ = (before + share * error).cwiseMax(-kBalanceLimit).cwiseMin(kBalanceLimit);
+  if (!standing) return;  // levelling does it, smoothly
+  // The accelerometer has tilted the attitude by this bias.
+  const Eigen::Vector3d change = orientation_ * (balance_bias_ - before);
+  const Eigen::Vector3d tilt(-change.y() / model_.gravity, change.x() / model_.gravity, 0.0);
+  orientation_ = (sdk::exp_so3(tilt) * orientation_).normalized();
+}
+
+void KinematicInertial::update_trust(const GaitdStateEstimatorInput& in, double dt) {
+  const double total = feet_[0].normal_force + feet_[1].normal_force;
+  const double least = 0.2 * weight_;  // in flight no share means anything
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    Foot& f = feet_[side];
+    const double share = f.normal_force / std::max(total, least);
+    const bool swinging = in.gait->phase == GAITD_PHASE_SWING && in.gait->next_side == side;
+    f.time_above = share > kTrustOn && !swinging ? f.time_above + dt : 0.0;
+    const bool was = f.trusted;
+    if (!f.trusted) f.trusted = f.time_above >= kTrustDelay;
+    if (share < kTrustOff || swinging) f.trusted = false;
+    f.time_trusted = f.trusted && was ? f.time_trusted + dt : 0.0;
+    if (f.trusted && !was) {
+      f.anchored_point.setZero();
+      f.anchor = sole_point(side, f.anchored_point);
+      f.orientation_anchored = false;
+    }
+  }
+}
+
+// Feet on which the robot stands do not turn. Only whole windows of rest count, so that the onset
+// of a push is no bias.
+void KinematicInertial::observe_gyro_bias(double dt) {
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  double total = 0.0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const Foot& f = feet_[side];
+    rate += f.normal_force * kinematics_.body_twist(model_.feet[side].body).head<3>();
+    total += f.normal_force;
+  }
+  rate /= std::max(total, 1.0);
+  if (rate.norm() > kStill) time_quiet_ = 0.0;
+  if (time_quiet_ < kQuietTime) {
+    time_still_ = 0.0;
+    turned_.setZero();
+    return;
+  }
+  time_still_ += dt;
+  // What the attitude has turned by, which the rates of joints between pelvis and IMU are not in.
+  turned_ += dt * (orientation_.conjugate() * rate + (turn_ - rate_));
+  if (time_still_ < kStillTime) return;
+  const Eigen::Vector3d found = turned_ / time_still_;
+  if (found.norm() < kLargestDrift) gyro_bias_ += kStillShare * found;
+  time_still_ = 0.0;
+  turned_.setZero();
+}
+
+void KinematicInertial::update_anchors(const GaitdStateEstimatorInput& in, double dt) {
+  Eigen::Vector3d error = Eigen::Vector3d::Zero();
+  double total = 0.0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    Foot& f = feet_[side];
+    if (!f.trusted) continue;
+    const bool toe = in.gait->footholds[side].contact == GAITD_CONTACT_TOE;
+    const Eigen::Vector3d point =
+        toe ? Eigen::Vector3d(view(model_.feet[side].toe_point)) : Eigen::Vector3d::Zero();
+    if (point != f.anchored_point) {  // the foot begins to roll over its toe, or comes down again
+      f.anchored_point = point;
+      f.anchor = sole_point(side, point);
+    }
+    if (toe) f.orientation_anchored = false;
+    if (toe || f.time_trusted < kRestDelay) continue;
+    const Eigen::Quaterniond now = sole_orientation(side);
+    if (!f.orientation_anchored) {
+      f.orientation_anchored = true;
+      f.anchor_orientation = now;
+    }
+    // The heading only: under load a foot tilts by some milliradians.
+    error.z() += f.normal_force * sdk::log_so3(f.anchor_orientation * now.conjugate()).z();
+    total += f.normal_force;
+  }
+  if (total <= 0.0) return;
+  error /= total;
+  orientation_ = (sdk::exp_so3(kHeadingRate * dt * error) * orientation_).normalized();
+  const double share = in.gait->phase == GAITD_PHASE_STAND ? 1.0 : kHeadingBiasWalking;
+  gyro_bias_ -= share * kHeadingBias * dt * (orientation_.conjugate() * error);
+}
+
+}  // namespace gaitd::plugins
