@@ -122,7 +122,7 @@ class Writer {
     std::vector<std::string> names;
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(sources_, ignored)) {
-      const fs::path folder = entry.path();
+      const fs::path& folder = entry.path();
       const std::string name = folder.filename();
       const fs::path adapter = folder / (backend_ ? name + "_backend.cc" : "adapter.cc");
       if (fs::is_regular_file(adapter, ignored)) names.push_back(name);
@@ -187,8 +187,8 @@ class Writer {
     std::string name = from.filename();
     if (backend_) {
       replace_all(&name, variant_ + "_", project_.name + "_");
-    } else if (from.stem() == variant_) {
-      name = project_.name + from.extension().string();
+    } else if (name.starts_with(variant_ + ".") || name.starts_with(variant_ + "_")) {
+      name.replace(0, variant_.size(), project_.name);
     }
     if (files_.count(name) != 0 && error_.empty()) {
       error_ =

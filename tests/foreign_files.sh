@@ -38,7 +38,7 @@ refused commands.swap.to gaitctl run swap.yaml --log swap.mcap
 loads gaitctl run swap.yaml --trust --log swap.mcap
 
 cp -r "$GAITD_SOURCE/robots/atlas" robot
-sed -i "s|^parameters:|&\n  toe_off.variant: $evil|" robot/robot.yaml
+printf 'parameters:\n  toe_off.variant: %s\n' "$evil" >>robot/robot.yaml
 printf 'schema: gaitd.config/1\n' >empty.yaml # the installed one chooses the layers itself
 refused --trust gaitd --config empty.yaml --check-config robot/robot.yaml
 refused --trust gaitd --config empty.yaml --robot robot/robot.yaml --check-config

@@ -97,7 +97,7 @@ await until(() => time > 0n, 'no time');
 // Parameters, read and set.
 client.getParameters([], 'all');
 const all = await once('parameterValues', ({id}) => id === 'all');
-check(all.parameters.length > 100, `${all.parameters.length} parameters`);
+check(all.parameters.length > 80, `${all.parameters.length} parameters`);
 const height = () => {
   client.getParameters(['gait.swing_height'], 'one');
   return once('parameterValues', ({id}) => id === 'one').then(({parameters}) => parameters[0].value);

@@ -372,7 +372,7 @@ typedef struct GaitdIcpPlan {
   double icp[2];          /* m, W */
   double icp_velocity[2]; /* m/s */
   double ecmp[2];         /* m, W */
-  double icp_end[2];     /* m, at the end of the phase */
+  double icp_end[2];      /* m, at the end of the phase */
   /* m, at the next touchdown, and at the end of the transfer that follows it; icp_end when no step
      is ahead */
   double icp_touchdown[2];
