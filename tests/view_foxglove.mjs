@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // `gaitctl view` as Foxglove sees it, by Foxglove's own library of the protocol.
-// view_foxglove.mjs NODE_MODULES ws://HOST/?token=… role LAYOUT
+// view_foxglove.mjs NODE_MODULES ws://HOST/?token=… role LAYOUT COUNT; COUNT as `gaitctl param list` has parameters
 import {readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 
-const [, , modules, address, role, layout] = process.argv;
+const [, , modules, address, role, layout, count] = process.argv;
 const require = createRequire(modules + '/');
 const {FoxgloveClient} = require('@foxglove/ws-protocol');
 const {WebSocket} = require('ws');
@@ -97,7 +97,7 @@ await until(() => time > 0n, 'no time');
 // Parameters, read and set.
 client.getParameters([], 'all');
 const all = await once('parameterValues', ({id}) => id === 'all');
-check(all.parameters.length > 80, `${all.parameters.length} parameters`);
+check(all.parameters.length === Number(count), `${all.parameters.length} parameters, not ${count}`);
 const height = () => {
   client.getParameters(['gait.swing_height'], 'one');
   return once('parameterValues', ({id}) => id === 'one').then(({parameters}) => parameters[0].value);

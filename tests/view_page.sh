@@ -23,8 +23,11 @@ for _ in {1..100}; do grep -q '}' pages.json && break || sleep 0.1; done
 foxglove() { sed -n "s|.*\"$1\": \"http\(://[^#]*\)#\(token=[0-9a-f]*\)\".*|ws\1?\2|p" pages.json; }
 
 layout=$GAITD_BUILD/share/gaitd/foxglove-layout.json
+parameters=$(gaitctl --json param list | grep -o '"name":' | wc -l)
+((parameters > 0)) || fail 'param list has no parameters'
 for role in observe administer; do
-  expect 0 node "$GAITD_SOURCE/tests/view_foxglove.mjs" "$modules" "$(foxglove $role)" $role "$layout"
+  expect 0 node "$GAITD_SOURCE/tests/view_foxglove.mjs" "$modules" "$(foxglove $role)" $role "$layout" \
+    "$parameters"
   gaitctl reset >/dev/null 2>&1 || true
   expect 0 gaitctl sim reset
   gaitctl arm >/dev/null 2>&1 || true

@@ -152,6 +152,7 @@ constexpr Other kOthers[] = {
     {"objectives.swing_drive_stiffness", "set the impedance in robot.yaml"},
     {"objectives.swing_drive_damping", "set the impedance in robot.yaml"},
     {"objectives.strike_drive_damping", "set the impedance in robot.yaml"},
+    {"step_adjuster.lead", "step_plan decides when a transfer ends"},
     {"safety.capture_time", "to switch the check off, set safety.capture_reach to 10"},
     {"safety.ready_damping", "it is safety.ready_stiffness / 32 s"},
     {"state_estimator.contact_off", "it is 0.6 of state_estimator.contact_on"},

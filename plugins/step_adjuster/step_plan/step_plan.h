@@ -65,10 +65,10 @@ class StepPlan {
 
  private:
   void begin_phase(const GaitdGaitState& gait);
-  // What the step as it stands misses, and then what binds a better one.
   walking::ConvexPolygon stance_sole(const GaitdGaitState& gait) const;
   LaterPhase swing_to_come(const GaitdGaitState& gait, const GaitdIcpPlan& plan) const;
   LaterPhase next_transfer(const GaitdGaitState& gait, const GaitdIcpPlan& plan) const;
+  // What the step as it stands misses, and then what binds a better one.
   StepProblem problem(const GaitdStepAdjusterInput& in) const;
   void add_limits(const GaitdStepAdjusterInput& in, StepProblem& problem) const;
   // Footholds of foot `side` in the frame of the other one: as far as legs reach, and not across.
