@@ -14,6 +14,8 @@ sensors: {noise: nominal}
 actuators: {model: nominal}
 commands:
   - {at: 1.0, walk: {steps: 66, length: 0.3}}
+  - {at: 4.0, pose: {hand: {side: left, frame: pelvis, x: 0.45, y: 0.35, z: 0.3}}}
+  - {at: 5.0, pose: {arm: {side: right, points: [{time: 1, joints: {r_arm_elx: -1.2}}, {time: 2, joints: {r_arm_elx: -0.5}}]}}}
   - {at: 6.0, param: {gait.swing_height: 0.12, swap.probation: 0.9}}
   - {at: 8.0, swap: {layer: whole_body_controller, to: com_height_qp}}
   - {at: 12.0, mode: walk-bent}

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
+
+#include "gaitd/sdk/views.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -33,15 +34,14 @@ double angle(const double (&a)[4], const double (&b)[4]) {
   return 2.0 * std::acos(std::min(1.0, std::abs(dot)));
 }
 
-double joint_goal(const GaitdModel& model, const GaitdTaskReferences& r, int joint) {
-  return (r.joint_mask >> joint & 1u) != 0 ? r.joint_position[joint]
-                                           : model.nominal_position[joint];
-}
-
 void mix(double from, double share, double& to) { to = from + share * (to - from); }
 template <std::size_t kSize>
 void mix(const double (&from)[kSize], double share, double (&to)[kSize]) {
   for (std::size_t i = 0; i < kSize; ++i) mix(from[i], share, to[i]);
+}
+// Of unit quaternions: the short way.
+void mix_turn(const double (&from)[4], double share, double (&to)[4]) {
+  sdk::store(sdk::quaternion(from).slerp(share, sdk::quaternion(to)), to);
 }
 
 }  // namespace
@@ -79,10 +79,11 @@ double output_difference(const GaitdModel& model, const GaitdTaskReferences& a,
                          const GaitdTaskReferences& b) {
   double largest = 0.0;
   for (int i = 0; i < model.joint_count; ++i) {
-    largest = std::max(largest, std::abs(joint_goal(model, a, i) - joint_goal(model, b, i)));
+    largest = std::max(largest, std::abs(a.joint_position[i] - b.joint_position[i]));
   }
   return std::max({largest / kJoint, distance(a.com_shift, b.com_shift) / kShift,
-                   angle(a.pelvis_turn, b.pelvis_turn) / kAngle});
+                   angle(a.pelvis_turn, b.pelvis_turn) / kAngle,
+                   angle(a.chest_turn, b.chest_turn) / kAngle});
 }
 
 void cross_fade(const GaitdIcpPlan& from, double share, GaitdIcpPlan& to) {
@@ -119,18 +120,17 @@ void cross_fade(const GaitdWholeBodyControllerOutput& from, double share,
   }
 }
 
-// Joints that only one of the two has a reference for go by the objectives' own filters.
 void cross_fade(const GaitdTaskReferences& from, double share, GaitdTaskReferences& to) {
   mix(from.com_shift, share, to.com_shift);
   mix(from.com_shift_velocity, share, to.com_shift_velocity);
   mix(from.com_shift_acceleration, share, to.com_shift_acceleration);
-  const std::uint64_t both = from.joint_mask & to.joint_mask;
-  for (int i = 0; both >> i != 0 && i < GAITD_MAX_JOINTS; ++i) {
-    if ((both >> i & 1u) == 0) continue;
-    mix(from.joint_position[i], share, to.joint_position[i]);
-    mix(from.joint_velocity[i], share, to.joint_velocity[i]);
-    mix(from.joint_acceleration[i], share, to.joint_acceleration[i]);
-  }
+  mix_turn(from.pelvis_turn, share, to.pelvis_turn);
+  mix(from.pelvis_turn_rate, share, to.pelvis_turn_rate);
+  mix_turn(from.chest_turn, share, to.chest_turn);
+  mix(from.chest_turn_rate, share, to.chest_turn_rate);
+  mix(from.joint_position, share, to.joint_position);
+  mix(from.joint_velocity, share, to.joint_velocity);
+  mix(from.joint_acceleration, share, to.joint_acceleration);
 }
 
 }  // namespace gaitd::daemon

@@ -148,9 +148,6 @@ const char* output_error(const GaitdTaskReferences& r, int joint_count) {
   if (!finite(r.pelvis_turn_rate)) return "pelvis_turn_rate: is not finite";
   if (!unit(r.chest_turn)) return "chest_turn: is no unit quaternion";
   if (!finite(r.chest_turn_rate)) return "chest_turn_rate: is not finite";
-  if (joint_count < GAITD_MAX_JOINTS && r.joint_mask >> joint_count != 0) {
-    return "joint_mask: has joints beyond those of the model";
-  }
   if (!finite(r.joint_position, joint_count)) return "joint_position: is not finite";
   if (!finite(r.joint_velocity, joint_count)) return "joint_velocity: is not finite";
   if (!finite(r.joint_acceleration, joint_count)) return "joint_acceleration: is not finite";

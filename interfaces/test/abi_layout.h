@@ -30,7 +30,7 @@
   X(GaitdMotion, 1720) \
   X(GaitdMotions, 6888) \
   X(GaitdHandReference, 128) \
-  X(GaitdTaskReferences, 1992) \
+  X(GaitdTaskReferences, 1984) \
   X(GaitdIcpPlan, 264) \
   X(GaitdStepAdjustment, 128) \
   X(GaitdToeOff, 104) \
@@ -269,11 +269,10 @@
   X(GaitdTaskReferences, pelvis_turn_rate, 112) \
   X(GaitdTaskReferences, chest_turn, 136) \
   X(GaitdTaskReferences, chest_turn_rate, 168) \
-  X(GaitdTaskReferences, joint_mask, 192) \
-  X(GaitdTaskReferences, joint_position, 200) \
-  X(GaitdTaskReferences, joint_velocity, 712) \
-  X(GaitdTaskReferences, joint_acceleration, 1224) \
-  X(GaitdTaskReferences, hands, 1736) \
+  X(GaitdTaskReferences, joint_position, 192) \
+  X(GaitdTaskReferences, joint_velocity, 704) \
+  X(GaitdTaskReferences, joint_acceleration, 1216) \
+  X(GaitdTaskReferences, hands, 1728) \
   X(GaitdIcpPlan, size, 0) \
   X(GaitdIcpPlan, reserved, 4) \
   X(GaitdIcpPlan, icp, 8) \

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <random>
@@ -461,6 +462,45 @@ TEST(InverseDynamicsQp, TorquesDoNotJump) {
   const double free = largest_change(0.0);
   EXPECT_GT(free, 2.0 * rate * 0.001);
   EXPECT_LT(largest_change(1e6), 0.15);
+}
+
+// m/s^2, of the distance of a separation, in the solution.
+double parting(const Bench& b, const GaitdSeparation& s) {
+  const Recomputed r(b);
+  dynamics::Matrix6X jacobian(6, r.acceleration.size());
+  Vector3d apart = Vector3d::Zero();
+  for (int end = 0; end < 2; ++end) {
+    const Vector3d point = sdk::view(s.point[end]);
+    r.dynamics.frame_jacobian(s.body[end], point, jacobian);
+    const Vector3d linear = jacobian.bottomRows<3>() * r.acceleration +
+                            r.dynamics.frame_bias_acceleration(s.body[end], point).tail<3>();
+    apart += end == 0 ? linear : Vector3d(-linear);
+  }
+  return sdk::view(s.normal).dot(apart);
+}
+
+TEST(InverseDynamicsQp, ASeparationIsKeptAndOneThatIsKeptAnywayChangesNothing) {
+  Bench b;
+  b.stir(5);
+  GaitdSeparation s{};
+  s.body[0] = atlas().hands[GAITD_LEFT].body;
+  s.body[1] = atlas().chest_body;
+  s.normal[1] = 1.0;
+  s.weight = 300.0;
+  b.objectives->separation_count = 1;
+  const auto solve = [&](double acceleration) {
+    ComHeightQp layer(atlas());
+    s.acceleration = acceleration;
+    b.objectives->separations[0] = s;
+    EXPECT_EQ(b.process(layer), GAITD_OK);
+    return parting(b, s);
+  };
+  const double by_itself = solve(-1e3);
+  const Output before = *b.out;
+  EXPECT_EQ(solve(by_itself - 1.0), by_itself);
+  EXPECT_EQ(std::memcmp(&before.commands, &b.out->commands, sizeof(before.commands)), 0);
+  EXPECT_NEAR(solve(by_itself + 2.0), by_itself + 2.0, 0.2);
+  expect_physical(b);
 }
 
 TEST(NullspaceQp, ThePrivilegedKneeDecidesWhichWayTheBodyMoves) {

@@ -52,6 +52,15 @@ class Commands(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "standing"):
             robot.wait("stading")
 
+    def test_a_hand_goes_where_it_is_sent_or_says_what_it_misses(self):
+        self.assertIsNone(robot.pose("hand", "left", x=0.45, y=0.35, z=0.2, duration=1)["note"])
+        away = robot.pose("hand", "left", frame="chest", x=2.0, y=0.3, z=0.3, duration=4)
+        self.assertRegex(away["note"], "out of reach: the hand will miss by 1[.]")
+        robot.pose("arm", "left", points=[{"time": 1.0, "joints": {"l_arm_elx": 1.0}}])
+        with self.assertRaisesRegex(gaitd.Refused, "a joint of this arm"):
+            robot.pose("arm", "left", joints={"r_arm_elx": 1.0})
+        robot.pose("arm", "left")
+
     def test_waiting_ends_with_a_fault_or_the_time(self):
         with self.assertRaises(gaitd.WaitTimeout) as caught:
             robot.wait("walking", timeout=0.1)

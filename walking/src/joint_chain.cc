@@ -60,13 +60,15 @@ JointChain::Joints JointChain::of(const double (&all)[GAITD_MAX_JOINTS]) const {
   return q;
 }
 
-JointChain::Pose JointChain::pose(const Joints& q) const {
+template <class Each>
+JointChain::Pose JointChain::along(const Joints& q, Each&& each) const {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (int i = 0; i < size_; ++i) {
     const Link& link = links_[i];
     position += rotation * link.origin;
     rotation = rotation * link.rotation;
+    each(i, position, Eigen::Vector3d(rotation * link.axis));
     if (link.prismatic) {
       position += rotation * link.axis * q[i];
     } else {
@@ -77,30 +79,24 @@ JointChain::Pose JointChain::pose(const Joints& q) const {
           (Eigen::Quaterniond(rotation) * frame_.orientation).normalized()};
 }
 
+JointChain::Pose JointChain::pose(const Joints& q) const {
+  return along(q, [](int, const Eigen::Vector3d&, const Eigen::Vector3d&) {});
+}
+
 JointChain::Jacobian JointChain::jacobian(const Joints& q) const {
   Jacobian columns(6, size_);
-  std::array<Eigen::Vector3d, kMaxJoints> origin;
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  for (int i = 0; i < size_; ++i) {
-    const Link& link = links_[i];
-    position += rotation * link.origin;
-    rotation = rotation * link.rotation;
-    origin[i] = position;
-    columns.col(i).head<3>() = rotation * link.axis;
-    if (link.prismatic) {
-      position += rotation * link.axis * q[i];
-    } else {
-      rotation = rotation * Eigen::AngleAxisd(q[i], link.axis);
-    }
-  }
-  const Eigen::Vector3d end = position + rotation * frame_.position;
+  std::array<Eigen::Vector3d, kMaxJoints> origins;
+  const Eigen::Vector3d end =
+      along(q, [&](int i, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
+        origins[i] = origin;
+        columns.col(i).head<3>() = axis;
+      }).position;
   for (int i = 0; i < size_; ++i) {
     const Eigen::Vector3d axis = columns.col(i).head<3>();
     if (links_[i].prismatic) {
       columns.col(i) << Eigen::Vector3d::Zero(), axis;
     } else {
-      columns.col(i).tail<3>() = axis.cross(end - origin[i]);
+      columns.col(i).tail<3>() = axis.cross(end - origins[i]);
     }
   }
   return columns;

@@ -61,6 +61,8 @@ ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
       scale_(model),
       kinematics_(model),
       self_collision_(model) {
+  std::copy(std::begin(model_.nominal_position), std::end(model_.nominal_position),
+            references_.joint_position);
   kinematics_.update(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(), sdk::Vector6d::Zero(),
                      sdk::head(model_.nominal_position, model_.joint_count),
                      Eigen::VectorXd::Zero(model_.joint_count));
@@ -279,12 +281,9 @@ void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot
   const double rate_gain = damping(stiffness, kPostureDamping);
   for (int i = 0; i < model_.joint_count; ++i) {
     out.posture_weight[i] = posture_joint_[i] ? parameters_[Objective::kPostureWeight] : 0.0;
-    const bool told = (r.joint_mask >> i & 1u) != 0;
-    const double position = told ? r.joint_position[i] : model_.nominal_position[i];
-    out.posture_acceleration[i] =
-        stiffness * (position - robot.joint_position[i]) - rate_gain * robot.joint_velocity[i];
-    if (told)
-      out.posture_acceleration[i] += r.joint_acceleration[i] + rate_gain * r.joint_velocity[i];
+    out.posture_acceleration[i] = stiffness * (r.joint_position[i] - robot.joint_position[i]) -
+                                  rate_gain * robot.joint_velocity[i];
+    out.posture_acceleration[i] += r.joint_acceleration[i] + rate_gain * r.joint_velocity[i];
   }
 }
 

@@ -98,6 +98,22 @@ TEST(CommandText, APushNamesItsForce) {
   EXPECT_EQ(json.at("duration"), 0.1);
 }
 
+TEST(CommandText, AMotionNamesItsPartAndWhereItEnds) {
+  Command command;
+  command.type = CommandType::kPose;
+  command.pose.part = GAITD_PART_RIGHT_ARM;
+  command.pose.motion.kind = GAITD_MOTION_HAND;
+  command.pose.motion.frame = GAITD_RELATIVE_TO_PELVIS;
+  command.pose.motion.point_count = 2;
+  command.pose.motion.points[1].time = 2.5;
+  command.pose.motion.points[1].value[1] = -0.3;
+  const nlohmann::json json = parsed(command, reply_of(nullptr));
+  EXPECT_EQ(json.at("part"), "right arm");
+  EXPECT_EQ(json.at("frame"), "pelvis");
+  EXPECT_EQ(json.at("duration"), 2.5);
+  EXPECT_EQ(json.at("to").at(1), -0.3);
+}
+
 TEST(CommandText, AChangeOfAParameterIsThereToTheLastBit) {
   Command command;
   command.type = CommandType::kSetParameter;

@@ -58,6 +58,8 @@ GaitdStatus TrajectoryPlayer::process(const GaitdTaskSourceInput& in, GaitdTaskR
   }
   leave(in.motions->parts[GAITD_PART_PELVIS], *in.gait);
   play_body(out);
+  std::copy(std::begin(model_.nominal_position), std::end(model_.nominal_position),
+            out.joint_position);
   for (int hand = 0; hand < GAITD_MAX_HANDS; ++hand) play_arm(hand, in, out);
   return GAITD_OK;
 }
@@ -178,7 +180,6 @@ void TrajectoryPlayer::play_arm(int hand, const GaitdTaskSourceInput& in,
     out.joint_position[joint] = position_[hand][i];
     out.joint_velocity[joint] = velocity_[hand][i];
     out.joint_acceleration[joint] = acceleration_[hand][i];
-    if (p.kind != GAITD_MOTION_NONE) out.joint_mask |= std::uint64_t{1} << joint;
   }
 }
 

@@ -357,7 +357,7 @@ typedef struct GaitdTaskReferences {
   double pelvis_turn_rate[3];
   double chest_turn[4]; /* of the chest, likewise */
   double chest_turn_rate[3];
-  uint64_t joint_mask; /* joints with a reference; the others go to their nominal position */
+  /* Of arms, neck and the like: the nominal position where nobody asked for another one. */
   double joint_position[GAITD_MAX_JOINTS];
   double joint_velocity[GAITD_MAX_JOINTS];
   double joint_acceleration[GAITD_MAX_JOINTS];

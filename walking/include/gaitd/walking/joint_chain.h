@@ -62,6 +62,10 @@ class JointChain {
   static Miss miss(const Pose& goal, const Pose& now);
 
  private:
+  // Where the frame is. Calls each(i, origin, axis) for every joint on the way, origin (m) and axis
+  // in the first body.
+  template <class Each>
+  Pose along(const Joints& q, Each&& each) const;
   // Solves the damped problem of step() for the joints that may move.
   Joints solve(const Jacobian& jacobian, const Twist& error, const Joints& lower,
                const Joints& upper, Joints* free) const;

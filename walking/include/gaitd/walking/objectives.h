@@ -50,7 +50,8 @@ class ObjectiveBuilder {
   // Takes the present posture as the start of every reference.
   void reset(const GaitdRobotState& robot, const GaitdGaitState& gait);
 
-  // Where the parts of the body that take no steps are to be, for the next update().
+  // Where the parts of the body that take no steps are to be, from the next update() on; at first
+  // as the robot holds them by itself.
   void set_references(const GaitdTaskReferences& references) { references_ = references; }
 
   // One tick of `dt` seconds. `lift_off` is where the swing foot left the ground (W).
