@@ -18,10 +18,12 @@ constexpr double kStandingBalanceFactor = 6.0;
 constexpr double kBalancedShare = 0.5;
 // m/s^2, most that the accelerometer may show beside the balance: a push is in it too.
 constexpr double kLargestError = 2.0;
-// A robot at rest: for so long (s) no more of that (m/s^2), and no foot turned faster (rad/s).
+// A robot at rest: for so long (s) no more of that (m/s^2), no foot turned faster (rad/s), and no
+// joint of arms and neck, whose motions shift the pelvis against the CoM and take angular momentum.
 constexpr double kQuietTime = 0.1;
 constexpr double kQuiet = 1.0;
 constexpr double kStill = 0.2;
+constexpr double kArmsStill = 0.3;  // rad/s
 constexpr double kLargestDrift = 0.01;  // rad/s, taken for a bias
 constexpr double kStillTime = 0.2;      // s
 // Share of the load that makes a foot an anchor: near half, as feet sink in under their load, and
@@ -99,7 +101,11 @@ void KinematicInertial::observe_bias(const GaitdStateEstimatorInput& in,
   const bool starting = time_since_start_ < kAveragingTime;
   const bool standing = in.gait->phase == GAITD_PHASE_STAND;
   shaking_ += std::min(1.0, kShakingPole * in.time.period) * (error - shaking_);
-  if (!standing || shaking_.norm() > kQuiet) time_quiet_ = 0.0;
+  bool arms_move = false;
+  for (int i = 0; i < model_.joint_count; ++i) {
+    arms_move |= !late_joint_[i] && std::abs(joint_rate_[i]) > kArmsStill;
+  }
+  if (!standing || arms_move || shaking_.norm() > kQuiet) time_quiet_ = 0.0;
   if (standing && !starting && time_quiet_ < kQuietTime) return;
   error = error.cwiseMax(-kLargestError).cwiseMin(kLargestError);
   const double faster = standing ? kStandingBalanceFactor : 1.0;
