@@ -33,7 +33,7 @@ if(IS_SYMLINK ${share}/plugin-sources)  # of an earlier version
   file(REMOVE ${share}/plugin-sources)
 endif()
 file(MAKE_DIRECTORY ${share}/plugin-sources/backend)
-foreach(layer state_estimator icp_planner step_adjuster toe_off whole_body_controller)
+foreach(layer state_estimator icp_planner step_adjuster toe_off whole_body_controller task_source)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/plugins/${layer} ${share}/plugin-sources/${layer} SYMBOLIC)
 endforeach()
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/sim/mujoco ${share}/plugin-sources/backend/mujoco SYMBOLIC)
