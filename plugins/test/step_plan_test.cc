@@ -78,6 +78,21 @@ TEST(StepPlan, AnErrorMovesTheFootholdItsWayAndALargerOneFurther) {
   EXPECT_LT(with_error(w, 0.0, -0.15).shift[1], -0.05);  // outwards: to the right
 }
 
+TEST(StepPlan, AShockMovesNoFootholdAndAPushDoes) {
+  const SyntheticWalk w = in_swing();
+  StepPlan layer(atlas());
+  GaitdRobotState robot = w.robot;
+  const auto shift = [&](double error) {
+    robot.icp[0] = w.robot.icp[0] + error;
+    return process(layer, w, robot).shift[0];
+  };
+  for (int i = 0; i < 50; ++i) ASSERT_EQ(shift(0.0), 0.0);
+  for (double error : {0.08, 0.12, 0.04, -0.06, -0.12, -0.05}) ASSERT_EQ(shift(error), 0.0);
+  double pushed = 0.0;
+  for (int i = 0; i < 60; ++i) pushed = shift(0.1);
+  EXPECT_GT(pushed, 0.03);
+}
+
 TEST(StepPlan, MissesLessThanAnUnchangedStepWould) {
   for (double fraction : {0.2, 0.5, 0.7}) {
     const SyntheticWalk w = in_swing(fraction);
@@ -262,7 +277,8 @@ double cost(const StepProblem& p, const StepWeights& w, const Vector2d& before, 
     beyond =
         std::max(beyond, CaptureSet::direction(i).dot(icp - p.commanded - D) - p.capture.limit[i]);
   }
-  return (D - p.start_shift).squaredNorm() + w.cmp * (d / p.kappa).squaredNorm() +
+  const double used = 1.0 - std::exp(-p.omega * time_before);
+  return (D - p.start_shift).squaredNorm() + w.cmp * used * (d / p.kappa).squaredNorm() +
          w.change * (D - before).squaredNorm() + w.missed * missed.squaredNorm() +
          w.time * std::pow(T - p.planned, 2) + w.time_change * std::pow(T - time_before, 2) +
          1e4 * beyond * beyond;
@@ -326,6 +342,21 @@ TEST(StepQp, NoAdmissiblePointIsMuchBetterThanItsSolution) {
     }
     EXPECT_LE(here, elsewhere + 0.1 * elsewhere + 1e-2) << run;
   }
+}
+
+TEST(StepQp, AFootholdThatIsHeldStaysAndTheTimeMakesUpForIt) {
+  StepProblem p = example();
+  p.icp = {0.13, 0.05};  // ahead
+  p.held = true;
+  const StepWeights weights{
+      .cmp = 0.1, .change = 1.0, .time = 0.0, .time_change = 0.01, .missed = 80.0};
+  Vector2d shift(0.02, 0.01);
+  double time = 0.35;
+  StepQp qp;
+  ASSERT_TRUE(qp.solve(p, weights, shift, time));
+  EXPECT_NEAR(shift.x(), 0.02, 1e-9);
+  EXPECT_NEAR(shift.y(), 0.01, 1e-9);
+  EXPECT_LT(time, 0.34);
 }
 
 TEST(StepQp, TheTransferAfterTouchdownBringsBackWhatItsFeedbackAndItsFeetCan) {

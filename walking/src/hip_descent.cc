@@ -48,4 +48,21 @@ double highest_hip(const SwingTrajectory& swing, double now, double duration, co
   return highest;
 }
 
+double highest_hip(const TrailingLeg& leg) {
+  // Over a foot that stands the CoM goes on as a pendulum, between two feet at its speed.
+  const double growth = leg.omega * leg.swing;
+  const Eigen::Vector2d way =
+      leg.lever * (std::cosh(growth) - 1.0) + leg.velocity * (std::sinh(growth) / leg.omega);
+  const Eigen::Vector2d velocity =
+      leg.lever * (leg.omega * std::sinh(growth)) + leg.velocity * std::cosh(growth);
+  const double lead = kLead / leg.omega;
+  const Eigen::Vector2d hip = leg.hip.head<2>() + way + velocity * std::max(leg.transfer, lead);
+  const double vertical = leg.longest * leg.longest - (hip - leg.ankle.head<2>()).squaredNorm();
+  const double least = kSteepest * leg.longest;
+  // A leg that lands straight cannot lower the hip: it is down by then.
+  const double early = std::max(leg.swing - lead, 0.0);
+  return leg.ankle.z() + std::sqrt(std::max(vertical, least * least)) +
+         0.5 * kBraking * leg.gravity * early * early;
+}
+
 }  // namespace gaitd::walking

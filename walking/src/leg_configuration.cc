@@ -76,6 +76,13 @@ void LegConfiguration::enter(LegState state, double knee) {
   knee_at_entry_ = knee;
 }
 
+void LegConfiguration::keep_lowered(const ReferenceFilter& lowering) {
+  if (lowering.value() <= reference_.knee) return;
+  reference_.knee = lowering.value();
+  reference_.rate = lowering.velocity();
+  reference_.acceleration = lowering.acceleration();
+}
+
 const LegConfiguration::Reference& LegConfiguration::update(double dt, int side, double knee,
                                                             const ReferenceFilter& lowering,
                                                             const GaitdGaitState& gait,
@@ -117,6 +124,7 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
       const double rate = standing ? kSettleRate : kStraightenRate;
       const double ramp = knee_at_entry_ - rate * time_in_state_;
       reference_.knee = std::max({straight, ramp, knee - kMaxLead});
+      if (gait.next_side != side) keep_lowered(lowering);
       break;
     }
     case LegState::kCollapsed: {
@@ -128,11 +136,7 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
       const double s = std::min(1.0, time_in_state_ / kCollapseDuration);
       const double start = std::max(straight, knee_at_entry_);
       reference_.knee = start + (p[Legs::kCollapsedKnee] - start) * s * s * (3.0 - 2.0 * s);
-      if (lowering.value() > reference_.knee) {
-        reference_.knee = lowering.value();
-        reference_.rate = lowering.velocity();
-        reference_.acceleration = lowering.acceleration();
-      }
+      keep_lowered(lowering);
       break;
     }
     case LegState::kBent:
@@ -140,6 +144,7 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
       break;
     case LegState::kStraight:
       reference_.knee = straight;
+      if (gait.next_side != side) keep_lowered(lowering);
       break;
     case LegState::kExtend:
       reference_.knee = p[Legs::kStraightKnee];

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/hip_descent.h"
@@ -23,6 +24,7 @@ constexpr double kHeelStrikeTime = 0.1;  // s after touchdown in which the drive
 constexpr double kLevelRate = 1.0;       // 1/s, with which a walk levels the pelvis
 constexpr double kLandingKnee = 0.5;     // of the knee of walk-bent
 constexpr double kShortestLeg = 0.3;     // of its length
+constexpr double kRollingStep = 0.2;     // leg lengths ahead, of a step that has toe-off
 // Of the tasks: the height and the pelvis come to rest without an overshoot, light limbs may swing.
 constexpr double kHeightDamping = 1.0;
 constexpr double kTrunkDamping = 0.8;
@@ -102,6 +104,7 @@ void ObjectiveBuilder::reset(const GaitdRobotState& robot, const GaitdGaitState&
   mode_ = gait.mode;
   height_.reset(robot.com[2], robot.com_velocity[2]);
   lowering_.reset(leg_parameters_[Legs::kStraightKnee]);
+  lowered_side_ = GAITD_BOTH;
   const Eigen::Quaterniond pelvis = sdk::quaternion(robot.pelvis_orientation);
   yaw_.reset(sdk::yaw_of(pelvis));
   tilt_ = sdk::log_so3(sdk::from_yaw(-yaw_.value()) * pelvis);
@@ -311,20 +314,62 @@ double ObjectiveBuilder::highest_hip_of_swing(const GaitdRobotState& robot,
                       .gravity = model_.gravity});
 }
 
+double ObjectiveBuilder::highest_hip_of_transfer(const GaitdRobotState& robot,
+                                                 const GaitdGaitState& gait) const {
+  const bool swing = gait.phase == GAITD_PHASE_SWING;
+  const int leading = swing ? gait.next_side : other_side(gait.next_side);
+  const int trailing = other_side(leading);
+  const GaitdPose& from = gait.footholds[trailing].pose;
+  const GaitdPose& to = swing ? gait.adjusted[0].pose : gait.footholds[leading].pose;
+  const Eigen::Vector3d step =
+      sdk::quaternion(from.orientation).conjugate() * (view(to.position) - view(from.position));
+  // The heel of a leg that is left behind comes up.
+  if (step.x() > kRollingStep * leg_length_) return std::numeric_limits<double>::max();
+  return highest_hip(TrailingLeg{
+      .hip = hip(trailing),
+      .ankle = ankle(trailing),
+      .longest = legs_[trailing].geometry().length(leg_parameters_[Legs::kStraightKnee]),
+      .lever = Eigen::Vector3d(view(robot.com) - view(from.position)).head<2>(),
+      .velocity = Eigen::Vector3d(view(robot.com_velocity)).head<2>(),
+      .swing = swing ? std::max(gait.time_remaining, 0.0) : 0.0,
+      .transfer = swing ? gait.adjusted[1].transfer_duration : std::max(gait.time_remaining, 0.0),
+      .omega = gait.omega,
+      .gravity = model_.gravity});
+}
+
 void ObjectiveBuilder::update_lowering(double dt, const GaitdRobotState& robot,
                                        const GaitdGaitState& gait) {
   const double straight = leg_parameters_[Legs::kStraightKnee];
-  if (gait.phase != GAITD_PHASE_SWING) {
+  const bool swing = gait.phase == GAITD_PHASE_SWING;
+  const bool transfer = gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 &&
+                        gait.trailing_side == gait.next_side;
+  const int standing = swing ? gait.support : transfer ? other_side(gait.next_side) : GAITD_BOTH;
+  if (standing == GAITD_BOTH) {
     lowering_.reset(straight);
+    lowered_side_ = standing;
     return;
   }
-  const LegGeometry& leg = legs_[gait.support].geometry();
+  const GaitdLeg& joints = model_.legs[standing];
+  if (standing != lowered_side_) {
+    lowering_.reset(std::max(straight, joints.knee_bend_sign * robot.joint_position[joints.knee]));
+    lowered_side_ = standing;
+  }
+  const LegGeometry& leg = legs_[standing].geometry();
   const double longest = leg.length(straight);
-  const Eigen::Vector3d stance = ankle(gait.support);
-  const double high = highest_hip_of_swing(robot, gait, longest, longest) - stance.z();
-  const double behind = (hip(gait.support) - stance).head<2>().norm();
+  const Eigen::Vector3d foot = ankle(standing);
+  double high = std::numeric_limits<double>::max();
+  if (swing) high = highest_hip_of_swing(robot, gait, longest, longest);
+  if (transfer || gait.footstep_count > 1) {
+    high = std::min(high, highest_hip_of_transfer(robot, gait));
+  }
+  high -= foot.z();
+  const double rate = kDescentRate / scale_.time;
+  Eigen::Vector2d hip_now = hip(standing).head<2>();
+  // Vaults over its foot, by as much as the filter is behind.
+  if (transfer) hip_now += 2.0 / rate * Eigen::Vector3d(view(robot.com_velocity)).head<2>();
+  const double behind = (hip_now - foot.head<2>()).norm();
   const double length = std::hypot(behind, std::max(high, kShortestLeg * longest));
-  lowering_.update(dt, leg.knee(std::min(longest, length)), kDescentRate / scale_.time);
+  lowering_.update(dt, leg.knee(std::min(longest, length)), rate);
 }
 
 void ObjectiveBuilder::update_privileged(double dt, const GaitdRobotState& robot,

@@ -88,5 +88,53 @@ TEST_F(HipDescent, FootholdsOutOfReachGiveNumbers) {
   EXPECT_TRUE(std::isfinite(at(kDuration)));
 }
 
+// A leg on a foot 0.2 m to the side of its hip.
+TrailingLeg trailing() {
+  return {.hip = Eigen::Vector3d(0.0, 0.2, 0.85),
+          .ankle = Eigen::Vector3d(0.0, 0.0, 0.08),
+          .longest = 0.8,
+          .lever = Eigen::Vector2d::Zero(),
+          .velocity = Eigen::Vector2d::Zero(),
+          .swing = 0.0,
+          .transfer = 0.2,
+          .omega = 3.0,
+          .gravity = 9.81};
+}
+
+TEST(TrailingLeg, IsAsLongAsItMayBeWhereTheHipIsAtLiftOff) {
+  TrailingLeg leg = trailing();
+  EXPECT_NEAR(highest_hip(leg), 0.08 + std::sqrt(0.8 * 0.8 - 0.2 * 0.2), 1e-9);
+  leg.velocity = Eigen::Vector2d(0.0, 0.5);
+  EXPECT_NEAR(highest_hip(leg), 0.08 + std::sqrt(0.8 * 0.8 - 0.3 * 0.3), 1e-9);
+  // A transfer that waits, as far ahead as the leg is behind.
+  leg.transfer = 0.0;
+  const double away = 0.2 + 0.5 * 0.4 / leg.omega;
+  EXPECT_NEAR(highest_hip(leg), 0.08 + std::sqrt(0.8 * 0.8 - away * away), 1e-9);
+}
+
+TEST(TrailingLeg, TheHipComesDownGentlyAndIsDownAtTouchdown) {
+  TrailingLeg leg = trailing();
+  const double down = highest_hip(leg);
+  double last = down;
+  for (double left = 0.01; left < 0.5; left += 0.01) {
+    leg.swing = left;
+    const double height = highest_hip(leg);
+    const double early = std::max(left - 0.4 / leg.omega, 0.0);
+    EXPECT_NEAR(height, down + 0.5 * 0.2 * leg.gravity * early * early, 1e-9) << left;
+    EXPECT_GE(height, last - 1e-9) << left;
+    last = height;
+  }
+}
+
+TEST(TrailingLeg, APendulumThatFallsAwayFromItsFootAsksForALowerHip) {
+  TrailingLeg leg = trailing();
+  leg.swing = 0.1;
+  const double still = highest_hip(leg);
+  leg.lever = Eigen::Vector2d(0.0, 0.1);
+  EXPECT_LT(highest_hip(leg), still - 0.005);
+  leg.swing = 3.0;
+  EXPECT_TRUE(std::isfinite(highest_hip(leg)));
+}
+
 }  // namespace
 }  // namespace gaitd::walking

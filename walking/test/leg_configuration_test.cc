@@ -154,6 +154,25 @@ TEST(LegConfiguration, BendsTheLegThatStandsForAFootThatComesDownLower) {
   EXPECT_GT(trailing, 50);
 }
 
+TEST(LegConfiguration, TheLeadingLegGivesWayToOneThatTrails) {
+  LegsOfAWalk w(GAITD_MODE_WALK_STRAIGHT);
+  ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3}).refused());
+  int leading = 0;
+  w.check = [&](int side, const LegConfiguration::Reference& r) {
+    const GaitdGaitState& g = w.gait();
+    const bool transfer = g.phase == GAITD_PHASE_TRANSFER && g.transfer_final == 0 &&
+                          g.trailing_side == GAITD_RIGHT && g.next_side == GAITD_RIGHT;
+    if (side == GAITD_RIGHT) w.lowering.reset(transfer ? 1.4 : 0.0, transfer ? 0.7 : 0.0);
+    if (!transfer || side != GAITD_LEFT || w.lowering.value() < 1.0) return;
+    ++leading;
+    ASSERT_EQ(r.knee, 1.4);
+    ASSERT_EQ(r.rate, 0.7);
+  };
+  w.tick();
+  ASSERT_TRUE(w.run_until_stand());
+  EXPECT_GT(leading, 100);
+}
+
 TEST(LegConfiguration, StraighteningStartsAtTheMeasuredKneeAndKeepsItsRate) {
   SyntheticWalk w;
   LegConfiguration leg;

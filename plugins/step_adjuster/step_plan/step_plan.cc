@@ -20,6 +20,8 @@ constexpr double kHold = 0.09;
 constexpr double kLeastLeft = 1.3 * kHold;
 // sqrt(h/g), after touchdown: the landing and not the feedback decides where the CMP is.
 constexpr double kSettling = 0.3;
+// sqrt(h/g), for which an ICP that moves without a CMP that moves it has to last: a shock does not.
+constexpr double kLasting = 0.05;
 
 double square(double x) { return x * x; }
 
@@ -67,6 +69,7 @@ void StepPlan::set_parameter(int index, double value) {
 
 void StepPlan::reset() {
   feedback_.reset();
+  icp_known_ = false;
   step_index_ = -1;
   phase_ = GAITD_PHASE_STAND;
   start_shift_.setZero();
@@ -210,7 +213,7 @@ StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
   c.omega = gait.omega;
   c.kappa = feedback_.kappa();
   c.com = view(in.robot->com).head<2>();
-  c.icp = view(in.robot->icp);
+  c.icp = icp_;
   const double growth = std::exp(c.omega * gait.time_remaining);
   if (gait.phase == GAITD_PHASE_TRANSFER) {
     c.swing = gait.adjusted[0].swing_duration;
@@ -275,8 +278,8 @@ void StepPlan::adjust(const GaitdStepAdjusterInput& in) {
   const double dead_band = p_[P::kDeadBand] * length_;
   const bool transfer = gait.phase == GAITD_PHASE_TRANSFER;
   // What the CMP brings back moves no foothold; but a transfer may rather end earlier.
-  const bool held = step.missed(shift_, now).norm() < dead_band * step.gamma;
-  if (held && !transfer) return;
+  step.held = step.missed(shift_, now).norm() < dead_band * step.gamma;
+  if (step.held && !transfer) return;
   add_limits(in, step);
   // What a step leaves to the next costs the shift that the next will need for it, and so on:
   // E^2 - 1 of the Riccati equation of x' = E x - u, for steps of the commanded pace.
@@ -294,15 +297,25 @@ void StepPlan::adjust(const GaitdStepAdjusterInput& in) {
   Eigen::Vector2d shift = shift_;
   double remaining = now;
   if (!qp_.solve(step, weights, shift, remaining)) return;
-  if (held) shift = shift_;
   const double change = (shift - shift_).norm() + speed * std::abs(remaining - now);
   if (change < dead_band) return;
   shift_ = shift;
   time_shift_ = remaining - step.planned;
 }
 
+void StepPlan::observe_icp(const GaitdStepAdjusterInput& in) {
+  const Eigen::Vector2d measured = view(in.robot->icp);
+  if (!icp_known_) icp_ = ecmp_ = measured;
+  icp_known_ = true;
+  const double dt = in.time.period;
+  icp_ += in.gait->omega * dt * (icp_ - ecmp_);
+  icp_ += (1.0 - std::exp(-dt / (kLasting * time_))) * (measured - icp_);
+}
+
 GaitdStatus StepPlan::process(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out) {
+  observe_icp(in);
   feedback_.update(in, out);
+  ecmp_ = view(out.ecmp);
   const GaitdGaitState& gait = *in.gait;
   const bool transfer = gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 &&
                         gait.trailing_side != GAITD_BOTH;

@@ -76,12 +76,17 @@ class StepPlan {
   HalfPlane clear(const Eigen::Vector2d& foot, const Eigen::Vector2d& goal, int side) const;
   CaptureSet capture_set(const GaitdGaitState& gait) const;
   void adjust(const GaitdStepAdjusterInput& in);
+  // Carries the ICP on with the CMP of the tick before, and follows what is measured slowly enough
+  // to leave out shocks.
+  void observe_icp(const GaitdStepAdjusterInput& in);
 
   const GaitdModel model_;
   double length_, time_;  // m, s: h and sqrt(h/g), h the nominal height of the CoM
   Eigen::Vector2d
       apart_;  // m, of two soles that just do not touch: behind each other, side by side
   walking::IcpFeedback feedback_;
+  Eigen::Vector2d icp_, ecmp_;  // m, W: of observe_icp, and the one of the tick before
+  bool icp_known_ = false;
   sdk::Parameters<P> p_{kParameters};
   StepQp qp_;
   int step_index_ = -1;  // of the phase that the following belong to

@@ -91,7 +91,8 @@ void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vecto
     g_ += w.missed * miss[k] * e.transpose();
     H_(kShift + k, kShift + k) += 1.0 + w.change;
     g_[kShift + k] -= p.start_shift[k] + w.change * shift[k];
-    H_(kMoment + k, kMoment + k) += w.cmp / (lever * lever);
+    // The less time, the less a CMP elsewhere costs: 1 - exp(-w T) of it.
+    H_(kMoment + k, kMoment + k) += w.cmp / (lever * tau);
     for (int j = 0; j < StepProblem::kLater; ++j) {
       // With it the best q leaves the share `left` of e where no bound holds it.
       const LaterPhase& later = p.later[j];
@@ -168,6 +169,7 @@ void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vecto
   }
   lower_.setConstant(-kInfinity);
   upper_.setConstant(kInfinity);
+  if (p.held) lower_.segment<2>(kShift) = upper_.segment<2>(kShift) = shift;
   for (int j = 0; j < StepProblem::kLater; ++j) {
     if (p.later[j].free()) continue;
     lower_.segment<2>(kLater + 2 * j).setZero();

@@ -58,6 +58,7 @@ struct StepProblem {
   double longest = 0.0;
   double foot_speed = 0.0;  // m/s, mean, of the way that is left
   double swing = 0.0;       // s, after this phase
+  bool held = false;        // the foothold stays where it was decided to be
 
   Eigen::Vector2d ecmp() const { return walking::ecmp_of(cmp, com, kappa); }
   // What the plan misses at touchdown with the best constant CMPs and this shift, when this phase

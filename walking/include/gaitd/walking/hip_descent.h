@@ -26,4 +26,20 @@ struct SwingLeg {
 // follows this height lets the leg reach its foothold, also one that is late or lower than planned.
 double highest_hip(const SwingTrajectory& swing, double now, double duration, const SwingLeg& leg);
 
+// The leg that trails in a transfer, with its sole flat.
+struct TrailingLeg {
+  Eigen::Vector3d hip;       // m, W, now
+  Eigen::Vector3d ankle;     // m, W
+  double longest;            // m, hip to ankle
+  Eigen::Vector2d lever;     // m, W: CoM from the foot that stands alone until the transfer begins
+  Eigen::Vector2d velocity;  // m/s, W, of the CoM
+  double swing;              // s until the transfer begins
+  double transfer;           // s that it lasts, or is left of it
+  double omega;              // 1/s, of the pendulum of the swing
+  double gravity;            // m/s^2
+};
+
+// m, W: how high the hip may be now for that leg to reach its foothold until it lifts off.
+double highest_hip(const TrailingLeg& leg);
+
 }  // namespace gaitd::walking

@@ -60,7 +60,7 @@ class LegConfiguration {
   void set_leg(const GaitdModel& model, int side, double hip_ahead);
   void reset(double knee);
   // `side` is this leg, `knee` its measured bend (rad). `lowering` (rad): the bend at which the hip
-  // is low enough for the other foot to come down. One call per tick of `dt` seconds.
+  // is low enough for the other leg, when this one stands. One call per tick of `dt` seconds.
   const Reference& update(double dt, int side, double knee, const ReferenceFilter& lowering,
                           const GaitdGaitState& gait, const LegParameters& parameters);
   const LegGeometry& geometry() const { return leg_; }
@@ -68,6 +68,7 @@ class LegConfiguration {
 
  private:
   void enter(LegState state, double knee);
+  void keep_lowered(const ReferenceFilter& lowering);
   LegState next_state(bool straightened, bool lowered, int side, const GaitdGaitState& gait,
                       const LegParameters& p) const;
   // rad: as straight as the next step allows this leg to stand.

@@ -89,6 +89,8 @@ class ObjectiveBuilder {
   // ground.
   double highest_hip_of_swing(const GaitdRobotState& robot, const GaitdGaitState& gait,
                               double longest, double longest_down) const;
+  // m, W: for the leg that trails in this transfer, or in the one after this swing.
+  double highest_hip_of_transfer(const GaitdRobotState& robot, const GaitdGaitState& gait) const;
   void update_lowering(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait);
   void update_privileged(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                          GaitdObjectives& out);
@@ -122,8 +124,9 @@ class ObjectiveBuilder {
   int swing_step_ = -1;      // step index of the trajectory in swing_
   int swing_revision_ = -1;  // plan revision it was made for
   ReferenceFilter height_;
-  int mode_ = GAITD_MODE_STAND;  // of the gait, that height_ was begun in
-  ReferenceFilter lowering_;  // rad, bend of the leg that stands, for the other foot to come down
+  int mode_ = GAITD_MODE_STAND;    // of the gait, that height_ was begun in
+  ReferenceFilter lowering_;       // rad, bend of the leg that stands, for the other one to reach
+  int lowered_side_ = GAITD_BOTH;  // the leg that stands
   Eigen::Vector3d ankle_in_sole_[GAITD_MAX_FEET];  // m, above a level sole
   ReferenceFilter yaw_;
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // rad, held while standing, level in a walk
