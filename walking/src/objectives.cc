@@ -63,8 +63,7 @@ ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
       scale_(model),
       kinematics_(model),
       self_collision_(model) {
-  std::copy(std::begin(model_.nominal_position), std::end(model_.nominal_position),
-            references_.joint_position);
+  std::copy_n(model_.nominal_position, GAITD_MAX_JOINTS, references_.joint_position);
   kinematics_.update(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(), sdk::Vector6d::Zero(),
                      sdk::head(model_.nominal_position, model_.joint_count),
                      Eigen::VectorXd::Zero(model_.joint_count));

@@ -23,7 +23,7 @@ constexpr double kLargestError = 2.0;
 constexpr double kQuietTime = 0.1;
 constexpr double kQuiet = 1.0;
 constexpr double kStill = 0.2;
-constexpr double kArmsStill = 0.3;  // rad/s
+constexpr double kArmsStill = 0.3;      // rad/s
 constexpr double kLargestDrift = 0.01;  // rad/s, taken for a bias
 constexpr double kStillTime = 0.2;      // s
 // Share of the load that makes a foot an anchor: near half, as feet sink in under their load, and

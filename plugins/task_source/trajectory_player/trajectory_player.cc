@@ -58,8 +58,7 @@ GaitdStatus TrajectoryPlayer::process(const GaitdTaskSourceInput& in, GaitdTaskR
   }
   leave(in.motions->parts[GAITD_PART_PELVIS], *in.gait);
   play_body(out);
-  std::copy(std::begin(model_.nominal_position), std::end(model_.nominal_position),
-            out.joint_position);
+  std::copy_n(model_.nominal_position, GAITD_MAX_JOINTS, out.joint_position);
   for (int hand = 0; hand < GAITD_MAX_HANDS; ++hand) play_arm(hand, in, out);
   return GAITD_OK;
 }
