@@ -26,6 +26,7 @@ constexpr double kLandedStop = 0.2;
 // time.
 constexpr double kReadyAlong = 0.04247;
 constexpr double kReadyAcross = 0.02548;
+constexpr double kReadyFor = 0.01;  // s, that it has to last: a measured ICP is noisy
 
 // ICP closer than this to the edge of both feet is not held by them (m).
 constexpr double kHeldMargin = 0.01;
@@ -159,6 +160,7 @@ void GaitMachine::begin_swing(const GaitdRobotState& robot) {
   state_.late_contact = 0;
   state_.footholds[side].contact = GAITD_CONTACT_NONE;
   landed_impulse_ = 0.0;
+  ready_time_ = 0.0;
   shift_ = path_offset_;
   time_shift_ = 0.0;
   sdk::view(lift_off_.position) = sdk::view(robot.feet[side].position);
@@ -199,6 +201,28 @@ Eigen::Quaterniond GaitMachine::heading() const {
           .orientation);
 }
 
+// m, of an ICP that has not come over the leading foot: what this foot's CMP brings back until the
+// other one lands.
+double GaitMachine::ready_across(const GaitdIcpPlan& plan) const {
+  const int side = other_side(state_.next_side);
+  const double growth = std::exp(state_.omega * state_.adjusted[0].swing_duration);
+  const Eigen::Vector2d cmp =
+      (growth * sdk::view(plan.icp_end) - sdk::view(plan.icp_touchdown)) / (growth - 1.0);
+  ConvexPolygon sole;
+  add_foothold(state_.footholds[side], model_.feet[side].toe_point, sole);
+  sole.make_hull();
+  const Eigen::Vector3d inwards =
+      heading() * Eigen::Vector3d(0.0, side_sign(state_.next_side), 0.0);
+  double room = kReadyAcross * scale_.length;
+  for (int i = 0; sole.size() >= 3 && i < sole.size(); ++i) {
+    const Eigen::Vector2d edge = sole.vertex((i + 1) % sole.size()) - sole.vertex(i);
+    const Eigen::Vector2d out = Eigen::Vector2d(edge.y(), -edge.x()).normalized();
+    const double across = out.dot(inwards.head<2>());
+    if (across > 0.5) room = std::min(room, out.dot(sole.vertex(i) - cmp) / across);
+  }
+  return std::max(room, 0.0) * (1.0 - 1.0 / growth);
+}
+
 // Waiting helps an ICP that has not come far enough towards the leading foot; one that runs ahead
 // or has left the feet only gets away.
 bool GaitMachine::icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& plan) const {
@@ -213,7 +237,7 @@ bool GaitMachine::icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& pl
                                                       sdk::view(leading.position));
   const double behind = next.x() < 0.0 ? local.x() : -local.x();
   const double inside = side_sign(state_.next_side) * local.y();
-  return behind <= kReadyAlong * scale_.length && inside <= kReadyAcross * scale_.length;
+  return behind <= kReadyAlong * scale_.length && inside <= ready_across(plan);
 }
 
 // The ground loads a foot and stops it where it bears. A heel that brushes an edge, and the foot's
@@ -279,10 +303,14 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
           recovering_ = false;
           begin_stand();
         }
-      } else if (adjustment.active != 0 && adjustment.time_shift != time_shift_) {
+        break;
+      }
+      const bool ready = state_.time_remaining <= kReadyFor && icp_ready(robot, plan);
+      ready_time_ = ready ? ready_time_ + dt : 0.0;
+      if (adjustment.active != 0 && adjustment.time_shift != time_shift_) {
         adjust(adjustment);
-      } else if (over &&
-                 (icp_ready(robot, plan) || state_.time_in_phase >= end + kTransferPatience)) {
+      } else if (over && (ready_time_ > kReadyFor - 0.5 * dt ||
+                          state_.time_in_phase >= end + kTransferPatience)) {
         begin_swing(robot);
       }
       break;

@@ -265,6 +265,34 @@ TEST(GaitMachine, ATransferWaitsForTheIcpButNotForEver) {
   EXPECT_NEAR(seconds[1] - seconds[0], patience, 2e-3);
 }
 
+// s, of the transfer onto the left foot, with the ICP that far to the right of its plan (m).
+double transfer_with(double right, const std::function<void(SyntheticWalk&)>& each_tick = {}) {
+  SyntheticWalk w;
+  EXPECT_FALSE(
+      w.machine.walk({.steps = 3, .length = 0.3, .swing_duration = 0.8, .first_side = GAITD_LEFT})
+          .refused());
+  EXPECT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 2));
+  w.icp_error_left = -right;
+  if (each_tick) w.on_update = [&] { each_tick(w); };
+  const int begin = w.ticks;
+  EXPECT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 2));
+  return (w.ticks - begin) * w.dt;
+}
+
+TEST(GaitMachine, ATransferWaitsForAnIcpThatTheLeadingFootCannotKeep) {
+  const double planned = transfer_with(0.0);
+  EXPECT_NEAR(transfer_with(0.005), planned, 2e-3);
+  EXPECT_NEAR(transfer_with(-0.02), planned, 2e-3);  // beyond its plan already
+  // Within the 3 cm that any transfer may miss, and beside the foot.
+  EXPECT_NEAR(transfer_with(0.028), planned + GaitMachine::kTransferPatience, 2e-3);
+}
+
+TEST(GaitMachine, OneLuckyTickEndsNoTransfer) {
+  const double planned = transfer_with(0.0);
+  const auto noise = [](SyntheticWalk& w) { w.icp_error_left = w.ticks % 5 == 0 ? 0.0 : -0.06; };
+  EXPECT_NEAR(transfer_with(0.06, noise), planned + GaitMachine::kTransferPatience, 2e-3);
+}
+
 TEST(GaitMachine, ATransferDoesNotWaitForAnIcpThatRunsAhead) {
   SyntheticWalk w;
   w.icp_error = 0.3;

@@ -30,7 +30,7 @@ class SyntheticWalk {
   void tick() {
     move_feet();
     robot.icp[0] = plan.icp[0] + icp_error;
-    robot.icp[1] = plan.icp[1];
+    robot.icp[1] = plan.icp[1] + icp_error_left;
     robot.com[0] = plan.icp[0];
     robot.com[1] = plan.icp[1];
     machine.update(dt, robot, plan, toe_off, adjustment);
@@ -79,6 +79,7 @@ class SyntheticWalk {
   double landing_load = 2.0;        // of the weight, on a foot that is down
   double ground_error = 0.0;        // m, of the ground under the swing foot
   double icp_error = 0.0;           // m, forwards
+  double icp_error_left = 0.0;      // m
   int ticks = 0;
 
  private:

@@ -107,6 +107,7 @@ class GaitMachine {
   int recovery_side(const GaitdRobotState& robot, const Eigen::Vector2d& away) const;
   // After a recovery: the step that brings the feet side by side again, if they are not.
   void close_after_recovery();
+  double ready_across(const GaitdIcpPlan& plan) const;
   bool icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& plan) const;
   // Copies the queue into the state, with shifts and height offset.
   void publish_footsteps();
@@ -152,6 +153,7 @@ class GaitMachine {
   VelocityWalk drive_;
   StepTiming::Changes time_changes_{};  // s, from the transfer of the current step on
   double time_unheld_ = 0.0;            // s, since the feet cannot hold the ICP
+  double ready_time_ = 0.0;             // s, for which the ICP has been ready
   double landed_impulse_ = 0.0;         // N s, of the load on the swing foot since it came
   bool recovering_ = false;             // the steps of now are the robot's own
   struct Goal {
