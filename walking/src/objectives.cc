@@ -24,7 +24,7 @@ constexpr double kHeelStrikeTime = 0.1;  // s after touchdown in which the drive
 constexpr double kLevelRate = 1.0;       // 1/s, with which a walk levels the pelvis
 constexpr double kLandingKnee = 0.5;     // of the knee of walk-bent
 constexpr double kShortestLeg = 0.3;     // of its length
-constexpr double kRollingStep = 0.2;     // leg lengths ahead, of a step that has toe-off
+constexpr double kShortStep = 0.2;       // leg lengths: a longer one ahead has toe-off
 // Of the tasks: the height and the pelvis come to rest without an overshoot, light limbs may swing.
 constexpr double kHeightDamping = 1.0;
 constexpr double kTrunkDamping = 0.8;
@@ -322,8 +322,12 @@ double ObjectiveBuilder::highest_hip_of_transfer(const GaitdRobotState& robot,
   const GaitdPose& to = swing ? gait.adjusted[0].pose : gait.footholds[leading].pose;
   const Eigen::Vector3d step =
       sdk::quaternion(from.orientation).conjugate() * (view(to.position) - view(from.position));
-  // The heel of a leg that is left behind comes up.
-  if (step.x() > kRollingStep * leg_length_) return std::numeric_limits<double>::max();
+  // The heel of a leg that is left behind comes up, and a short way every leg reaches.
+  const double sideways = std::max(std::abs(step.y()) - model_.nominal_foot_separation, 0.0);
+  const double shortest = kShortStep * leg_length_;
+  if (step.x() > shortest || std::hypot(std::min(step.x(), 0.0), sideways) < shortest) {
+    return std::numeric_limits<double>::max();
+  }
   return highest_hip(TrailingLeg{
       .hip = hip(trailing),
       .ankle = ankle(trailing),
@@ -348,11 +352,8 @@ void ObjectiveBuilder::update_lowering(double dt, const GaitdRobotState& robot,
     lowered_side_ = standing;
     return;
   }
-  const GaitdLeg& joints = model_.legs[standing];
-  if (standing != lowered_side_) {
-    lowering_.reset(std::max(straight, joints.knee_bend_sign * robot.joint_position[joints.knee]));
-    lowered_side_ = standing;
-  }
+  if (standing != lowered_side_) lowering_.reset(straight);
+  lowered_side_ = standing;
   const LegGeometry& leg = legs_[standing].geometry();
   const double longest = leg.length(straight);
   const Eigen::Vector3d foot = ankle(standing);
