@@ -21,7 +21,7 @@ constexpr double kLeastLeft = 1.3 * kHold;
 // sqrt(h/g), after touchdown: the landing and not the feedback decides where the CMP is.
 constexpr double kSettling = 0.3;
 // sqrt(h/g), for which an ICP that moves without a CMP that moves it has to last: a shock does not.
-constexpr double kLasting = 0.06;
+constexpr double kLasting = 0.045;
 
 double square(double x) { return x * x; }
 
