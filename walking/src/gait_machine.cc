@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/icp_feedback.h"
 #include "gaitd/walking/support.h"
 
 namespace gaitd::walking {
@@ -207,7 +208,7 @@ double GaitMachine::ready_across(const GaitdIcpPlan& plan) const {
   const int side = other_side(state_.next_side);
   const double growth = std::exp(state_.omega * state_.adjusted[0].swing_duration);
   const Eigen::Vector2d cmp =
-      (growth * sdk::view(plan.icp_end) - sdk::view(plan.icp_touchdown)) / (growth - 1.0);
+      planned_cmp(sdk::view(plan.icp_end), sdk::view(plan.icp_touchdown), growth);
   ConvexPolygon sole;
   add_foothold(state_.footholds[side], model_.feet[side].toe_point, sole);
   sole.make_hull();

@@ -16,6 +16,13 @@ constexpr double kLead = 0.4;       // 1/omega, by which a leg is behind what it
 constexpr double kFall = 0.1;       // heights of the CoM, down to ground where that matters in full
 constexpr double kSteepest = 0.5;   // longest leg: lower no foot makes it
 
+// m, W: of a hip there, over an ankle that a leg of that length spans.
+double height_over(const Eigen::Vector3d& ankle, const Eigen::Vector2d& hip, double longest) {
+  const double vertical = longest * longest - (hip - ankle.head<2>()).squaredNorm();
+  const double least = kSteepest * longest;
+  return ankle.z() + std::sqrt(std::max(vertical, least * least));
+}
+
 }  // namespace
 
 double highest_hip(const SwingTrajectory& swing, double now, double duration, const SwingLeg& leg) {
@@ -39,9 +46,7 @@ double highest_hip(const SwingTrajectory& swing, double now, double duration, co
     const Eigen::Vector2d hip = leg.hip.head<2>() +
                                 leg.lever * (std::cosh(leg.omega * ahead) - 1.0) +
                                 leg.velocity * (std::sinh(leg.omega * ahead) / leg.omega);
-    const double vertical = longest * longest - (hip - ankle.head<2>()).squaredNorm();
-    const double least = kSteepest * longest;
-    const double height = ankle.z() + std::sqrt(std::max(vertical, least * least));
+    const double height = height_over(ankle, hip, longest);
     const double early = std::max(0.0, ahead - lead);
     highest = std::min(highest, height + speed * ahead + 0.5 * braking * early * early);
   }
@@ -57,12 +62,9 @@ double highest_hip(const TrailingLeg& leg) {
       leg.lever * (leg.omega * std::sinh(growth)) + leg.velocity * std::cosh(growth);
   const double lead = kLead / leg.omega;
   const Eigen::Vector2d hip = leg.hip.head<2>() + way + velocity * std::max(leg.transfer, lead);
-  const double vertical = leg.longest * leg.longest - (hip - leg.ankle.head<2>()).squaredNorm();
-  const double least = kSteepest * leg.longest;
   // A leg that lands straight cannot lower the hip: it is down by then.
   const double early = std::max(leg.swing - lead, 0.0);
-  return leg.ankle.z() + std::sqrt(std::max(vertical, least * least)) +
-         0.5 * kBraking * leg.gravity * early * early;
+  return height_over(leg.ankle, hip, leg.longest) + 0.5 * kBraking * leg.gravity * early * early;
 }
 
 }  // namespace gaitd::walking

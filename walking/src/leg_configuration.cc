@@ -47,7 +47,7 @@ double LegConfiguration::straightest(int side, const GaitdGaitState& gait,
 
 // The state that the gait asks for, given the one the leg is in.
 LegState LegConfiguration::next_state(bool straightened, bool lowered, int side,
-                                      const GaitdGaitState& gait, const LegParameters& p) const {
+                                      const GaitdGaitState& gait) const {
   const double fraction =
       gait.phase_duration > 0.0 ? gait.time_in_phase / gait.phase_duration : 0.0;
   if (gait.phase == GAITD_PHASE_SWING) {
@@ -76,13 +76,6 @@ void LegConfiguration::enter(LegState state, double knee) {
   knee_at_entry_ = knee;
 }
 
-void LegConfiguration::keep_lowered(const ReferenceFilter& lowering) {
-  if (lowering.value() <= reference_.knee) return;
-  reference_.knee = lowering.value();
-  reference_.rate = lowering.velocity();
-  reference_.acceleration = lowering.acceleration();
-}
-
 const LegConfiguration::Reference& LegConfiguration::update(double dt, int side, double knee,
                                                             const ReferenceFilter& lowering,
                                                             const GaitdGaitState& gait,
@@ -92,7 +85,7 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
   reference_.rate = reference_.acceleration = 0.0;
   const bool straightened = reference_.knee <= straight + 1e-9;
   const bool lowered = lowering.value() > p[Legs::kCollapsedKnee];
-  const LegState wanted = next_state(straightened, lowered, side, gait, p);
+  const LegState wanted = next_state(straightened, lowered, side, gait);
   if (wanted != reference_.state) enter(wanted, knee);
   if (gait.mode != mode_) {
     mode_ = gait.mode;
@@ -124,7 +117,6 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
       const double rate = standing ? kSettleRate : kStraightenRate;
       const double ramp = knee_at_entry_ - rate * time_in_state_;
       reference_.knee = std::max({straight, ramp, knee - kMaxLead});
-      if (gait.next_side != side) keep_lowered(lowering);
       break;
     }
     case LegState::kCollapsed: {
@@ -136,7 +128,6 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
       const double s = std::min(1.0, time_in_state_ / kCollapseDuration);
       const double start = std::max(straight, knee_at_entry_);
       reference_.knee = start + (p[Legs::kCollapsedKnee] - start) * s * s * (3.0 - 2.0 * s);
-      keep_lowered(lowering);
       break;
     }
     case LegState::kBent:
@@ -144,11 +135,16 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
       break;
     case LegState::kStraight:
       reference_.knee = straight;
-      if (gait.next_side != side) keep_lowered(lowering);
       break;
     case LegState::kExtend:
       reference_.knee = p[Legs::kStraightKnee];
       break;
+  }
+  // The leg that stands gives way where the other one has to reach.
+  if (gait.next_side != side && lowering.value() > reference_.knee) {
+    reference_.knee = lowering.value();
+    reference_.rate = lowering.velocity();
+    reference_.acceleration = lowering.acceleration();
   }
   return reference_;
 }

@@ -43,12 +43,6 @@ walking::ConvexPolygon turned(const walking::ConvexPolygon& polygon, double yaw,
   return result;
 }
 
-// Constant CMP that an ICP goes from `start` to `end` with, growing by `growth`.
-Eigen::Vector2d planned_cmp(const Eigen::Vector2d& start, const Eigen::Vector2d& end,
-                            double growth) {
-  return (growth * start - end) / (growth - 1.0);
-}
-
 }  // namespace
 
 using sdk::view;
@@ -173,8 +167,8 @@ LaterPhase StepPlan::swing_to_come(const GaitdGaitState& gait, const GaitdIcpPla
   LaterPhase phase;
   phase.share = growth - 1.0;
   phase.region = stance_sole(gait).inset(feedback_[walking::Feedback::kMargin]);
-  phase.cmp =
-      phase.region.closest_point(planned_cmp(view(plan.icp_end), view(plan.icp_touchdown), growth));
+  phase.cmp = phase.region.closest_point(
+      walking::planned_cmp(view(plan.icp_end), view(plan.icp_touchdown), growth));
   return phase;
 }
 
@@ -202,7 +196,7 @@ LaterPhase StepPlan::next_transfer(const GaitdGaitState& gait, const GaitdIcpPla
   phase.share = std::expm1(used) / growth;
   phase.left = std::exp(-(1.0 + gain / gait.omega) * used);
   phase.cmp = phase.region.closest_point(
-      planned_cmp(view(plan.icp_touchdown), view(plan.icp_transferred), growth));
+      walking::planned_cmp(view(plan.icp_touchdown), view(plan.icp_transferred), growth));
   return phase;
 }
 
@@ -230,7 +224,7 @@ StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
   c.icp_end = view(in.plan->icp_touchdown) + c.gamma * (start_shift_ - made);
   const Eigen::Vector2d planned = view(in.plan->icp) - view(in.plan->offset);
   const Eigen::Vector2d ecmp = growth > 1.0 + 1e-6
-                                   ? planned_cmp(planned, view(in.plan->icp_end), growth)
+                                   ? walking::planned_cmp(planned, view(in.plan->icp_end), growth)
                                    : Eigen::Vector2d(view(in.plan->ecmp));
   c.cmp_region = feedback_.cmp_region(gait);
   c.cmp = c.cmp_region.closest_point(walking::cmp_of(ecmp, c.com, c.kappa));

@@ -53,6 +53,11 @@ inline Eigen::Vector2d ecmp_of(const Eigen::Vector2d& cmp, const Eigen::Vector2d
                                double kappa) {
   return com - (com - cmp) / kappa;
 }
+// Constant CMP that an ICP goes from `start` to `end` with, growing by `growth`.
+inline Eigen::Vector2d planned_cmp(const Eigen::Vector2d& start, const Eigen::Vector2d& end,
+                                   double growth) {
+  return (growth * start - end) / (growth - 1.0);
+}
 
 // Tracks the ICP reference by moving the CMP (theory section 3):
 //   r_eCMP = r_ref + (1 + k/w) (xi - xi_ref), k along and across the motion of the reference

@@ -68,9 +68,7 @@ class LegConfiguration {
 
  private:
   void enter(LegState state, double knee);
-  void keep_lowered(const ReferenceFilter& lowering);
-  LegState next_state(bool straightened, bool lowered, int side, const GaitdGaitState& gait,
-                      const LegParameters& p) const;
+  LegState next_state(bool straightened, bool lowered, int side, const GaitdGaitState& gait) const;
   // rad: as straight as the next step allows this leg to stand.
   double straightest(int side, const GaitdGaitState& gait, const LegParameters& p) const;
   Reference reference_{LegState::kBent, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
