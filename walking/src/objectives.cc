@@ -20,11 +20,10 @@ using sdk::view;
 // finds no ground.
 constexpr double kHeightRate = 2.3;
 constexpr double kDescentRate = 5.4;
-constexpr double kHeelStrikeTime = 0.1;  // s after touchdown in which the drives damp
-constexpr double kLevelRate = 1.0;       // 1/s, with which a walk levels the pelvis
-constexpr double kLandingKnee = 0.5;     // of the knee of walk-bent
-constexpr double kShortestLeg = 0.3;     // of its length
-constexpr double kShortStep = 0.2;       // leg lengths: a longer one ahead has toe-off
+constexpr double kLevelRate = 1.0;    // 1/s, with which a walk levels the pelvis
+constexpr double kLandingKnee = 0.5;  // of the knee of walk-bent
+constexpr double kShortestLeg = 0.3;  // of its length
+constexpr double kShortStep = 0.2;    // leg lengths: a longer one ahead has toe-off
 // Of the tasks: the height and the pelvis come to rest without an overshoot, light limbs may swing.
 constexpr double kHeightDamping = 1.0;
 constexpr double kTrunkDamping = 0.8;
@@ -38,9 +37,6 @@ constexpr double kPelvisYaw = 0.2;
 // much of the step ahead of its ankle, and comes down for it by so many heights of the CoM at most.
 constexpr double kReachShare = 0.9;
 constexpr double kReachDrop = 0.1;
-// Drives of the legs of a robot.yaml without impedance, in effort limits: by what the leg does.
-constexpr double kDriveDamping[] = {0.012, 0.02, 0.024};  // s/rad: support, swing, strike
-constexpr double kSwingDriveStiffness = 0.2;              // 1/rad
 constexpr double kYawRate = 6.0;  // 1/s, of the reference filter of the heading
 
 double heading(const GaitdPose& pose) { return sdk::yaw_of(sdk::quaternion(pose.orientation)); }
@@ -139,34 +135,6 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
   update_privileged(dt, robot, gait, out);
   update_impedance(gait, out);
   self_collision_.update(kinematics_, out);
-}
-
-void ObjectiveBuilder::update_impedance(const GaitdGaitState& gait, GaitdObjectives& out) const {
-  auto set = [&](int joint, Impedance state) {
-    const int s = static_cast<int>(state);
-    if (impedance_given_) {
-      out.joint_stiffness[joint] = stiffness_[s][joint];
-      out.joint_damping[joint] = damping_[s][joint];
-      return;
-    }
-    const double limit = model_.joints[joint].effort_limit;
-    out.joint_stiffness[joint] = state == Impedance::kSwing ? kSwingDriveStiffness * limit : 0.0;
-    out.joint_damping[joint] = kDriveDamping[s] * limit;
-  };
-  for (int i = 0; i < model_.joint_count; ++i) {
-    out.joint_stiffness[i] = out.joint_damping[i] = 0.0;
-    if (impedance_given_) set(i, Impedance::kSupport);
-  }
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    const bool swing = gait.footholds[side].contact == GAITD_CONTACT_NONE;
-    const bool strike = !swing && time_in_contact_[side] < kHeelStrikeTime;
-    const GaitdLeg& leg = model_.legs[side];
-    for (int i = 0; i < leg.joint_count; ++i) {
-      set(leg.joints[i], swing    ? Impedance::kSwing
-                         : strike ? Impedance::kHeelStrike
-                                  : Impedance::kSupport);
-    }
-  }
 }
 
 void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
