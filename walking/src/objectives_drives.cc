@@ -8,12 +8,18 @@ namespace {
 // Drives of the legs of a robot.yaml without impedance, in effort limits: by what the leg does.
 constexpr double kDriveDamping[] = {0.012, 0.02, 0.024};  // s/rad: support, swing, strike
 constexpr double kSwingDriveStiffness = 0.2;              // 1/rad
-// Of arms, neck and the like: a gripper weighs little, and friction would keep it where it is.
+// Of arms, neck and the like that somebody moves: a gripper weighs little, and friction would keep
+// it where it is. The others are left to balance.
 constexpr double kPostureDriveStiffness = 6.0;  // 1/rad
 constexpr double kPostureDriveDamping = 0.05;   // s/rad
 constexpr double kHeelStrikeTime = 0.1;         // s after touchdown in which the drives damp
 
 }  // namespace
+
+bool ObjectiveBuilder::asked_for(int joint) const {
+  return references_.joint_position[joint] != model_.nominal_position[joint] ||
+         references_.joint_velocity[joint] != 0.0;
+}
 
 void ObjectiveBuilder::update_impedance(const GaitdGaitState& gait, GaitdObjectives& out) const {
   auto set = [&](int joint, Impedance state) {
@@ -31,7 +37,7 @@ void ObjectiveBuilder::update_impedance(const GaitdGaitState& gait, GaitdObjecti
     out.joint_stiffness[i] = out.joint_damping[i] = 0.0;
     if (impedance_given_) {
       set(i, Impedance::kSupport);
-    } else if (posture_joint_[i]) {
+    } else if (posture_joint_[i] && asked_for(i)) {
       out.joint_stiffness[i] = kPostureDriveStiffness * model_.joints[i].effort_limit;
       out.joint_damping[i] = kPostureDriveDamping * model_.joints[i].effort_limit;
     }

@@ -54,6 +54,17 @@ Hurry hurry(double late, double acceleration, double most) {
                                              (early.gain + acceleration * t) * after};
 }
 
+// The motion of the point `ahead` metres further on along the sole.
+SwingTrajectory::Sample shifted(const SwingTrajectory::Sample& s, double ahead) {
+  const Eigen::Vector3d arm = s.orientation * Eigen::Vector3d(ahead, 0.0, 0.0);
+  const Eigen::Vector3d turning = s.angular_velocity.cross(arm);
+  SwingTrajectory::Sample point = s;
+  point.position += arm;
+  point.velocity += turning;
+  point.acceleration += s.angular_acceleration.cross(arm) + s.angular_velocity.cross(turning);
+  return point;
+}
+
 bool same_goal(const GaitdFootstep& a, const GaitdFootstep& b) {
   return sdk::view(a.pose.position) == sdk::view(b.pose.position) &&
          sdk::quaternion(a.pose.orientation).coeffs() ==
@@ -66,10 +77,15 @@ bool same_goal(const GaitdFootstep& a, const GaitdFootstep& b) {
 SwingShape swing_shape(const GaitdModel& model, const SwingParameters& parameters) {
   const GaitScale scale(model);
   const double landing_speed = parameters[Swing::kLandingSpeed] * scale.speed;
+  double toe = 0.0;
+  for (const GaitdFoot& foot : model.feet) {
+    for (int i = 0; i < foot.point_count; ++i) toe = std::max(toe, foot.points[i][0]);
+  }
   return {.landing_speed = landing_speed,
           .late_velocity = landing_speed,
           .late_speed = kLateSpeed,
-          .edge_height = kEdgeHeight * scale.length};
+          .edge_height = kEdgeHeight * scale.length,
+          .toe = toe};
 }
 
 void Quintic::fit(double x0, double v0, double a0, double x1, double v1, double a1, double T) {
@@ -134,7 +150,11 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   const double rise = std::max(0.0, edge(to, shape));
   const double drop = std::max(0.0, -edge(to, shape));
   leave_ = std::max(t, rise * kRiseWait * duration_);
-  const Eigen::Vector2d end = sdk::view(to.pose.position).head<2>();
+  led_ = rise * shape.toe;
+  const Sample led = shifted(now, led_);
+  const Eigen::Quaterniond goal = sdk::quaternion(to.pose.orientation);
+  const Eigen::Vector2d end =
+      (sdk::view(to.pose.position) + goal * Eigen::Vector3d(led_, 0.0, 0.0)).head<2>();
   const Eigen::Vector2d beyond = drop * kBeyondEdge * (end - lift_off_);
   // A foothold that moves late is reached in its own time, and at touchdown at the latest.
   const auto needed = [](const Eigen::Vector2d& way) {
@@ -142,7 +162,7 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   };
   const double arrival = blend(1.0, kDropArrive, drop) * duration_;
   const auto arrive = [&](const Eigen::Vector2d& goal) {
-    return std::max({arrival, std::min(leave_ + needed(goal - now.position.head<2>()), duration_),
+    return std::max({arrival, std::min(leave_ + needed(goal - led.position.head<2>()), duration_),
                      leave_ + kShortest});
   };
   arrive_ = arrive(end + beyond);
@@ -151,11 +171,11 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   level_ = std::max(blend(1.0, kRiseLevel, rise) * duration_, t + kShortest);
   const double way = arrive_ - leave_;
   // Who waits does not move.
-  const Eigen::Vector3d v = leave_ > t ? Eigen::Vector3d::Zero() : now.velocity;
-  const Eigen::Vector3d a = leave_ > t ? Eigen::Vector3d::Zero() : now.acceleration;
+  const Eigen::Vector3d v = leave_ > t ? Eigen::Vector3d::Zero() : led.velocity;
+  const Eigen::Vector3d a = leave_ > t ? Eigen::Vector3d::Zero() : led.acceleration;
   for (int i = 0; i < 2; ++i) {
     const double over = end[i] + (goes_beyond ? beyond[i] : 0.0);
-    ahead_[i].fit(now.position[i], v[i], a[i], over, 0.0, 0.0, way);
+    ahead_[i].fit(led.position[i], v[i], a[i], over, 0.0, 0.0, way);
     back_[i].fit(over, 0.0, 0.0, end[i], 0.0, 0.0, std::max(duration_ - arrive_, kShortest));
   }
   const double goal_height = to.pose.position[2];
@@ -175,7 +195,6 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
                 T);
   }
   from_orientation_ = now.orientation;
-  const Eigen::Quaterniond goal = sdk::quaternion(to.pose.orientation);
   const Eigen::Vector3d turn = sdk::log_so3(goal * now.orientation.conjugate());
   for (int i = 0; i < 3; ++i) {
     turn_[i].fit(0.0, now.angular_velocity[i], now.angular_acceleration[i], turn[i], 0.0, 0.0,
@@ -207,6 +226,10 @@ SwingTrajectory::Sample SwingTrajectory::evaluate(double t) const {
   // First order of the left Jacobian of SO(3); exact while the axis stays.
   s.angular_velocity = rate + 0.5 * turn.cross(rate);
   s.angular_acceleration = acceleration + 0.5 * turn.cross(acceleration);
+  const Sample sole = shifted(s, -led_);
+  s.position.head<2>() = sole.position.head<2>();
+  s.velocity.head<2>() = sole.velocity.head<2>();
+  s.acceleration.head<2>() = sole.acceleration.head<2>();
   if (t > duration_) {
     const double late = t - duration_;
     const auto [gain, way] = hurry(late, kLateAcceleration, late_gain_);

@@ -273,6 +273,30 @@ TEST(SwingTrajectory, RisesInFrontOfAnEdgeAndIsLevelAboveIt) {
   }
 }
 
+// A foot that rolled over its toe is turned back as it rises: its origin has to give way.
+TEST(SwingTrajectory, TheToeStaysWhereItWasUntilItIsAboveTheEdge) {
+  SwingShape shape = kShape;
+  shape.toe = 0.13;
+  const Vector3d ahead(shape.toe, 0.0, 0.0);
+  const GaitdPose from = pose(0.03, 0.0, 0.1, 0.0, 0.8, 0.0);
+  const GaitdPose to = pose(0.3, 0.05, 0.2, 0.0, -0.1, 0.2);
+  SwingTrajectory s;
+  s.begin(from, sdk::Vector6d::Zero(), 0.0, landing(to), kDuration, shape);
+  const auto toe = [&](double t) -> Vector3d {
+    return s.evaluate(t).position + s.evaluate(t).orientation * ahead;
+  };
+  const double before = toe(0.0).x();
+  for (double t = 0.0; t <= kDuration; t += 0.005) {
+    if (toe(t).z() < 0.1) EXPECT_NEAR(toe(t).x(), before, 2e-3) << t;
+  }
+  EXPECT_LT((s.evaluate(kDuration).position - Vector3d(0.3, 0.05, 0.2)).norm(), 1e-9);
+  for (double t = 0.02; t < kDuration - 0.02; t += 0.01) {
+    const double h = 1e-5;
+    const Vector3d rate = (s.evaluate(t + h).position - s.evaluate(t - h).position) / (2.0 * h);
+    EXPECT_LT((rate - s.evaluate(t).velocity).norm(), 0.02) << t;
+  }
+}
+
 TEST(SwingTrajectory, IsPastAnEdgeBeforeItComesDown) {
   const GaitdPose from = pose(0.0, 0.0, 0.2);
   const GaitdPose to = pose(0.38, 0.0, 0.0);

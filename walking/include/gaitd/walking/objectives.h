@@ -94,6 +94,8 @@ class ObjectiveBuilder {
   void update_lowering(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait);
   void update_privileged(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                          GaitdObjectives& out);
+  // Whether the joint is to be elsewhere than in the nominal posture, or on its way.
+  bool asked_for(int joint) const;
   void update_impedance(const GaitdGaitState& gait, GaitdObjectives& out) const;
   GaitdTask& add_task(GaitdObjectives& out, int type, int index, std::uint32_t mask) const;
   void add_orientation_task(int body, const Eigen::Quaterniond& goal,

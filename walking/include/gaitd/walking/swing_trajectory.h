@@ -19,6 +19,7 @@ struct SwingShape {
   double late_velocity = 0.3;  // m/s, downwards when the touchdown is due
   double late_speed = 1.0;     // m/s, downwards at most while the touchdown is overdue
   double edge_height = 0.12;   // m, a step up or down that is an edge in full; less, in proportion
+  double toe = 0.0;            // m, from the origin of the sole to its front
 };
 SwingShape swing_shape(const GaitdModel& model, const SwingParameters& parameters);
 
@@ -36,7 +37,8 @@ class Quintic {
 
 // Path of the sole of the swing foot in W, with continuous acceleration: from lift-off over an apex
 // above the higher of both footholds down to the foothold, which it meets with a downward velocity.
-// Onto an edge the foot first rises, and is level before it is above it; down an edge it is above
+// Onto an edge the foot first rises, its toe where it was, however it turns meanwhile, and is level
+// before it is above it; down an edge it is above
 // beyond its foothold before it comes down, and goes back to it at the bottom. After the planned
 // end it keeps going down, faster and faster, until the ground is met.
 class SwingTrajectory {
@@ -69,6 +71,7 @@ class SwingTrajectory {
   double level_ = 0.0;     // s, after which it has the orientation of its foothold
   double apex_height_ = 0.0;
   double late_velocity_ = 0.0;
+  double led_ = 0.0;                     // m, ahead in the sole, of the point that the way leads
   double late_gain_ = 0.0;               // m/s, on top of late_velocity_ at most
   std::array<Quintic, 2> ahead_, back_;  // from above: to the arrival, then to the foothold
   Quintic z_up_, z_down_;
