@@ -14,7 +14,7 @@ namespace {
 // As the teams of Atlas did it: torque over stiffness, the torque filtered, the angle bounded, so
 // that one bad torque sensor does not move a joint (see docs/decisions/compensation.md).
 constexpr double kTorqueBandwidth = 100.0;  // Hz
-constexpr double kLargestBend = 0.1;       // rad
+constexpr double kLargestBend = 0.1;        // rad
 // In which friction turns round with the rate that the link is to have. The Stribeck speed of real
 // joints is 0.02 to 0.15 rad/s; a step there would make the drive chatter while it stands.
 constexpr double kTurnRate = 0.08;  // rad/s
