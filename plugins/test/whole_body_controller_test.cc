@@ -521,5 +521,31 @@ TEST(NullspaceQp, ThePrivilegedKneeDecidesWhichWayTheBodyMoves) {
   }
 }
 
+// One freedom, two legs that want opposite things of it: the heavier one has its way.
+TEST(NullspaceQp, WeightsSayWhichLegCounts) {
+  double knee[2];
+  for (int heavier : {GAITD_LEFT, GAITD_RIGHT}) {
+    Bench b;
+    b.straighten(0.4);
+    for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
+      const GaitdLeg& leg = atlas().legs[side];
+      const double bend = side == GAITD_LEFT ? 20.0 : -60.0;
+      b.objectives->privileged_acceleration[leg.knee] = leg.knee_bend_sign * bend;
+      b.objectives->privileged_acceleration[leg.hip_pitch] = 0.5 * leg.hip_pitch_bend_sign * bend;
+      b.objectives->privileged_acceleration[leg.ankle_pitch] =
+          0.5 * leg.ankle_pitch_bend_sign * bend;
+      for (int joint : {leg.knee, leg.hip_pitch, leg.ankle_pitch}) {
+        b.objectives->privileged_weight[joint] = side == heavier ? 150.0 : 5.0;
+      }
+    }
+    NullspaceQp controller(atlas());
+    ASSERT_EQ(b.process(controller), GAITD_OK);
+    const GaitdLeg& left = atlas().legs[GAITD_LEFT];
+    knee[heavier] = left.knee_bend_sign * b.out->info.joint_acceleration[left.knee];
+  }
+  EXPECT_GT(knee[GAITD_LEFT], 5.0);
+  EXPECT_LT(knee[GAITD_RIGHT], -5.0);
+}
+
 }  // namespace
 }  // namespace gaitd::plugins

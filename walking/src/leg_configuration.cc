@@ -9,8 +9,9 @@
 namespace gaitd::walking {
 namespace {
 
-constexpr double kShortestStep = 1e-3;     // m, that has a direction
-constexpr double kCollapseDuration = 0.3;  // s, of the ramp to the collapsed knee
+constexpr double kShortestStep = 1e-3;  // m, that has a direction
+constexpr double kStraightened = 0.01;  // rad, from the straight knee
+constexpr double kLeastBend = 0.1;      // rad, that its speed is reckoned with
 // Leg lengths, of the hip from mid-stance to touchdown: a leg that stands straight lets it come
 // down no further before the other foot is on the ground.
 constexpr double kLargestDrop = 0.25;
@@ -19,6 +20,7 @@ constexpr double kLargestDrop = 0.25;
 
 void LegConfiguration::set_leg(const GaitdModel& model, int side, double hip_ahead) {
   leg_ = LegGeometry(model, side);
+  scale_ = GaitScale(model);
   hip_ahead_ = hip_ahead;
   separation_ = model.nominal_foot_separation;
 }
@@ -66,33 +68,36 @@ LegState LegConfiguration::next_state(bool straightened, bool lowered, int side,
 }
 
 void LegConfiguration::reset(double knee) {
+  reference_.state = LegState::kBent;
   reference_.knee = knee;
-  enter(LegState::kBent, knee);
+  stance_.reset(knee);
 }
 
-void LegConfiguration::enter(LegState state, double knee) {
-  reference_.state = state;
-  time_in_state_ = 0.0;
-  knee_at_entry_ = knee;
+void LegConfiguration::follow(double dt, double target, double rate, double knee) {
+  const double shortening = leg_.shortening(std::max(stance_.value(), kLeastBend));
+  stance_.update(dt, target, rate / scale_.time, kRise * scale_.speed / shortening);
+  reference_.acceleration = stance_.acceleration();
+  if (stance_.value() < knee - kMaxLead) {
+    stance_.reset(knee - kMaxLead, stance_.velocity());
+    reference_.acceleration = 0.0;
+  }
+  reference_.knee = stance_.value();
+  reference_.rate = stance_.velocity();
 }
 
-const LegConfiguration::Reference& LegConfiguration::update(double dt, int side, double knee,
-                                                            const ReferenceFilter& lowering,
-                                                            const GaitdGaitState& gait,
-                                                            const LegParameters& p) {
-  time_in_state_ += dt;
+const LegConfiguration::Reference& LegConfiguration::update(
+    double dt, int side, double knee, double rate, const ReferenceFilter& lowering, double deepest,
+    const GaitdGaitState& gait, const LegParameters& p) {
   const double straight = straightest(side, gait, p);
   reference_.rate = reference_.acceleration = 0.0;
-  const bool straightened = reference_.knee <= straight + 1e-9;
+  // A leg that did not carry begins where it is.
+  const LegState before = reference_.state;
+  const bool swung = before == LegState::kBent || before == LegState::kExtend;
+  if (swung || gait.mode != mode_) stance_.reset(knee, rate);
+  mode_ = gait.mode;
+  const bool straightened = stance_.value() <= straight + kStraightened;
   const bool lowered = lowering.value() > p[Legs::kCollapsedKnee];
-  const LegState wanted = next_state(straightened, lowered, side, gait);
-  if (wanted != reference_.state) enter(wanted, knee);
-  if (gait.mode != mode_) {
-    mode_ = gait.mode;
-    enter(LegState::kStraighten == wanted || LegState::kStraight == wanted ? LegState::kStraighten
-                                                                           : wanted,
-          knee);
-  }
+  reference_.state = next_state(straightened, lowered, side, gait);
 
   if (gait.mode != GAITD_MODE_WALK_STRAIGHT) {
     // The commanded height bends a leg that carries the robot; only the others need to be told.
@@ -112,29 +117,21 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
   reference_.damping = gains.damping;
   reference_.weight = gains.weight;
   switch (reference_.state) {
-    case LegState::kStraighten: {
-      const bool standing = gait.phase == GAITD_PHASE_STAND;
-      const double rate = standing ? kSettleRate : kStraightenRate;
-      const double ramp = knee_at_entry_ - rate * time_in_state_;
-      reference_.knee = std::max({straight, ramp, knee - kMaxLead});
+    case LegState::kStraighten:
+    case LegState::kStraight:
+      follow(dt, straight, gait.phase == GAITD_PHASE_STAND ? kSettleRate : kStanceRate, knee);
       break;
-    }
-    case LegState::kCollapsed: {
-      if (gait.phase != GAITD_PHASE_SWING) {
+    case LegState::kCollapsed:
+      if (gait.phase == GAITD_PHASE_SWING) {
+        follow(dt, std::max(straight, p[Legs::kCollapsedKnee]), kStanceRate, knee);
+      } else {
         // Hip and toe say how long a trailing leg is; a knee of its own would drag the toe.
         reference_.knee = std::max(knee, p[Legs::kCollapsedKnee]);
-        break;
+        stance_.reset(knee, rate);
       }
-      const double s = std::min(1.0, time_in_state_ / kCollapseDuration);
-      const double start = std::max(straight, knee_at_entry_);
-      reference_.knee = start + (p[Legs::kCollapsedKnee] - start) * s * s * (3.0 - 2.0 * s);
       break;
-    }
     case LegState::kBent:
       reference_.knee = p[Legs::kSwingKnee];
-      break;
-    case LegState::kStraight:
-      reference_.knee = straight;
       break;
     case LegState::kExtend:
       reference_.knee = p[Legs::kStraightKnee];
@@ -145,6 +142,10 @@ const LegConfiguration::Reference& LegConfiguration::update(double dt, int side,
     reference_.knee = lowering.value();
     reference_.rate = lowering.velocity();
     reference_.acceleration = lowering.acceleration();
+    if (reference_.knee > deepest) {
+      reference_.knee = deepest;
+      reference_.rate = reference_.acceleration = 0.0;
+    }
   }
   return reference_;
 }

@@ -52,6 +52,10 @@ double LegGeometry::length(double knee) const {
                    2.0 * thigh_ * shank_ * std::cos(knee + offset_));
 }
 
+double LegGeometry::shortening(double knee) const {
+  return thigh_ * shank_ * std::sin(knee + offset_) / length(knee);
+}
+
 double LegGeometry::knee(double length) const {
   const double cosine =
       (length * length - thigh_ * thigh_ - shank_ * shank_) / (2.0 * thigh_ * shank_);

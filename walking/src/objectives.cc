@@ -37,7 +37,8 @@ constexpr double kPelvisYaw = 0.2;
 // much of the step ahead of its ankle, and comes down for it by so many heights of the CoM at most.
 constexpr double kReachShare = 0.9;
 constexpr double kReachDrop = 0.1;
-constexpr double kYawRate = 6.0;  // 1/s, of the reference filter of the heading
+constexpr double kAnkleMargin = 0.05;  // rad, before the stop of an ankle whose knee bends
+constexpr double kYawRate = 6.0;       // 1/s, of the reference filter of the heading
 
 double heading(const GaitdPose& pose) { return sdk::yaw_of(sdk::quaternion(pose.orientation)); }
 
@@ -340,6 +341,16 @@ void ObjectiveBuilder::update_lowering(double dt, const GaitdRobotState& robot,
   lowering_.update(dt, leg.knee(std::min(longest, length)), rate);
 }
 
+// rad, by which the ankle of a leg that bends may still give way: as far as half of the knee.
+double ObjectiveBuilder::ankle_room(int side, const GaitdRobotState& robot) const {
+  const GaitdLeg& leg = model_.legs[side];
+  const GaitdJoint& ankle = model_.joints[leg.ankle_pitch];
+  const double at = robot.joint_position[leg.ankle_pitch];
+  const double room =
+      leg.ankle_pitch_bend_sign > 0 ? ankle.position_max - at : at - ankle.position_min;
+  return room - kAnkleMargin;
+}
+
 void ObjectiveBuilder::update_privileged(double dt, const GaitdRobotState& robot,
                                          const GaitdGaitState& gait, GaitdObjectives& out) {
   for (int i = 0; i < GAITD_MAX_JOINTS; ++i) {
@@ -352,7 +363,8 @@ void ObjectiveBuilder::update_privileged(double dt, const GaitdRobotState& robot
     const double knee = leg.knee_bend_sign * robot.joint_position[leg.knee];
     const double rate = leg.knee_bend_sign * robot.joint_velocity[leg.knee];
     const LegConfiguration::Reference& r =
-        legs_[side].update(dt, side, knee, lowering_, gait, leg_parameters_);
+        legs_[side].update(dt, side, knee, rate, lowering_, knee + 2.0 * ankle_room(side, robot),
+                           gait, leg_parameters_);
     // The leg acts as a unit: half the knee to hip and ankle each keeps the direction of the
     // line from hip to ankle (theory section 4).
     const double bend =
@@ -360,8 +372,13 @@ void ObjectiveBuilder::update_privileged(double dt, const GaitdRobotState& robot
     out.privileged_acceleration[leg.knee] = leg.knee_bend_sign * bend;
     out.privileged_acceleration[leg.hip_pitch] = 0.5 * leg.hip_pitch_bend_sign * bend;
     out.privileged_acceleration[leg.ankle_pitch] = 0.5 * leg.ankle_pitch_bend_sign * bend;
+    // A leg counts as one that stands by as much as it carries.
+    const double swings = LegConfiguration::kBentGains.weight;
+    const bool touches = gait.footholds[side].contact != GAITD_CONTACT_NONE;
+    const double share = touches ? load_share(side, gait) : 0.0;
+    const double weight = r.weight > swings ? swings + share * (r.weight - swings) : r.weight;
     for (int joint : {leg.knee, leg.hip_pitch, leg.ankle_pitch}) {
-      out.privileged_weight[joint] = r.weight;
+      out.privileged_weight[joint] = weight;
     }
   }
 }

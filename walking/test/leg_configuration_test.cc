@@ -35,15 +35,18 @@ class LegsOfAWalk : public SyntheticWalk {
   }
   void update() {
     for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
-      const auto& r = legs[side].update(dt, side, knee[side], lowering, gait(), parameters());
+      const auto& r = legs[side].update(dt, side, knee[side], rate[side], lowering, deepest, gait(),
+                                        parameters());
       if (states[side].empty() || states[side].back() != r.state) states[side].push_back(r.state);
       if (check) check(side, r);
-      const double step = 6.0 * dt;
-      knee[side] += std::clamp(r.knee - knee[side], -step, step);
+      const double step = std::clamp(r.knee - knee[side], -6.0 * dt, 6.0 * dt);
+      knee[side] += step;
+      rate[side] = step / dt;
     }
   }
   LegConfiguration legs[2];
-  double knee[2] = {0.5, 0.5};
+  double knee[2] = {0.5, 0.5}, rate[2] = {0.0, 0.0};
+  double deepest = 3.0;
   ReferenceFilter lowering;
   std::vector<LegState> states[2];
   std::function<void(int, const LegConfiguration::Reference&)> check;
@@ -115,7 +118,7 @@ TEST(LegConfiguration, CollapsesLateInTheOtherLegsSwingAndWhileTrailing) {
     ++collapsed;
     ASSERT_EQ(r.state, LegState::kCollapsed);
     ASSERT_GE(r.knee, parameters()[Legs::kStraightKnee] - 1e-12);
-    ASSERT_LE(r.knee, parameters()[Legs::kCollapsedKnee] + 1e-12);
+    ASSERT_LE(r.knee, std::max(w.knee[side], parameters()[Legs::kCollapsedKnee]) + 1e-12);
   };
   w.tick();
   ASSERT_TRUE(w.run_until_stand());
@@ -173,33 +176,76 @@ TEST(LegConfiguration, TheLeadingLegGivesWayToOneThatTrails) {
   EXPECT_GT(leading, 100);
 }
 
-TEST(LegConfiguration, StraighteningStartsAtTheMeasuredKneeAndKeepsItsRate) {
+TEST(LegConfiguration, ALegBendsNoFurtherThanItsAnkle) {
+  LegsOfAWalk w(GAITD_MODE_WALK_STRAIGHT);
+  ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3}).refused());
+  w.lowering.reset(1.2, 0.7);
+  w.deepest = 0.8;
+  int lowered = 0;
+  w.check = [&](int side, const LegConfiguration::Reference& r) {
+    if (w.gait().phase != GAITD_PHASE_SWING || w.gait().support != side) return;
+    ++lowered;
+    ASSERT_EQ(r.knee, 0.8);
+    ASSERT_EQ(r.rate, 0.0);
+  };
+  w.tick();
+  ASSERT_TRUE(w.run_until_stand());
+  EXPECT_GT(lowered, 100);
+}
+
+// rad, the knee of a standing leg that follows what it is told, after each of `ticks` milliseconds;
+// `slowest` and `fastest` the rates at which its hip went up (m/s).
+std::vector<double> straightened(double knee, double rate, int ticks, double* fastest) {
   SyntheticWalk w;
   LegConfiguration leg;
-  leg.reset(0.9);
+  leg.set_leg(gaitd::testing::atlas(), GAITD_LEFT, 0.08);
+  leg.reset(knee);
   GaitdGaitState g = w.gait();
   g.mode = GAITD_MODE_WALK_STRAIGHT;
-  double knee = 0.9;
-  double last = knee;
-  for (int i = 0; i < 2000; ++i) {
-    const auto& r = leg.update(0.001, GAITD_LEFT, knee, ReferenceFilter(), g, parameters());
-    ASSERT_LE(r.knee, last + 1e-12);
-    ASSERT_GE(r.knee, last - 1.001 * LegConfiguration::kSettleRate * 0.001);
-    last = r.knee;
-    knee = r.knee;  // a leg that follows
+  g.phase = GAITD_PHASE_TRANSFER;
+  g.transfer_final = 1;
+  std::vector<double> knees;
+  *fastest = 0.0;
+  for (int i = 0; i < ticks; ++i) {
+    const auto& r =
+        leg.update(0.001, GAITD_LEFT, knee, rate, ReferenceFilter(), 3.0, g, parameters());
+    const double rise = leg.geometry().length(r.knee) - leg.geometry().length(knee);
+    *fastest = std::max(*fastest, rise / 0.001);
+    knee = r.knee;
+    rate = r.rate;
+    knees.push_back(knee);
   }
-  EXPECT_EQ(leg.reference().state, LegState::kStraight);
-  EXPECT_NEAR(last, parameters()[Legs::kStraightKnee], 1e-9);
+  return knees;
+}
+
+TEST(LegConfiguration, StraighteningGoesOnFromTheMeasuredKneeAndItsRate) {
+  double fastest = 0.0;
+  const std::vector<double> knees = straightened(0.7, 0.5, 2000, &fastest);
+  EXPECT_NEAR(knees.front(), 0.7 + 0.5e-3, 1e-4);
+  EXPECT_GT(*std::max_element(knees.begin(), knees.end()), 0.71);
+  EXPECT_NEAR(knees.back(), parameters()[Legs::kStraightKnee], 1e-3);
+  EXPECT_GE(*std::min_element(knees.begin(), knees.end()), parameters()[Legs::kStraightKnee]);
+}
+
+TEST(LegConfiguration, ALegThatIsMuchBentLiftsTheHipNoFasterThanItMay) {
+  double fastest = 0.0;
+  const std::vector<double> knees = straightened(1.7, 0.0, 3000, &fastest);
+  const GaitScale scale(gaitd::testing::atlas());
+  EXPECT_LT(fastest, 1.02 * LegConfiguration::kRise * scale.speed);
+  EXPECT_GT(fastest, 0.9 * LegConfiguration::kRise * scale.speed);
+  EXPECT_NEAR(knees.back(), parameters()[Legs::kStraightKnee], 1e-2);
 }
 
 TEST(LegConfiguration, NeverRunsAwayFromALegThatDoesNotFollow) {
   SyntheticWalk w;
   LegConfiguration leg;
+  leg.set_leg(gaitd::testing::atlas(), GAITD_LEFT, 0.08);
   leg.reset(1.2);
   GaitdGaitState g = w.gait();
   g.mode = GAITD_MODE_WALK_STRAIGHT;
   for (int i = 0; i < 5000; ++i) {
-    const auto& r = leg.update(0.001, GAITD_LEFT, 1.2, ReferenceFilter(), g, parameters());
+    const auto& r =
+        leg.update(0.001, GAITD_LEFT, 1.2, 0.0, ReferenceFilter(), 3.0, g, parameters());
     ASSERT_EQ(r.state, LegState::kStraighten);
     ASSERT_GE(r.knee, 1.2 - LegConfiguration::kMaxLead - 1e-12);
   }

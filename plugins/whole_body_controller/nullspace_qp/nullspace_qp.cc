@@ -2,12 +2,17 @@
 #include "nullspace_qp.h"
 
 namespace gaitd::plugins {
+namespace {
+
+constexpr double kLittleFreedom = 0.05;  // of the projector's trace, in the joints of one leg
+
+}  // namespace
 
 NullspaceQp::NullspaceQp(const GaitdModel& model)
-    : joints_(model.joint_count),
+    : legs_{model.legs[GAITD_LEFT], model.legs[GAITD_RIGHT]},
       qp_(model),
       projector_(6 + model.joint_count, InverseDynamicsQp::kMaxRows),
-      row_(6 + model.joint_count) {}
+      rows_(6 + model.joint_count, kLegJoints) {}
 
 GaitdStatus NullspaceQp::process(const GaitdWholeBodyControllerInput& in,
                                  GaitdWholeBodyControllerOutput& out) {
@@ -20,20 +25,28 @@ GaitdStatus NullspaceQp::process(const GaitdWholeBodyControllerInput& in,
   return GAITD_OK;
 }
 
+// The target is not projected: then the weights say which leg counts, as in the paper. Projected,
+// a single freedom would take the mean of both legs, whatever their weights.
 void NullspaceQp::add_privileged(const GaitdObjectives& objectives) {
   projector_.clear();
   qp_.claim(objectives, projector_);
   projector_.compute(p_[P::kDamping]);
-  for (int i = 0; i < joints_; ++i) {
-    if (objectives.privileged_weight[i] <= 0.0) continue;
-    projector_.row(6 + i, row_);
-    double target = 0.0;
-    for (int j = 0; j < joints_; ++j) {
-      if (objectives.privileged_weight[j] > 0.0) {
-        target += row_[6 + j] * objectives.privileged_acceleration[j];
-      }
+  for (const GaitdLeg& leg : legs_) {
+    double freedom = 0.0;
+    for (int k = 0; k < leg.joint_count; ++k) {
+      const int i = leg.joints[k];
+      if (objectives.privileged_weight[i] <= 0.0) continue;
+      projector_.row(6 + i, rows_.col(k));
+      freedom += rows_(6 + i, k);
     }
-    qp_.add_row(row_, target, objectives.privileged_weight[i]);
+    // A leg of which the tasks leave nothing would ask for the more.
+    const double share = freedom / (freedom + kLittleFreedom);
+    for (int k = 0; k < leg.joint_count; ++k) {
+      const int i = leg.joints[k];
+      if (objectives.privileged_weight[i] <= 0.0) continue;
+      qp_.add_row(rows_.col(k), share * objectives.privileged_acceleration[i],
+                  objectives.privileged_weight[i]);
+    }
   }
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <type_traits>
+
 #include "gaitd/sdk/layer.h"
 #include "inverse_dynamics_qp.h"
 #include "null_space_projector.h"
@@ -11,7 +14,7 @@ namespace gaitd::plugins {
 // momentum that the mode asks for, and pulls what no task claims towards the privileged leg
 // configuration. With the height left free the legs are as straight as they can be; with the pitch
 // of the trailing foot left free it rolls over its toe. The tasks do not feel it:
-//   min  … + |S N (vdot - vdot_p)|^2_Q     N: projector onto the null space of all tasks
+//   min  … + |S (N vdot - vdot_p)|^2_Q     N: projector onto the null space of all tasks
 class NullspaceQp {
  public:
   enum class P {
@@ -46,11 +49,12 @@ class NullspaceQp {
  private:
   void add_privileged(const GaitdObjectives& objectives);
 
-  const int joints_;
+  const std::array<GaitdLeg, GAITD_MAX_FEET> legs_;
   sdk::Parameters<P> p_{kParameters};
   InverseDynamicsQp qp_;
   NullSpaceProjector projector_;
-  Eigen::VectorXd row_;  // of the projector
+  static constexpr int kLegJoints = std::extent_v<decltype(GaitdLeg::joints)>;
+  Eigen::MatrixXd rows_;  // of the projector, a column for each joint of a leg
 };
 
 }  // namespace gaitd::plugins

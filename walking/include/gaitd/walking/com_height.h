@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 #include "gaitd/abi/types.h"
 
 namespace gaitd::walking {
@@ -14,10 +17,13 @@ class ReferenceFilter {
     velocity_ = velocity;
     acceleration_ = 0.0;
   }
-  // `rate` in 1/s.
-  void update(double dt, double target, double rate) {
+  // `rate` in 1/s; `fastest` bounds the velocity.
+  void update(double dt, double target, double rate,
+              double fastest = std::numeric_limits<double>::infinity()) {
+    const double before = velocity_;
     acceleration_ = rate * rate * (target - value_) - 2.0 * rate * velocity_;
-    velocity_ += acceleration_ * dt;
+    velocity_ = std::clamp(velocity_ + acceleration_ * dt, -fastest, fastest);
+    acceleration_ = (velocity_ - before) / dt;
     value_ += velocity_ * dt;
   }
   double value() const { return value_; }

@@ -15,6 +15,7 @@ struct GaitScale {
       : length(model.nominal_com_height),
         time(std::sqrt(length / model.gravity)),
         speed(std::sqrt(model.gravity * length)) {}
+  GaitScale(double length, double time, double speed) : length(length), time(time), speed(speed) {}
   double length;  // m
   double time;    // s
   double speed;   // m/s

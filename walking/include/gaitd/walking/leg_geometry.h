@@ -13,6 +13,8 @@ class LegGeometry {
 
   // m, for a knee bent by `knee` (rad, positive when bent).
   double length(double knee) const;
+  // m/rad, by which it is shorter the more the knee bends there.
+  double shortening(double knee) const;
   // rad, the bent knee that makes the leg `length` metres long; the nearest there is.
   double knee(double length) const;
   // rad, by which the thigh of a leg of that length points ahead of the line from hip to ankle.

@@ -92,6 +92,7 @@ class ObjectiveBuilder {
   // m, W: for the leg that trails in this transfer, or in the one after this swing.
   double highest_hip_of_transfer(const GaitdRobotState& robot, const GaitdGaitState& gait) const;
   void update_lowering(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait);
+  double ankle_room(int side, const GaitdRobotState& robot) const;
   void update_privileged(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                          GaitdObjectives& out);
   // Whether the joint is to be elsewhere than in the nominal posture, or on its way.
