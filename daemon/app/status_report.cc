@@ -91,8 +91,6 @@ json status_of(const Telemetry& telemetry) {
   };
   status["tick_us"] = get("tick/total_us");
   status["tick_longest_us"] = get_longest("tick/total_us");
-  constexpr const char* kLayerTimes[] = {"estimator_us", "planner_us", "adjuster_us",
-                                         "toe_off_us",   "wbc_us",     "tasks_us"};
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
     const std::string signal = std::string("tick/") + kLayerTimes[layer];
     status["layers"].push_back({{"time_us", get(signal)}, {"longest_us", get_longest(signal)}});

@@ -15,7 +15,7 @@ namespace {
 constexpr std::array<std::string_view, 4> kParts = {"pelvis", "chest", "arm", "hand"};
 constexpr std::array<std::string_view, 3> kFrames = {"world", "chest", "pelvis"};
 constexpr std::array<std::string_view, 6> kAxisNames = {"x", "y", "z", "roll", "pitch", "yaw"};
-constexpr Bounds kDuration = {0.5, 60.0, "s"};
+constexpr Bounds kMotionDuration = {0.5, 60.0, "s"};
 constexpr Bounds kPointTime = {0.05, 600.0, "s"};
 constexpr Bounds kShift = {-1.0, 1.0, "m"};
 constexpr Bounds kTurn = {-1.0, 1.0, "rad"};
@@ -157,7 +157,7 @@ void read_pose(MapReader* map, const GaitdModel* model, walking::MotionCommand* 
     read_points(&where, reader, &motion);
   } else {
     motion.point_count = 1;
-    motion.points[0].time = map->number("duration", kDuration).value_or(kUsualDuration);
+    motion.points[0].time = map->number("duration", kMotionDuration).value_or(kUsualDuration);
     motion.axis_mask = reader.read(&where, &motion.points[0]);
     if (motion.kind == GAITD_MOTION_ARM && motion.axis_mask == 0 && model != nullptr) {
       go_back(*model, side, &motion);

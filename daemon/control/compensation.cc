@@ -11,8 +11,9 @@
 namespace gaitd::daemon {
 namespace {
 
-// As the teams of Atlas did it: torque over stiffness, the torque filtered, the angle bounded, so
-// that one bad torque sensor does not move a joint (see docs/decisions/compensation.md).
+// Torque over stiffness, as the teams of Atlas had it, but as fast as the rotor swings on its
+// spring: what a slower filter leaves out is taken for motion. The angle is bounded, so that one
+// bad torque sensor does not move a joint (see docs/decisions/compensation.md).
 constexpr double kTorqueBandwidth = 100.0;  // Hz
 constexpr double kLargestBend = 0.1;        // rad
 // In which friction turns round with the rate that the link is to have. The Stribeck speed of real

@@ -17,8 +17,6 @@ using Kind = SignalDescription::Kind;
 
 constexpr const char* kSides[] = {"left", "right"};
 constexpr const char* kAxes[] = {"x", "y", "z"};
-constexpr const char* kLayerTimes[] = {"estimator_us", "planner_us", "adjuster_us",
-                                       "toe_off_us",   "wbc_us",     "tasks_us"};
 
 // Two visitors walk the same enumeration below: one writes down the names, the other the values.
 // A name comes in parts, so that recording does not have to put any together.

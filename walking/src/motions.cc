@@ -90,12 +90,8 @@ Refusal Motions::command(const MotionCommand& command, const GaitdRobotState& ro
       return refuse("pose: the robot has no %s hand; name it in robot.yaml: hands",
                     side == GAITD_LEFT ? "left" : "right");
     }
-    kinematics_.update(sdk::view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
-                       sdk::view(robot.pelvis_twist),
-                       sdk::head(robot.joint_position, model_.joint_count),
-                       sdk::head(robot.joint_velocity, model_.joint_count));
     refusal = motion.kind == GAITD_MOTION_ARM ? check_arm(arms_[side], motion, references)
-                                              : check_hand(arms_[side], motion, references);
+                                              : check_hand(arms_[side], motion, robot, references);
   } else {
     return refuse("pose: part %d is none of the body", command.part);
   }
@@ -194,7 +190,11 @@ Refusal Motions::check_arm(const JointChain& arm, const GaitdMotion& motion,
 
 // A hand is not refused for being out of reach: it goes as near as it can.
 Refusal Motions::check_hand(const JointChain& arm, const GaitdMotion& motion,
-                            const GaitdTaskReferences& references) {
+                            const GaitdRobotState& robot, const GaitdTaskReferences& references) {
+  kinematics_.update(sdk::view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
+                     sdk::view(robot.pelvis_twist),
+                     sdk::head(robot.joint_position, model_.joint_count),
+                     sdk::head(robot.joint_velocity, model_.joint_count));
   const Eigen::Isometry3d chest = kinematics_.X_WB(model_.chest_body);
   const Eigen::Isometry3d frame =
       motion.frame == GAITD_RELATIVE_TO_WORLD

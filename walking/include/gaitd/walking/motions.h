@@ -32,7 +32,7 @@ class Motions {
   Refusal check_chest(const GaitdMotion& motion, const GaitdTaskReferences& references) const;
   Refusal check_arm(const JointChain& arm, const GaitdMotion& motion,
                     const GaitdTaskReferences& references) const;
-  Refusal check_hand(const JointChain& arm, const GaitdMotion& motion,
+  Refusal check_hand(const JointChain& arm, const GaitdMotion& motion, const GaitdRobotState& robot,
                      const GaitdTaskReferences& references);
 
   const GaitdModel model_;

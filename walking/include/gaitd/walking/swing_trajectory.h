@@ -38,9 +38,9 @@ class Quintic {
 // Path of the sole of the swing foot in W, with continuous acceleration: from lift-off over an apex
 // above the higher of both footholds down to the foothold, which it meets with a downward velocity.
 // Onto an edge the foot first rises, its toe where it was, however it turns meanwhile, and is level
-// before it is above it; down an edge it is above
-// beyond its foothold before it comes down, and goes back to it at the bottom. After the planned
-// end it keeps going down, faster and faster, until the ground is met.
+// before it is above it; down an edge it is above beyond its foothold before it comes down, and
+// goes back to it at the bottom. After the planned end it keeps going down, faster and faster,
+// until the ground is met.
 class SwingTrajectory {
  public:
   struct Sample {
