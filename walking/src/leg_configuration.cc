@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kShortestStep = 1e-3;  // m, that has a direction
 constexpr double kStraightened = 0.01;  // rad, from the straight knee
-constexpr double kLeastBend = 0.1;      // rad, that its speed is reckoned with
 // Leg lengths, of the hip from mid-stance to touchdown: a leg that stands straight lets it come
 // down no further before the other foot is on the ground.
 constexpr double kLargestDrop = 0.25;
@@ -74,7 +73,7 @@ void LegConfiguration::reset(double knee) {
 }
 
 void LegConfiguration::follow(double dt, double target, double rate, double knee) {
-  const double shortening = leg_.shortening(std::max(stance_.value(), kLeastBend));
+  const double shortening = leg_.shortening(stance_.value());
   stance_.update(dt, target, rate / scale_.time, kRise * scale_.speed / shortening);
   reference_.acceleration = stance_.acceleration();
   if (stance_.value() < knee - kMaxLead) {
@@ -138,14 +137,11 @@ const LegConfiguration::Reference& LegConfiguration::update(
       break;
   }
   // The leg that stands gives way where the other one has to reach.
-  if (gait.next_side != side && lowering.value() > reference_.knee) {
-    reference_.knee = lowering.value();
-    reference_.rate = lowering.velocity();
-    reference_.acceleration = lowering.acceleration();
-    if (reference_.knee > deepest) {
-      reference_.knee = deepest;
-      reference_.rate = reference_.acceleration = 0.0;
-    }
+  if (gait.next_side != side && std::min(lowering.value(), deepest) > reference_.knee) {
+    const bool lowered_to_stop = lowering.value() > deepest;
+    reference_.knee = lowered_to_stop ? deepest : lowering.value();
+    reference_.rate = lowered_to_stop ? 0.0 : lowering.velocity();
+    reference_.acceleration = lowered_to_stop ? 0.0 : lowering.acceleration();
   }
   return reference_;
 }

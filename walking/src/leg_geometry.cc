@@ -27,6 +27,8 @@ Eigen::Vector3d origin_in(const GaitdModel& model, int body, const GaitdJoint& j
   return p;
 }
 
+constexpr double kLeastBend = 0.1;  // rad, from the straight line
+
 }  // namespace
 
 LegGeometry::LegGeometry(const GaitdModel& model, int side) {
@@ -53,7 +55,7 @@ double LegGeometry::length(double knee) const {
 }
 
 double LegGeometry::shortening(double knee) const {
-  return thigh_ * shank_ * std::sin(knee + offset_) / length(knee);
+  return thigh_ * shank_ * std::sin(std::max(knee + offset_, kLeastBend)) / length(knee);
 }
 
 double LegGeometry::knee(double length) const {

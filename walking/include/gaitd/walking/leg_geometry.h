@@ -13,7 +13,8 @@ class LegGeometry {
 
   // m, for a knee bent by `knee` (rad, positive when bent).
   double length(double knee) const;
-  // m/rad, by which it is shorter the more the knee bends there.
+  // m/rad, by which it is shorter the more the knee bends there; that of a little bend where the
+  // leg is straight or bent the wrong way.
   double shortening(double knee) const;
   // rad, the bent knee that makes the leg `length` metres long; the nearest there is.
   double knee(double length) const;
