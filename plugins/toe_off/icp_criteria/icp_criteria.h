@@ -27,7 +27,7 @@ class IcpCriteria {
       sdk::real_parameter("min_forward", "foot lengths", 0, 10, 0.75,
                           "step that has toe-off; low: short steps have one too, high: none has"),
       sdk::porting(sdk::real_parameter(
-          "ankle_limit", "rad", 0, 1.5, 0.55,
+          "ankle_limit", "rad", 0, 1.5, 0.4,
           "dorsiflexion that starts toe-off; low: too soon, high: the stop is met")),
   };
 

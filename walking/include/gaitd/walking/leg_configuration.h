@@ -43,7 +43,7 @@ class LegConfiguration {
   static constexpr double kStanceRate = 3.7;
   static constexpr double kSettleRate = 0.5;
   // sqrt(g h), with which a leg lifts the hip at most: up a stair the other one is still pushing.
-  static constexpr double kRise = 0.1;
+  static constexpr double kRise = 0.07;
   // rad: no reference runs further ahead of a knee that something holds.
   static constexpr double kMaxLead = 0.2;
   // Parts of a swing after which its leg reaches out, and the one that stands gives way.

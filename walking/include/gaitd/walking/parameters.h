@@ -115,7 +115,7 @@ inline constexpr std::array<GaitdParameter, 14> kObjectiveParameters = {
     real_parameter("height_stiffness", "1/s^2", 0, 500, 80,
                    "of the CoM height; low: it sags, high: forces ring"),
     expert(real_parameter(
-        "momentum_weight", "", 50, 1e6, 1500,
+        "momentum_weight", "", 50, 1e6, 3000,
         "of balance against all else; low: pushes are not held, high: the body flails")),
     expert(real_parameter("rho_weight", "", 1e-6, 3000, 30,
                           "of small contact forces; low: edges carry all, high: balance gives in")),
