@@ -124,8 +124,10 @@ const LegConfiguration::Reference& LegConfiguration::update(
       if (gait.phase == GAITD_PHASE_SWING) {
         follow(dt, std::max(straight, p[Legs::kCollapsedKnee]), kStanceRate, knee);
       } else {
-        // Hip and toe say how long a trailing leg is; a knee of its own would drag the toe.
+        // Hip and toe say how long a trailing leg is; a knee of its own would drag the toe. So it
+        // bends as it likes, and is only kept from straightening.
         reference_.knee = std::max(knee, p[Legs::kCollapsedKnee]);
+        reference_.rate = std::max(rate, 0.0);
         stance_.reset(knee, rate);
       }
       break;
@@ -137,7 +139,8 @@ const LegConfiguration::Reference& LegConfiguration::update(
       break;
   }
   // The leg that stands gives way where the other one has to reach.
-  if (gait.next_side != side && std::min(lowering.value(), deepest) > reference_.knee) {
+  const double lower = std::min(lowering.value(), deepest);
+  if (gait.next_side != side && lower > std::max(reference_.knee, p[Legs::kStraightKnee])) {
     const bool lowered_to_stop = lowering.value() > deepest;
     reference_.knee = lowered_to_stop ? deepest : lowering.value();
     reference_.rate = lowered_to_stop ? 0.0 : lowering.velocity();

