@@ -218,6 +218,22 @@ TEST(ComHeightQp, TheHeightIsTakenWhateverTheMaskSays) {
   EXPECT_NEAR(Recomputed(b).momentum_rate[5], 150.0, 30.0);
 }
 
+// Of a leg that stands the mode says how straight it is, unless the height does.
+TEST(ComHeightQp, TheHeightAndNotTheModeBendsALegThatStands) {
+  auto knee_torque = [](std::uint32_t mask, double bend) {
+    Bench b;
+    ComHeightQp layer(atlas());
+    b.objectives->momentum_mask = mask;
+    const int knee = atlas().legs[GAITD_LEFT].knee;
+    b.objectives->privileged_weight[knee] = 150.0;
+    b.objectives->privileged_acceleration[knee] = bend;
+    EXPECT_EQ(b.process(layer), GAITD_OK);
+    return b.out->commands.joints[knee].torque;
+  };
+  EXPECT_EQ(knee_torque(0b011000, 50.0), knee_torque(0b011000, 0.0));
+  EXPECT_GT(std::abs(knee_torque(0b111000, 50.0) - knee_torque(0b111000, 0.0)), 1.0);
+}
+
 TEST(ComHeightQp, WalksThroughEveryPhaseWithPhysicalSolutions) {
   Bench b(0.004);
   ComHeightQp layer(atlas());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "gaitd/sdk/layer.h"
 #include "inverse_dynamics_qp.h"
 
@@ -8,7 +10,7 @@ namespace gaitd::plugins {
 
 // Whole-body controller with a commanded CoM height: the linear momentum rate is tracked in x, y
 // and z whatever the mode says, and the privileged leg configuration is an ordinary task of low
-// weight. The bent-knee baseline (Koolen et al. 2016).
+// weight, for legs that do not stand where the mode leaves the height free. The bent-knee baseline (Koolen et al. 2016).
 class ComHeightQp {
  public:
   enum class P {
@@ -39,7 +41,7 @@ class ComHeightQp {
   void set_state(const GaitdWholeBodyControllerState& s) { qp_.set_state(s); }
 
  private:
-  const int joints_;
+  const std::array<GaitdLeg, GAITD_MAX_FEET> legs_;
   sdk::Parameters<P> p_{kParameters};
   InverseDynamicsQp qp_;
 };
