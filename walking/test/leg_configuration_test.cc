@@ -194,7 +194,7 @@ TEST(LegConfiguration, ALegBendsNoFurtherThanItsAnkle) {
 }
 
 // rad, the knee of a standing leg that follows what it is told, after each of `ticks` milliseconds;
-// `slowest` and `fastest` the rates at which its hip went up (m/s).
+// `fastest` the largest rate at which its hip went up (m/s).
 std::vector<double> straightened(double knee, double rate, int ticks, double* fastest) {
   SyntheticWalk w;
   LegConfiguration leg;
@@ -204,11 +204,13 @@ std::vector<double> straightened(double knee, double rate, int ticks, double* fa
   g.mode = GAITD_MODE_WALK_STRAIGHT;
   g.phase = GAITD_PHASE_TRANSFER;
   g.transfer_final = 1;
+  g.next_side = GAITD_RIGHT;
+  ReferenceFilter lowering;
+  lowering.reset(parameters()[Legs::kStraightKnee]);
   std::vector<double> knees;
   *fastest = 0.0;
   for (int i = 0; i < ticks; ++i) {
-    const auto& r =
-        leg.update(0.001, GAITD_LEFT, knee, rate, ReferenceFilter(), 3.0, g, parameters());
+    const auto& r = leg.update(0.001, GAITD_LEFT, knee, rate, lowering, 3.0, g, parameters());
     const double rise = leg.geometry().length(r.knee) - leg.geometry().length(knee);
     *fastest = std::max(*fastest, rise / 0.001);
     knee = r.knee;
@@ -225,6 +227,34 @@ TEST(LegConfiguration, StraighteningGoesOnFromTheMeasuredKneeAndItsRate) {
   EXPECT_GT(*std::max_element(knees.begin(), knees.end()), 0.701);
   EXPECT_NEAR(knees.back(), parameters()[Legs::kStraightKnee], 1e-3);
   EXPECT_GE(*std::min_element(knees.begin(), knees.end()), parameters()[Legs::kStraightKnee]);
+}
+
+TEST(LegConfiguration, AKneeThatLandsStraighterThanAskedDoesNotJump) {
+  double fastest = 0.0;
+  const std::vector<double> knees = straightened(0.05, -3.0, 2000, &fastest);
+  EXPECT_NEAR(knees.front(), 0.05, 0.01);
+  for (std::size_t i = 1; i < knees.size(); ++i) {
+    ASSERT_LT(std::abs(knees[i] - knees[i - 1]), 0.004) << i;
+  }
+  EXPECT_NEAR(knees.back(), parameters()[Legs::kStraightKnee], 1e-3);
+}
+
+TEST(LegConfiguration, ATrailingKneeBendsAsItLikesAndDoesNotStraighten) {
+  SyntheticWalk w;
+  LegConfiguration leg;
+  leg.set_leg(gaitd::testing::atlas(), GAITD_LEFT, 0.08);
+  GaitdGaitState g = w.gait();
+  g.mode = GAITD_MODE_WALK_STRAIGHT;
+  g.phase = GAITD_PHASE_TRANSFER;
+  g.trailing_side = g.next_side = GAITD_LEFT;
+  for (double rate : {4.0, -4.0}) {
+    leg.reset(0.5);
+    const auto& r =
+        leg.update(0.001, GAITD_LEFT, 0.5, rate, ReferenceFilter(), 3.0, g, parameters());
+    ASSERT_EQ(r.state, LegState::kCollapsed);
+    EXPECT_EQ(r.knee, 0.5);
+    EXPECT_EQ(r.rate, std::max(rate, 0.0));
+  }
 }
 
 TEST(LegConfiguration, ALegThatIsMuchBentLiftsTheHipNoFasterThanItMay) {

@@ -32,6 +32,15 @@ TEST(LegGeometry, LengthsAreThoseOfTheRobot) {
   }
 }
 
+TEST(LegGeometry, ABendShortensALegWhereverItsKneeIs) {
+  const LegGeometry leg(atlas(), GAITD_LEFT);
+  for (double knee : {0.4, 0.9, 1.8}) {
+    const double slope = (leg.length(knee - 1e-4) - leg.length(knee + 1e-4)) / 2e-4;
+    EXPECT_NEAR(leg.shortening(knee), slope, 1e-6) << knee;
+  }
+  for (double knee = -0.5; knee < 0.4; knee += 0.01) EXPECT_GT(leg.shortening(knee), 0.01) << knee;
+}
+
 TEST(LegGeometry, LengthsOutOfReachGiveTheNearestKnee) {
   const LegGeometry geometry(atlas(), GAITD_LEFT);
   EXPECT_TRUE(std::isfinite(geometry.knee(10.0)));

@@ -10,7 +10,8 @@ namespace gaitd::plugins {
 
 // Whole-body controller with a commanded CoM height: the linear momentum rate is tracked in x, y
 // and z whatever the mode says, and the privileged leg configuration is an ordinary task of low
-// weight, for legs that do not stand where the mode leaves the height free. The bent-knee baseline (Koolen et al. 2016).
+// weight, for legs that do not stand where the mode leaves the height free. The bent-knee baseline
+// (Koolen et al. 2016).
 class ComHeightQp {
  public:
   enum class P {
