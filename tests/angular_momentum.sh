@@ -6,6 +6,7 @@ source "$(dirname "$0")/common.sh"
 # CMP is more than 5 mm outside the sole and the CoP inside.
 share() {
   gaitctl run push-bent-diagonal --log "$scratch/walk.mcap" --set step_adjuster.excursion="$1" \
+    --set 'disturbances.0.force=[-360, -360, 0]' \
     >"$scratch/verdict" 2>&1 || [[ $1 == 0 ]] || fail "$(cat "$scratch/verdict")"
   gaitctl log export "$scratch/walk.mcap" -o "$scratch/walk.csv" \
     --signals 'time,gait/phase,gait/support,step_adjust/dy,cmp/desired/*,cop/*,foot/*/x,foot/*/y,foot/*/yaw'

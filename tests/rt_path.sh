@@ -20,16 +20,16 @@ guarded() {
 }
 
 # The walk of the scenario swaps, with a push, commands, and clients that ask and command. The swaps come
-# one by one, 0.41 s apart, so those of a layer are 2.4 to 2.6 steps apart: they fall all over the step,
-# whenever the feet of this gait touch down.
+# one by one, 0.387 s apart, and the order goes on by one each round: those of a layer are 2.87 steps of 0.81 s
+# apart, so they fall all over a step.
 sed '/^expect:/,$d; /swap:/d' "$GAITD_SOURCE/sim/scenarios/swaps.yaml" >walk.yaml
 awk 'BEGIN {
   split("toe_off whole_body_controller icp_planner step_adjuster state_estimator", layer, " ")
   split("never com_height_qp single_cmp fixed_steps invariant_ekf", variant, " ")
   split("icp_criteria nullspace_qp heel_to_toe step_plan kinematic_inertial", before, " ")
   for (i = 0; i < 125; ++i) {
-    k = i % 5 + 1
-    printf "  - {at: %.2f, swap: {layer: %s, to: %s}}\n", 2 + 0.41 * i, layer[k], int(i / 5) % 2 ? before[k] : variant[k]
+    k = (i + int(i / 5)) % 5 + 1
+    printf "  - {at: %.3f, swap: {layer: %s, to: %s}}\n", 2 + 0.387 * i, layer[k], int(i / 5) % 2 ? before[k] : variant[k]
   }
 }' >>walk.yaml
 cat >>walk.yaml <<'SCENARIO'

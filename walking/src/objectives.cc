@@ -143,7 +143,13 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
                                        const GaitdStepAdjustment& adjustment,
                                        GaitdObjectives& out) {
   const double mass = model_.total_mass;
-  const double standing = parameters_[Objective::kComHeight] * model_.nominal_com_height;
+  // No higher than on straight legs.
+  const LegGeometry& leg = legs_[GAITD_LEFT].geometry();
+  const double highest =
+      model_.nominal_com_height +
+      std::max(0.0, leg.length(leg_parameters_[Legs::kStraightKnee]) - leg_length_);
+  const double standing =
+      std::min(parameters_[Objective::kComHeight] * model_.nominal_com_height, highest);
   const LegReach reach{.standing_height = standing,
                        .leg_length = leg_length_ - (model_.nominal_com_height - standing),
                        .longest = leg_length_,

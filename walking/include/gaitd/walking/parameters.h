@@ -110,12 +110,13 @@ enum class Objective {
 inline constexpr std::array<GaitdParameter, 14> kObjectiveParameters = {
     porting(real_parameter("friction", "", 0.05, 2, 0.7,
                            "coefficient counted on; low: pushes are not held, high: feet slip")),
-    real_parameter("com_height", "", 0.75, 1.15, 1.0,
-                   "when standing, over the nominal one; low: torque, high: legs at their end"),
+    real_parameter("com_height", "", 0.75, 1.2, 1.0,
+                   "when standing, over the nominal one, as straight legs are at most; low: "
+                   "torque, high: short steps"),
     real_parameter("height_stiffness", "1/s^2", 0, 500, 80,
                    "of the CoM height; low: it sags, high: forces ring"),
     expert(real_parameter(
-        "momentum_weight", "", 50, 1e6, 3000,
+        "momentum_weight", "", 50, 1e6, 2000,
         "of balance against all else; low: pushes are not held, high: the body flails")),
     expert(real_parameter("rho_weight", "", 1e-6, 3000, 30,
                           "of small contact forces; low: edges carry all, high: balance gives in")),
