@@ -22,18 +22,20 @@
   X(GaitdSensors, 4880) \
   X(GaitdFootState, 240) \
   X(GaitdRobotState, 1824) \
+  X(GaitdFootTruth, 136) \
+  X(GaitdTruth, 1976) \
   X(GaitdPose, 56) \
   X(GaitdFootstep, 488) \
   X(GaitdFoothold, 224) \
   X(GaitdGaitState, 16160) \
+  X(GaitdIcpPlan, 264) \
+  X(GaitdStepAdjustment, 128) \
+  X(GaitdToeOff, 104) \
   X(GaitdMotionPoint, 104) \
   X(GaitdMotion, 1720) \
   X(GaitdMotions, 6888) \
   X(GaitdHandReference, 128) \
   X(GaitdTaskReferences, 1984) \
-  X(GaitdIcpPlan, 264) \
-  X(GaitdStepAdjustment, 128) \
-  X(GaitdToeOff, 104) \
   X(GaitdContactPoint, 136) \
   X(GaitdTask, 232) \
   X(GaitdSeparation, 112) \
@@ -41,8 +43,6 @@
   X(GaitdJointCommand, 72) \
   X(GaitdJointCommands, 4656) \
   X(GaitdWbcInfo, 688) \
-  X(GaitdFootTruth, 136) \
-  X(GaitdTruth, 1976) \
   X(GaitdParameter, 216) \
   X(GaitdPluginDescriptor, 20928) \
   X(GaitdHost, 24) \
@@ -198,6 +198,25 @@
   X(GaitdRobotState, feet, 1224) \
   X(GaitdRobotState, pelvis_velocity_covariance, 1704) \
   X(GaitdRobotState, external_wrench, 1776) \
+  X(GaitdFootTruth, force, 0) \
+  X(GaitdFootTruth, slip, 24) \
+  X(GaitdFootTruth, penetration, 32) \
+  X(GaitdFootTruth, side_force, 40) \
+  X(GaitdFootTruth, position, 48) \
+  X(GaitdFootTruth, orientation, 72) \
+  X(GaitdFootTruth, reserve, 104) \
+  X(GaitdTruth, size, 0) \
+  X(GaitdTruth, body_contact, 4) \
+  X(GaitdTruth, time, 8) \
+  X(GaitdTruth, pelvis_position, 16) \
+  X(GaitdTruth, pelvis_orientation, 40) \
+  X(GaitdTruth, pelvis_twist, 72) \
+  X(GaitdTruth, com, 120) \
+  X(GaitdTruth, com_velocity, 144) \
+  X(GaitdTruth, feet, 168) \
+  X(GaitdTruth, joint_position, 440) \
+  X(GaitdTruth, joint_velocity, 952) \
+  X(GaitdTruth, joint_torque, 1464) \
   X(GaitdPose, position, 0) \
   X(GaitdPose, orientation, 24) \
   X(GaitdFootstep, side, 0) \
@@ -240,6 +259,36 @@
   X(GaitdGaitState, footholds, 96) \
   X(GaitdGaitState, commanded, 544) \
   X(GaitdGaitState, adjusted, 8352) \
+  X(GaitdIcpPlan, size, 0) \
+  X(GaitdIcpPlan, reserved, 4) \
+  X(GaitdIcpPlan, icp, 8) \
+  X(GaitdIcpPlan, icp_velocity, 24) \
+  X(GaitdIcpPlan, ecmp, 40) \
+  X(GaitdIcpPlan, icp_end, 56) \
+  X(GaitdIcpPlan, icp_touchdown, 72) \
+  X(GaitdIcpPlan, icp_transferred, 88) \
+  X(GaitdIcpPlan, kappa, 104) \
+  X(GaitdIcpPlan, time_remaining, 112) \
+  X(GaitdIcpPlan, offset, 120) \
+  X(GaitdIcpPlan, gamma, 136) \
+  X(GaitdStepAdjustment, size, 0) \
+  X(GaitdStepAdjustment, active, 4) \
+  X(GaitdStepAdjustment, shift, 8) \
+  X(GaitdStepAdjustment, time_shift, 32) \
+  X(GaitdStepAdjustment, ecmp, 40) \
+  X(GaitdStepAdjustment, cmp, 56) \
+  X(GaitdStepAdjustment, kappa, 72) \
+  X(GaitdStepAdjustment, linear_momentum_rate, 80) \
+  X(GaitdStepAdjustment, angular_momentum_rate, 96) \
+  X(GaitdStepAdjustment, angular_momentum_mask, 120) \
+  X(GaitdStepAdjustment, reserved, 124) \
+  X(GaitdToeOff, size, 0) \
+  X(GaitdToeOff, active, 4) \
+  X(GaitdToeOff, side, 8) \
+  X(GaitdToeOff, reserved, 12) \
+  X(GaitdToeOff, toe_point, 16) \
+  X(GaitdToeOff, criterion, 40) \
+  X(GaitdToeOff, satisfied, 80) \
   X(GaitdMotionPoint, time, 0) \
   X(GaitdMotionPoint, value, 8) \
   X(GaitdMotion, id, 0) \
@@ -273,36 +322,6 @@
   X(GaitdTaskReferences, joint_velocity, 704) \
   X(GaitdTaskReferences, joint_acceleration, 1216) \
   X(GaitdTaskReferences, hands, 1728) \
-  X(GaitdIcpPlan, size, 0) \
-  X(GaitdIcpPlan, reserved, 4) \
-  X(GaitdIcpPlan, icp, 8) \
-  X(GaitdIcpPlan, icp_velocity, 24) \
-  X(GaitdIcpPlan, ecmp, 40) \
-  X(GaitdIcpPlan, icp_end, 56) \
-  X(GaitdIcpPlan, icp_touchdown, 72) \
-  X(GaitdIcpPlan, icp_transferred, 88) \
-  X(GaitdIcpPlan, kappa, 104) \
-  X(GaitdIcpPlan, time_remaining, 112) \
-  X(GaitdIcpPlan, offset, 120) \
-  X(GaitdIcpPlan, gamma, 136) \
-  X(GaitdStepAdjustment, size, 0) \
-  X(GaitdStepAdjustment, active, 4) \
-  X(GaitdStepAdjustment, shift, 8) \
-  X(GaitdStepAdjustment, time_shift, 32) \
-  X(GaitdStepAdjustment, ecmp, 40) \
-  X(GaitdStepAdjustment, cmp, 56) \
-  X(GaitdStepAdjustment, kappa, 72) \
-  X(GaitdStepAdjustment, linear_momentum_rate, 80) \
-  X(GaitdStepAdjustment, angular_momentum_rate, 96) \
-  X(GaitdStepAdjustment, angular_momentum_mask, 120) \
-  X(GaitdStepAdjustment, reserved, 124) \
-  X(GaitdToeOff, size, 0) \
-  X(GaitdToeOff, active, 4) \
-  X(GaitdToeOff, side, 8) \
-  X(GaitdToeOff, reserved, 12) \
-  X(GaitdToeOff, toe_point, 16) \
-  X(GaitdToeOff, criterion, 40) \
-  X(GaitdToeOff, satisfied, 80) \
   X(GaitdContactPoint, side, 0) \
   X(GaitdContactPoint, body, 4) \
   X(GaitdContactPoint, point, 8) \
@@ -371,25 +390,6 @@
   X(GaitdWbcInfo, pelvis_acceleration, 32) \
   X(GaitdWbcInfo, joint_acceleration, 80) \
   X(GaitdWbcInfo, foot_wrench, 592) \
-  X(GaitdFootTruth, force, 0) \
-  X(GaitdFootTruth, slip, 24) \
-  X(GaitdFootTruth, penetration, 32) \
-  X(GaitdFootTruth, side_force, 40) \
-  X(GaitdFootTruth, position, 48) \
-  X(GaitdFootTruth, orientation, 72) \
-  X(GaitdFootTruth, reserve, 104) \
-  X(GaitdTruth, size, 0) \
-  X(GaitdTruth, body_contact, 4) \
-  X(GaitdTruth, time, 8) \
-  X(GaitdTruth, pelvis_position, 16) \
-  X(GaitdTruth, pelvis_orientation, 40) \
-  X(GaitdTruth, pelvis_twist, 72) \
-  X(GaitdTruth, com, 120) \
-  X(GaitdTruth, com_velocity, 144) \
-  X(GaitdTruth, feet, 168) \
-  X(GaitdTruth, joint_position, 440) \
-  X(GaitdTruth, joint_velocity, 952) \
-  X(GaitdTruth, joint_torque, 1464) \
   X(GaitdParameter, name, 0) \
   X(GaitdParameter, unit, 48) \
   X(GaitdParameter, description, 64) \

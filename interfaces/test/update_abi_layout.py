@@ -11,7 +11,8 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 INCLUDE = HERE.parent / "include"
-HEADERS = [INCLUDE / "gaitd/abi" / name for name in ("types.h", "plugin.h", "backend.h")]
+HEADERS = [INCLUDE / "gaitd/abi" / f"{name}.h"
+           for name in ("model", "state", "gait", "motions", "control", "plugin", "backend")]
 STRUCT = re.compile(r"typedef struct (\w+) \{(.*?)\n\} \1;", re.S)
 FUNCTION = re.compile(r"\(\*(\w+)\)\(")
 FIELD = re.compile(r"(\w+)(?:\[[^\]]*\])*$")
