@@ -3,6 +3,7 @@
 # tests, and walks (behaviour). Every damage has to fail at least one of them.
 #   tests/mutations.sh [--unit | --scenarios] [NAME...]    all damages unless named; --unit, --scenarios: the
 #                                                          others are not asked, and do not count
+#   tests/mutations.sh --check                             only that each expression still finds what it damages
 # Works on a copy in build/mutations that is kept, so that only what changed since is built again; with
 # ccache not even that. Of the scenarios those come first in which the damage should show, and the first
 # that fails ends the search; where none of them does, all others are played.
@@ -12,6 +13,7 @@ copy=$PWD/build/mutations/source
 
 icp_feedback=walking/src/icp_feedback.cc
 objectives=walking/src/objectives.cc
+feet=walking/src/objectives_feet.cc
 qp=plugins/whole_body_controller/inverse_dynamics/inverse_dynamics_qp.cc
 toe_off=plugins/toe_off/icp_criteria/icp_criteria.cc
 # NAME | tests of scenarios, the likely ones first | FILE | expression of perl, over the whole file; several
@@ -20,20 +22,53 @@ damages=(
   "icp_gain_sign|scenario.push-bent-forward scenario.flat-0.35|$icp_feedback|s/\(1\.0 \+ p_\[Feedback::kGain(\w+)\] \/ omega\)/(1.0 - p_[Feedback::kGain\$1] \/ omega)/g"
   "no_delay_prediction|invariant_ekf.flat-0.35 nominal.straight-0.35|$icp_feedback|s/for \(int ago = ticks; ago >= 1; --ago\)/for (int ago = 0; ago >= 1; --ago)/"
   "height_commanded|scenario.straight-0.35 scenario.straight-0.50|$objectives|s/out\.momentum_mask =\n/out.momentum_mask = 0b100000u |\n/"
-  "no_privileged_legs|scenario.straight-0.35|$objectives|s/out\.privileged_weight\[joint\] = r\.weight;/out.privileged_weight[joint] = 0.0;/"
-  "toe_off_always|scenario.push-straight-rolling|$toe_off|s/state_\.time_satisfied > p_\[P::kHoldTime\] \? 1 : 0/1/"
-  "toe_off_never|scenario.straight-0.35|$toe_off|s/state_\.time_satisfied > p_\[P::kHoldTime\] \? 1 : 0/0/"
-  "no_late_touchdown|scenario.blind-0.08 scenario.blind-field-1|walking/src/gait_machine.cc|s/state_\.late_contact = over && !landed \? 1 : 0;/state_.late_contact = 0;/|walking/src/swing_trajectory.cc|s/Hurry hurry\(double late, double acceleration, double most\) \{/Hurry hurry(double late, double acceleration, double most) {\n  if (late < 1e9) return {0.0, 0.0};/|$objectives|s/std::max\(0\.0, gait\.time_in_phase - gait\.phase_duration\)/0.0/"
+  "no_privileged_legs|scenario.straight-0.35|$objectives|s/out\.privileged_weight\[joint\] = weight;/out.privileged_weight[joint] = 0.0;/"
+  "toe_off_always|scenario.push-straight-rolling|$toe_off|s/state_\.time_satisfied > kHoldTime \? 1 : 0/1/"
+  "toe_off_never|scenario.straight-0.35|$toe_off|s/state_\.time_satisfied > kHoldTime \? 1 : 0/0/"
+  "no_late_touchdown|scenario.blind-0.08 scenario.blind-field-1|walking/src/gait_machine.cc|s/state_\.late_contact = over && !landed \? 1 : 0;/state_.late_contact = 0;/|walking/src/swing_trajectory.cc|s/Hurry hurry\(double late, double acceleration, double most\) \{/Hurry hurry(double late, double acceleration, double most) {\n  if (late < 1e9) return {0.0, 0.0};/|$feet|s/kLateSwingWeight \* late_time\(gait\)/0.0 * $&/"
   "no_torque_limits|scenario.push-bent-outward scenario.stairs-alternating|$qp|s/const double effort = limits\.torque_scale \* joint\.effort_limit;/const double effort = 1e6;/"
-  "no_contact_ramp|scenario.straight-0.35 scenario.flat-0.35|$objectives|s/if \(ramp <= 0\.0\) return 1\.0;/if (ramp <= 1e9) return 1.0;/"
+  "no_contact_ramp|scenario.straight-0.35 scenario.flat-0.35|$feet|s/(ObjectiveBuilder::load_share\(int side, const GaitdGaitState& gait\) const \{)/\$1\n  if (side < 2 || gait.phase < 0) return 1.0;/"
   "step_shift_mirrored|scenario.push-bent-outward scenario.push-bent-sideways|plugins/step_adjuster/step_plan/step_plan.cc|s/Eigen::Vector3d\(shift_\.x\(\), shift_\.y\(\), 0\.0\)/Eigen::Vector3d(shift_.x(), -shift_.y(), 0.0)/g"
-  "friction_doubled|scenario.push-bent-slippery|$objectives|s/c\.friction = parameters_\[Objective::kFriction\];/c.friction = 2.0 * parameters_[Objective::kFriction];/"
-  "no_balance|scenario.estimators invariant_ekf.flat-0.35 nominal.straight-0.35|plugins/state_estimator/kinematic_inertial/kinematic_inertial.cc|s/if \(total < kBalancedShare \* weight_\) return;/return;/|plugins/state_estimator/invariant_ekf/invariant_ekf.cc|s/if \(time_since_start_ >= kJolt\) observe_balance\(in, out\);//"
+  "friction_doubled|scenario.push-bent-slippery|$feet|s/c\.friction = parameters_\[Objective::kFriction\];/c.friction = 2.0 * parameters_[Objective::kFriction];/"
+  "no_balance|scenario.estimators invariant_ekf.flat-0.35 nominal.straight-0.35|plugins/state_estimator/kinematic_inertial/kinematic_inertial_feet.cc|s/if \(total < kBalancedShare \* weight_\) return;/return;/|plugins/state_estimator/invariant_ekf/invariant_ekf.cc|s/if \(time_since_start_ >= kJolt\) observe_balance\(in, out\);//"
   "swing_apex_halved|scenario.blind-0.06 scenario.cinder-blocks|walking/src/swing_trajectory.cc|s/\+ to\.swing_height;/+ 0.5 * to.swing_height;/"
 )
 
+# damage "FILE|EXPRESSION|...": of the current folder; fails if an expression finds nothing.
+damage() {
+  local rest=$1 file expression next
+  while [[ -n $rest ]]; do
+    file=${rest%%|*} rest=${rest#*|}
+    # An expression may hold a "|" of its own: it ends where the next file begins.
+    expression=${rest%%|walking/*} next=${rest%%|plugins/*}
+    ((${#next} < ${#expression})) && expression=$next
+    rest=${rest:${#expression}}
+    rest=${rest#|}
+    cp "$file" "$file.sound"
+    perl -0pi -e "$expression" "$file"
+    if cmp -s "$file" "$file.sound"; then
+      rm "$file.sound"
+      echo "$name: $file was not damaged; mend the expression" >&2
+      return 1
+    fi
+    rm "$file.sound"
+  done
+}
+
 unit=1 behaviour=1
 case ${1:-} in
+  --check)
+    sound=$PWD scratch=$(mktemp -d)
+    trap 'rm -rf "$scratch"' EXIT
+    cd "$scratch"
+    result=0
+    for line in "${damages[@]}"; do
+      name=${line%%|*} rest=${line#*|}
+      rm -rf walking plugins && cp -r "$sound/walking" "$sound/plugins" .
+      damage "${rest#*|}" || result=1
+    done
+    exit $result
+    ;;
   --unit) behaviour='' && shift ;;
   --scenarios) unit='' && shift ;;
 esac
@@ -84,20 +119,11 @@ failed_scenario() {
 }
 
 survived=()
-for damage in "${damages[@]}"; do
-  name=${damage%%|*} rest=${damage#*|}
+for line in "${damages[@]}"; do
+  name=${line%%|*} rest=${line#*|}
   ((${#chosen[@]})) && [[ " ${chosen[*]} " != *" $name "* ]] && continue
-  likely=${rest%%|*} rest=${rest#*|}
-  while [[ -n $rest ]]; do
-    file=${rest%%|*} rest=${rest#*|}
-    # An expression may hold a "|" of its own: it ends where the next file begins.
-    expression=${rest%%|walking/*} next=${rest%%|plugins/*}
-    ((${#next} < ${#expression})) && expression=$next
-    rest=${rest:${#expression}}
-    rest=${rest#|}
-    perl -0pi -e "$expression" "$file"
-    git diff --quiet "$file" && { echo "$name: $file was not damaged; mend the expression" >&2; exit 2; }
-  done
+  likely=${rest%%|*}
+  damage "${rest#*|}" || exit 2
   build || { echo "$name: does not compile: $(grep -m1 error build/build.txt)" >&2; exit 2; }
   by_unit='' by_scenario=''
   [[ -z $unit ]] || by_unit=$(failed_unit_tests)
