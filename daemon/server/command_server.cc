@@ -42,14 +42,6 @@ constexpr const char* kGroups[] = {"gaitd-observe", "gaitd", "gaitd-admin"};  //
 
 using ListeningSockets = std::array<std::unique_ptr<ListeningSocket>, kRoleNames.size()>;
 
-// The peer may read and write every file of this process anyway.
-bool is_owner(int fd) {
-  ucred peer{};
-  socklen_t size = sizeof(peer);
-  return getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 &&
-         (peer.uid == geteuid() || peer.uid == 0);
-}
-
 }  // namespace
 
 class CommandServer::Impl {
@@ -220,7 +212,7 @@ std::string CommandServer::Impl::busy() const {
 }
 
 void CommandServer::Impl::welcome(Door& door, Session::Socket socket) {
-  const bool own = door.role == Role::kCommand && is_owner(socket.native_handle());
+  const bool own = door.role == Role::kCommand && peer_is_owner(socket.native_handle());
   const Caller caller{next_client_++, own ? Role::kAdminister : door.role};
   const auto session = std::make_shared<Session>(
       std::move(socket), caller,

@@ -144,4 +144,11 @@ ListeningSocket::~ListeningSocket() {
   if (lock_fd_ >= 0) close(lock_fd_);
 }
 
+bool peer_is_owner(int fd) {
+  ucred peer{};
+  socklen_t size = sizeof(peer);
+  return getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 &&
+         (peer.uid == geteuid() || peer.uid == 0);
+}
+
 }  // namespace gaitd::daemon
