@@ -41,8 +41,8 @@ class ListeningSocket {
   ino_t inode_ = 0;  // 0: nothing was made
 };
 
-/// Whether the other end of a connected Unix socket is the user of this process, or root: whoever may
-/// read and write its files anyway.
+/// Whether the other end of a connected Unix socket is the user of this process, or root: whoever
+/// may read and write its files anyway.
 bool peer_is_owner(int fd);
 
 }  // namespace gaitd::daemon
