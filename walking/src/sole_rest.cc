@@ -40,14 +40,25 @@ void SoleRest::update(double dt, const GaitdFootState& foot, const GaitdFoothold
   const Eigen::Vector2d rate =
       (now.conjugate() * Eigen::Vector3d(sdk::view(foot.twist).head<3>())).head<2>();
   ConvexPolygon sole;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (int i = 0; i < foothold.polygon_count; ++i) {
-    sole.add(sdk::view(foothold.contact_polygon[i]));
+    const Eigen::Vector2d corner = sdk::view(foothold.contact_polygon[i]);
+    sole.add(corner);
+    middle += corner / foothold.polygon_count;
   }
   sole.make_hull();
-  const bool flat = foot.cop_valid != 0 && loaded && rate.norm() < kStillRate &&
-                    sole.inside_distance(cop) > kInside;
+  const bool inside = sole.inside_distance(cop) > kInside;
+  const bool flat = foot.cop_valid != 0 && loaded && rate.norm() < kStillRate && inside;
   if (flat) flat_ = flat_.slerp(std::min(1.0, kFollowRate * dt), now);
   Eigen::Vector3d back = now.conjugate() * sdk::log_so3(flat_ * now.conjugate());
+  // A sole that lies lower than flat, seen from the edge that bears, came to lie on that edge and
+  // comes down only now: it would never get off its line.
+  middle -= cop;
+  const bool lower = back.x() * middle.y() - back.y() * middle.x() > 0.0;
+  if (lower && !inside) {
+    flat_ = now;
+    back.setZero();
+  }
   back.z() = 0.0;
   const double tilt = back.norm();
   if (tilt <= limits.start || foot.cop_valid == 0) return;

@@ -109,13 +109,32 @@ TEST(SoleRest, FlatIsHowTheFootCameToLieAfterTouchdown) {
   foot.run_for(0.3, rest);
   EXPECT_EQ(rest.share(), 0.0);
   foot.turn({0.0, 0.0, 0.0});
-  foot.press(0.13, 0.0);
+  foot.press(-0.13, 0.0);
   rest.update(kDt, foot.state, sole(), kWeight, kLimits);
   EXPECT_EQ(rest.share(), 1.0);
   rest.reset();  // in the air
   EXPECT_EQ(rest.share(), 0.0);
   foot.run_for(0.3, rest);
   EXPECT_EQ(rest.share(), 0.0);
+}
+
+// It landed on its inner edge, was still so when it should have come to lie, and comes down then.
+TEST(SoleRest, ASoleThatComesDownLateIsNotHeldOnTheEdgeThatItLandedOn) {
+  SoleRest rest;
+  Foot foot;
+  foot.turn({0.05, 0.0, 0.0});  // the left edge up
+  foot.press(0.02, -0.06);
+  foot.run_for(0.1, rest);
+  EXPECT_EQ(rest.share(), 0.0);
+  for (double tilt = 0.05; tilt >= 0.0; tilt -= 1e-3) {
+    foot.turn({tilt, 0.0, 0.0});
+    rest.update(kDt, foot.state, sole(), kWeight, kLimits);
+    EXPECT_EQ(rest.share(), 0.0) << tilt;
+  }
+  // Flat now; what it tilts by from here on counts.
+  foot.turn({0.05, 0.0, 0.0});
+  rest.update(kDt, foot.state, sole(), kWeight, kLimits);
+  EXPECT_EQ(rest.share(), 1.0);
 }
 
 TEST(SoleRest, GroundThatGivesWaySlowlyTiltsNothing) {
