@@ -179,5 +179,44 @@ TEST(RightInvariantFilter, ATiltThatIsMeasuredLeavesTheHeading) {
   EXPECT_NEAR(left.z(), 0.2, 0.01);
 }
 
+// A minute of steps with a gyroscope that is wrong about the vertical, then it stands: the bias
+// shows, and with it where the heading should have been. Nothing in W may move for that.
+TEST(RightInvariantFilter, WhatItLearnsOfTheGyroscopeMovesNothing) {
+  Filter filter(kGravity);
+  filter.reset();
+  const Vector3d bias(0.0, 0.0, 0.001);
+  const Vector3d up(0.0, 0.0, kGravity);
+  const double sigma = 2e-3;
+  filter.position = Vector3d(5.0, -3.0, 1.0);
+  filter.covariance.diagonal().segment<3>(Filter::kGyroBias).setConstant(25e-6);
+  filter.covariance.diagonal().segment<3>(Filter::kVelocity).setConstant(4e-4);
+  Filter::Noise loose = noise();
+  loose.point_horizontal = loose.point_vertical = 0.02;
+  const Vector3d ahead(0.1, 0.1, -0.9), behind(-0.1, 0.1, -0.9);
+  for (int i = 0; i < 60000; ++i) {
+    filter.predict(bias, up, kPeriod, loose);
+    if (i % 500 == 0) {
+      filter.add_point(0, ahead, sigma);
+      filter.add_point(1, behind, sigma);
+    }
+    filter.correct_point(0, ahead, sigma);
+    filter.correct_point(1, behind, sigma);
+  }
+  Filter::Noise firm = loose;
+  firm.point_horizontal = firm.point_vertical = 1e-4;
+  const Vector3d place = filter.position, point = filter.point(0);
+  const double heading = sdk::yaw_of(filter.orientation);
+  const double unknown = (filter.gyro_bias - bias).norm();
+  for (int i = 0; i < 5000; ++i) {
+    filter.predict(bias, up, kPeriod, firm);
+    filter.correct_point(0, ahead, sigma);
+    filter.correct_point(1, behind, sigma);
+  }
+  EXPECT_LT((filter.gyro_bias - bias).norm(), 0.5 * unknown);
+  EXPECT_LT((filter.point(0) - point).norm(), 2e-3);
+  EXPECT_LT((filter.position - place).norm(), 2e-3);
+  EXPECT_LT(std::abs(sdk::yaw_of(filter.orientation) - heading), 5e-3);
+}
+
 }  // namespace
 }  // namespace gaitd::plugins

@@ -135,6 +135,7 @@ void RightInvariantFilter::correct(const Gain& cross, const Eigen::Matrix3d& inn
   covariance -= gain * cross.transpose();
   covariance = 0.5 * (covariance + covariance.transpose()).eval();
 
+  const Eigen::Vector3d held = middle();
   const Eigen::Vector3d angle = change.segment<3>(kOrientation);
   const Eigen::Quaterniond turn = sdk::exp_so3(angle);
   const Eigen::Matrix3d J = left_jacobian(angle);
@@ -146,6 +147,29 @@ void RightInvariantFilter::correct(const Gain& cross, const Eigen::Matrix3d& inn
   }
   gyro_bias += change.segment<3>(kGyroBias);
   accelerometer_bias += change.segment<3>(kAccelerometerBias);
+  hold(held, -angle.z());
+}
+
+Eigen::Vector3d RightInvariantFilter::middle() const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    if (!present_[i]) continue;
+    sum += points_[i];
+    ++count;
+  }
+  return count > 0 ? Eigen::Vector3d(sum / count) : position;
+}
+
+void RightInvariantFilter::hold(const Eigen::Vector3d& held, double yaw) {
+  const Eigen::Quaterniond turn = sdk::from_yaw(yaw);
+  orientation = (turn * orientation).normalized();
+  velocity = turn * velocity;
+  const Eigen::Vector3d shift = held - turn * middle();
+  position = turn * position + shift;
+  for (int i = 0; i < kPoints; ++i) {
+    if (present_[i]) points_[i] = turn * points_[i] + shift;
+  }
 }
 
 Eigen::Matrix3d RightInvariantFilter::velocity_covariance() const {

@@ -13,6 +13,12 @@ namespace gaitd::plugins {
 // The error is that of the group seen from the world, exp(xi) = X_estimated X^-1, so that its
 // dynamics do not depend on the trajectory, and that of the biases, estimated minus true.
 //
+// Place and heading in W are what nothing measures. What a correction makes of them is what the
+// filter has learned of the past (the bias of a gyroscope turns a minute of steps after the fact),
+// and would carry the robot away from everything planned in W. So a correction turns and moves the
+// whole, points and all, such that the middle of the points and the heading stay: how they lie to
+// each other is what is estimated.
+//
 // Points are added and removed at any time; one that is not there has zeros in the covariance.
 // Noises are densities: nothing depends on the period. Nothing allocates.
 class RightInvariantFilter {
@@ -81,6 +87,10 @@ class RightInvariantFilter {
   void correct_two_axes(int block, Eigen::Vector3d innovation, double sigma);
   void correct(const Gain& cross, const Eigen::Matrix3d& innovation_covariance,
                const Eigen::Vector3d& innovation);
+  // Of the points, m, W; without any the position.
+  Eigen::Vector3d middle() const;
+  // Turns everything by `yaw` (rad) about the vertical and moves it until the middle is at `held`.
+  void hold(const Eigen::Vector3d& held, double yaw);
   static constexpr int block(int i) { return kFirstPoint + 3 * i; }
 
   Eigen::Vector3d gravity_;  // m/s^2, W
