@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The walk: footsteps and gait state, the ICP plan, the adjusted step, and toe-off. Conventions: gaitd/abi/types.h.
+ * The walk: footsteps and gait state, the ICP plan, the adjusted step, and toe-off. Conventions:
+ * gaitd/abi/types.h.
  */
 #ifndef GAITD_ABI_GAIT_H_
 #define GAITD_ABI_GAIT_H_

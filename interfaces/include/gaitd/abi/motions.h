@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * What is asked of the body beyond its steps, and where its parts are to be now. Conventions: gaitd/abi/types.h.
+ * What is asked of the body beyond its steps, and where its parts are to be now. Conventions:
+ * gaitd/abi/types.h.
  */
 #ifndef GAITD_ABI_MOTIONS_H_
 #define GAITD_ABI_MOTIONS_H_

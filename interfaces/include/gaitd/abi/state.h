@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * What is measured, what is estimated, and, in a simulation, what is true. Conventions: gaitd/abi/types.h.
+ * What is measured, what is estimated, and, in a simulation, what is true. Conventions:
+ * gaitd/abi/types.h.
  */
 #ifndef GAITD_ABI_STATE_H_
 #define GAITD_ABI_STATE_H_
