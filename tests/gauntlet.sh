@@ -21,7 +21,7 @@ for kind in curve stairs-down unknown-steps push-walking; do
   grep -q "^walk-straight  nominal  $kind  *1/1  *100.0 %  20.7 % .. 100.0 %" out/summary.txt ||
     fail "no rate of $kind: $(cat out/summary.txt)"
 done
-grep -q '^  ok .*mode=walk-straight 4/4' out/summary.txt || fail "targets: $(cat out/summary.txt)"
+grep -q '^  ok .*drives=nominal 4/4' out/summary.txt || fail "targets: $(cat out/summary.txt)"
 
 # The worst again, to the bit: the same largest error of the capture point.
 replay=$(sed -n 's/^the worst again, from this folder: //p' out/summary.txt)
