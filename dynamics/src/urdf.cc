@@ -188,8 +188,18 @@ class TreeBuilder {
       return false;
     }
     Isometry3d X_RB = Isometry3d::Identity();
+    std::set<std::string> passed;
     for (std::string at = name; at != root;) {
-      const UrdfJointElement& joint = *parent_joint_.at(at);
+      if (!passed.insert(at).second) return false;  // a loop, which was reported
+      const auto found = parent_joint_.find(at);
+      if (found == parent_joint_.end()) {
+        xml_.add_error(links_[at]->line, "root link " + in_quotes(name) +
+                                             " is the empty one on which the robot floats, "
+                                             "expected " +
+                                             in_quotes(root) + " or a link fixed to it");
+        return false;
+      }
+      const UrdfJointElement& joint = *found->second;
       if (joint.kind != UrdfJointKind::kFixed) {
         xml_.add_error(joint.line, "root link " + in_quotes(name) + " moves against the root " +
                                        in_quotes(root) + " by joint " + in_quotes(joint.name) +

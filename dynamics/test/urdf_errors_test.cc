@@ -286,6 +286,22 @@ TEST(UrdfErrors, RootLink) {
              "bad.urdf:4: ", {"'b' moves against the root 'a' by joint 'j'"});
 }
 
+TEST(UrdfErrors, RootLinkAboveTheRobotOrInALoop) {
+  UrdfOptions options;
+  options.root_link = "world";
+  expect_one(load_urdf_text("<robot name='r'>\n" + link("world", "") + link("a") +
+                                joint("free", "world", "a", "", "floating") + "</robot>",
+                            "bad.urdf", options)
+                 .errors,
+             "bad.urdf:2: ", {"'world' is the empty one", "expected 'a'"});
+  options.root_link = "b";
+  expect_one(load_urdf_text("<robot name='r'>\n" + link("a") + link("b") +
+                                joint("j", "b", "b", "", "fixed") + "</robot>",
+                            "bad.urdf", options)
+                 .errors,
+             "bad.urdf:3: ", {"loop", "'b'"});
+}
+
 TEST(UrdfErrors, AllAtOnce) {
   const std::vector<std::string> errors =
       errors_of(link("a", "") + link("b", "<inertial><mass value='1'/></inertial>") + link("c") +
