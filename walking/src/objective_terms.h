@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -21,12 +20,6 @@ inline double damping(double stiffness, double ratio) { return 2.0 * ratio * std
 inline Eigen::Vector3d rotation_error(const Eigen::Quaterniond& goal,
                                       const Eigen::Quaterniond& now) {
   return sdk::log_so3(goal * now.conjugate());
-}
-
-// s, for which the touchdown is overdue.
-inline double late_time(const GaitdGaitState& gait) {
-  return gait.phase == GAITD_PHASE_SWING ? std::max(0.0, gait.time_in_phase - gait.phase_duration)
-                                         : 0.0;
 }
 
 }  // namespace gaitd::walking

@@ -52,6 +52,12 @@ double heading_target(const GaitdGaitState& gait) {
   return mean_heading(heading(gait.footholds[gait.support].pose), heading(gait.adjusted[0].pose));
 }
 
+// s, for which the touchdown is overdue.
+double late_time(const GaitdGaitState& gait) {
+  return gait.phase == GAITD_PHASE_SWING ? std::max(0.0, gait.time_in_phase - gait.phase_duration)
+                                         : 0.0;
+}
+
 }  // namespace
 
 ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)

@@ -36,8 +36,8 @@ constexpr double kToeAngularWeight = 5.0;
 constexpr double kToeDamping = 0.4;          // of both
 constexpr double kSwingDamping = 0.7;        // of the swing foot
 constexpr double kSwingUpright = 4.0 / 3.0;  // stiffness of height and orientation, over the rest
-constexpr double kSwingAngular = 1.0 / 6.0;  // weight of the orientation, over the position
-constexpr double kLateSwingWeight = 100.0;   // 1/s, growth of both while a touchdown is overdue
+// Of the orientation, however much the position weighs: at a stop of the ankle it tilts the pelvis.
+constexpr double kSwingAngularWeight = 2.0;
 constexpr double kToeEdge = 0.01;  // m, points this far behind the toe point are not on the edge
 
 // Of a point of the sole, in the axes of the body of the foot.
@@ -45,21 +45,11 @@ Eigen::Vector3d point_in_body(const GaitdFoot& foot, const Eigen::Vector3d& in_s
   return view(foot.sole.origin) + sdk::quaternion(foot.sole.orientation) * in_sole;
 }
 
-double square(double x) { return x * x; }
-
 // One straight leg carries the robot. A sole that tilts then stays tilted: the knee has no way to
 // give. Bent legs bring it back by themselves, and need the edges of the sole against pushes; with
 // two feet on the ground the other one takes the load.
 bool stiff_alone(const GaitdGaitState& gait) {
   return gait.phase == GAITD_PHASE_SWING && gait.mode == GAITD_MODE_WALK_STRAIGHT;
-}
-
-// The accelerations of a swing go with the square of its pace, and what competes with them does
-// not: a foot that is hastened would be left behind by as much. Times over what they weigh
-// otherwise.
-double hastened_weight(const GaitdGaitState& gait) {
-  const double pace = gait.adjusted[0].swing_duration / std::max(gait.phase_duration, 1e-3);
-  return square(square(std::max(1.0, pace)));
 }
 
 }  // namespace
@@ -232,10 +222,8 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
       s.angular_acceleration +
       kp_z * rotation_error(s.orientation, sdk::quaternion(now.orientation)) +
       damping(kp_z, kSwingDamping) * (s.angular_velocity - twist.head<3>());
-  const double weight = parameters_[Objective::kSwingWeight];
-  const double heavier = (1.0 + kLateSwingWeight * late_time(gait)) * hastened_weight(gait);
-  view(task.weight).head<3>().setConstant(heavier * (kSwingAngular * weight));
-  view(task.weight).tail<3>().setConstant(heavier * weight);
+  view(task.weight).head<3>().setConstant(kSwingAngularWeight);
+  view(task.weight).tail<3>().setConstant(parameters_[Objective::kSwingWeight]);
 }
 
 }  // namespace gaitd::walking
