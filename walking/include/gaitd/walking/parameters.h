@@ -141,7 +141,7 @@ inline constexpr std::array<GaitdParameter, 14> kObjectiveParameters = {
     real_parameter("swing_stiffness", "1/s^2", 25, 1500, 150,
                    "of the swing foot; low: it lands beside its foothold, high: it shakes"),
     expert(
-        real_parameter("swing_weight", "", 3, 1e6, 120,
+        real_parameter("swing_weight", "", 3, 1e6, 105,
                        "of the swing foot's place; low: it strikes the ground, high: knees bend")),
 };
 
