@@ -17,13 +17,14 @@ constexpr double kBrisk = 30.0;         // m/s^2, to reach a foothold that moved
 constexpr double kPeakAcceleration =
     5.77;  // largest acceleration of a quintic from rest to rest, per way / time^2
 constexpr double kOnset = 0.05;  // s
-// Of the way: how far beyond its foothold a foot comes down an edge. It goes back at the bottom,
-// where nothing is left to be caught on; odometry is wrong by a centimetre or two after a few
-// steps.
+// Of the way, since odometry is wrong by a centimetre or two after a few steps: how far beyond its
+// foothold a foot comes down an edge (it goes back at the bottom, where nothing is left to be
+// caught on), and how far its toe draws back as it rises before one.
 constexpr double kBeyondEdge = 0.035;
+constexpr double kDrawBack = 0.06;
 // Parts of a swing: its highest point, on level ground and down an edge; onto an edge, the first
-// one in which the foot only rises, and the one after which the sole is level; down an edge, the
-// one after which the foot is above its foothold.
+// one in which the foot rises and does not advance, and the one after which the sole is level; down
+// an edge, the one after which the foot is above its foothold.
 constexpr double kApex = 0.45;
 constexpr double kDropApex = 0.5;
 constexpr double kRiseWait = 0.18;
@@ -119,7 +120,7 @@ void SwingTrajectory::begin(const GaitdPose& from, const sdk::Vector6d& twist, d
   now.angular_velocity = twist.head<3>();
   now.angular_acceleration.setZero();
   ground_ = ground;
-  lift_off_ = now.position.head<2>();
+  lift_off_ = now;
   const double drop = std::clamp(-edge(to, shape), 0.0, 1.0);
   apex_ = duration * blend(kApex, kDropApex, drop);
   plan(0.0, now, to, duration, shape);
@@ -149,13 +150,17 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   const double T = duration_ - t;
   const double rise = std::max(0.0, edge(to, shape));
   const double drop = std::max(0.0, -edge(to, shape));
-  leave_ = std::max(t, rise * kRiseWait * duration_);
+  leave_ = rise * kRiseWait * duration_;
+  const bool draws = leave_ > t + kShortest;
+  if (!draws) leave_ = t;
   led_ = rise * shape.toe;
   const Sample led = shifted(now, led_);
   const Eigen::Quaterniond goal = sdk::quaternion(to.pose.orientation);
   const Eigen::Vector2d end =
       (sdk::view(to.pose.position) + goal * Eigen::Vector3d(led_, 0.0, 0.0)).head<2>();
-  const Eigen::Vector2d beyond = drop * kBeyondEdge * (end - lift_off_);
+  const Eigen::Vector2d beyond = drop * kBeyondEdge * (end - lift_off_.position.head<2>());
+  const Eigen::Vector2d toe = shifted(lift_off_, led_).position.head<2>();
+  const Eigen::Vector2d drawn = toe - rise * kDrawBack * (end - toe);
   // A foothold that moves late is reached in its own time, and at touchdown at the latest.
   const auto needed = [](const Eigen::Vector2d& way) {
     return std::sqrt(kPeakAcceleration * way.norm() / kBrisk);
@@ -170,12 +175,15 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   if (!goes_beyond) arrive_ = leave_ < arrival ? arrive(end) : duration_;
   level_ = std::max(blend(1.0, kRiseLevel, rise) * duration_, t + kShortest);
   const double way = arrive_ - leave_;
-  // Who waits does not move.
-  const Eigen::Vector3d v = leave_ > t ? Eigen::Vector3d::Zero() : led.velocity;
-  const Eigen::Vector3d a = leave_ > t ? Eigen::Vector3d::Zero() : led.acceleration;
   for (int i = 0; i < 2; ++i) {
     const double over = end[i] + (goes_beyond ? beyond[i] : 0.0);
-    ahead_[i].fit(led.position[i], v[i], a[i], over, 0.0, 0.0, way);
+    if (draws) {
+      drawn_[i].fit(led.position[i], led.velocity[i], led.acceleration[i], drawn[i], 0.0, 0.0,
+                    leave_ - t);
+      ahead_[i].fit(drawn[i], 0.0, 0.0, over, 0.0, 0.0, way);
+    } else {
+      ahead_[i].fit(led.position[i], led.velocity[i], led.acceleration[i], over, 0.0, 0.0, way);
+    }
     back_[i].fit(over, 0.0, 0.0, end[i], 0.0, 0.0, std::max(duration_ - arrive_, kShortest));
   }
   const double goal_height = to.pose.position[2];
@@ -210,8 +218,9 @@ SwingTrajectory::Sample SwingTrajectory::evaluate(double t) const {
   const Quintic& z = up ? z_up_ : z_down_;
   const double uz = up ? u : inside - std::max(apex_, start_);
   const bool back = inside > arrive_;
-  const double w = back ? inside - arrive_ : std::max(inside, leave_) - leave_;
-  const std::array<Quintic, 2>& way = back ? back_ : ahead_;
+  const bool draws = inside < leave_;
+  const double w = inside - (back ? arrive_ : draws ? start_ : leave_);
+  const std::array<Quintic, 2>& way = back ? back_ : draws ? drawn_ : ahead_;
   s.position = {way[0].position(w), way[1].position(w), z.position(uz)};
   s.velocity = {way[0].velocity(w), way[1].velocity(w), z.velocity(uz)};
   s.acceleration = {way[0].acceleration(w), way[1].acceleration(w), z.acceleration(uz)};

@@ -273,8 +273,9 @@ TEST(SwingTrajectory, RisesInFrontOfAnEdgeAndIsLevelAboveIt) {
   }
 }
 
-// A foot that rolled over its toe is turned back as it rises: its origin has to give way.
-TEST(SwingTrajectory, TheToeStaysWhereItWasUntilItIsAboveTheEdge) {
+// A foot that rolled over its toe is turned back as it rises: its origin has to give way. The riser
+// may be a centimetre or two nearer than odometry believes.
+TEST(SwingTrajectory, TheToeDrawsBackUntilItIsAboveTheEdge) {
   SwingShape shape = kShape;
   shape.toe = 0.13;
   const Vector3d ahead(shape.toe, 0.0, 0.0);
@@ -285,10 +286,15 @@ TEST(SwingTrajectory, TheToeStaysWhereItWasUntilItIsAboveTheEdge) {
   const auto toe = [&](double t) -> Vector3d {
     return s.evaluate(t).position + s.evaluate(t).orientation * ahead;
   };
-  const double before = toe(0.0).x();
+  const Vector3d before = toe(0.0);
+  const double way = toe(kDuration).x() - before.x();
+  double back = 0.0;
   for (double t = 0.0; t <= kDuration; t += 0.005) {
-    if (toe(t).z() < 0.1) EXPECT_NEAR(toe(t).x(), before, 2e-3) << t;
+    back = std::max(back, before.x() - toe(t).x());
+    if (toe(t).z() < 0.1) EXPECT_LT(toe(t).x(), before.x() + 1e-9) << t;
+    if (toe(t).z() > 0.05 && toe(t).z() < 0.1) EXPECT_LT(toe(t).x(), before.x() - 0.03 * way) << t;
   }
+  EXPECT_NEAR(back, 0.06 * way, 1e-3);
   EXPECT_LT((s.evaluate(kDuration).position - Vector3d(0.3, 0.05, 0.2)).norm(), 1e-9);
   for (double t = 0.02; t < kDuration - 0.02; t += 0.01) {
     const double h = 1e-5;

@@ -37,10 +37,10 @@ class Quintic {
 
 // Path of the sole of the swing foot in W, with continuous acceleration: from lift-off over an apex
 // above the higher of both footholds down to the foothold, which it meets with a downward velocity.
-// Onto an edge the foot first rises, its toe where it was, however it turns meanwhile, and is level
-// before it is above it; down an edge it is above beyond its foothold before it comes down, and
-// goes back to it at the bottom. After the planned end it keeps going down, faster and faster,
-// until the ground is met.
+// Onto an edge the foot first rises, its toe drawn back a little, however it turns meanwhile, and
+// is level before it is above it; down an edge it is above beyond its foothold before it comes
+// down, and goes back to it at the bottom. After the planned end it keeps going down, faster and
+// faster, until the ground is met.
 class SwingTrajectory {
  public:
   struct Sample {
@@ -66,20 +66,21 @@ class SwingTrajectory {
   double start_ = 0.0;     // s, of the polynomials below
   double apex_ = 0.0;      // s, where z changes polynomial
   double duration_ = 0.0;  // s, end of the swing
-  double leave_ = 0.0;     // s, before which the foot stays where it is from above
+  double leave_ = 0.0;     // s, before which the foot does not advance
   double arrive_ = 0.0;    // s, after which it is above its foothold
   double level_ = 0.0;     // s, after which it has the orientation of its foothold
   double apex_height_ = 0.0;
   double late_velocity_ = 0.0;
-  double led_ = 0.0;                     // m, ahead in the sole, of the point that the way leads
-  double late_gain_ = 0.0;               // m/s, on top of late_velocity_ at most
-  std::array<Quintic, 2> ahead_, back_;  // from above: to the arrival, then to the foothold
+  double led_ = 0.0;        // m, ahead in the sole, of the point that the way leads
+  double late_gain_ = 0.0;  // m/s, on top of late_velocity_ at most
+  // From above: back from an edge, on to the arrival, then to the foothold.
+  std::array<Quintic, 2> drawn_, ahead_, back_;
   Quintic z_up_, z_down_;
   Quintic turn_[3];  // rotation vector from from_orientation_, W, rad
   Eigen::Quaterniond from_orientation_ = Eigen::Quaterniond::Identity();
-  GaitdFootstep goal_{};                                // what the polynomials lead to
-  double ground_ = 0.0;                                 // m, height of the foothold that was left
-  Eigen::Vector2d lift_off_ = Eigen::Vector2d::Zero();  // m, W
+  GaitdFootstep goal_{};  // what the polynomials lead to
+  double ground_ = 0.0;   // m, height of the foothold that was left
+  Sample lift_off_{};
 };
 
 }  // namespace gaitd::walking
