@@ -35,6 +35,32 @@ TEST(NullSpaceProjector, TasksDoNotFeelWhatItLetsThrough) {
   EXPECT_NEAR(N.trace(), projector.trace(), 1e-9);
 }
 
+// What serves the tasks with the least sum of (x / ease)^2 is not let through.
+TEST(NullSpaceProjector, TasksAreLeftToWhatMovesWithEase) {
+  srand(6);
+  const int n = 9, m = 3;
+  const Eigen::MatrixXd J = Eigen::MatrixXd::Random(m, n);
+  Eigen::VectorXd ease = Eigen::VectorXd::Ones(n);
+  ease.segment(4, 3).setConstant(1.5);
+  NullSpaceProjector projector(n, 20);
+  projector.clear();
+  for (int i = 0; i < m; ++i) projector.add(J.row(i));
+  for (int c = 0; c < n; ++c) projector.ease(c, ease[c]);
+  projector.compute(1e-6);
+  const Eigen::MatrixXd N = matrix(projector, n);
+  EXPECT_LT((J * N).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_LT((N * N - N).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_NEAR(N.trace(), projector.trace(), 1e-9);
+  const Eigen::MatrixXd D2 = ease.cwiseAbs2().asDiagonal();
+  const Eigen::VectorXd x =
+      D2 * J.transpose() * (J * D2 * J.transpose()).ldlt().solve(Eigen::Vector3d(1.0, -2.0, 0.5));
+  EXPECT_LT((N * x).cwiseAbs().maxCoeff(), 1e-7);
+  projector.clear();  // as it was
+  for (int i = 0; i < m; ++i) projector.add(J.row(i));
+  projector.compute(1e-6);
+  EXPECT_GT((matrix(projector, n) * x).norm(), 1e-2);
+}
+
 TEST(NullSpaceProjector, DependentRowsClaimOnce) {
   srand(4);
   const int n = 8;

@@ -7,13 +7,6 @@ namespace {
 constexpr std::uint32_t kLinearRows = 0b111000;
 constexpr std::uint32_t kHeightRow = 0b100000;
 
-bool stands(const GaitdObjectives& objectives, int side) {
-  for (int i = 0; i < objectives.contact_count; ++i) {
-    if (objectives.contacts[i].side == side) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 ComHeightQp::ComHeightQp(const GaitdModel& model)
@@ -28,7 +21,7 @@ GaitdStatus ComHeightQp::process(const GaitdWholeBodyControllerInput& in,
   // height says how far it is bent.
   const bool height_free = (objectives.momentum_mask & kHeightRow) == 0;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    if (height_free && stands(objectives, side)) continue;
+    if (height_free && InverseDynamicsQp::stands(objectives, side)) continue;
     for (int k = 0; k < legs_[side].joint_count; ++k) {
       const int i = legs_[side].joints[k];
       const double weight = p_[P::kPrivilegedScale] * objectives.privileged_weight[i];

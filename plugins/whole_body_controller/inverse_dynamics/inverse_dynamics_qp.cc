@@ -73,6 +73,13 @@ void InverseDynamicsQp::set_state(const GaitdWholeBodyControllerState& state) {
   solver_.reset_warm_start();
 }
 
+bool InverseDynamicsQp::stands(const GaitdObjectives& objectives, int side) {
+  for (int i = 0; i < objectives.contact_count; ++i) {
+    if (objectives.contacts[i].side == side) return true;
+  }
+  return false;
+}
+
 void InverseDynamicsQp::begin(const GaitdRobotState& robot, const GaitdObjectives& objectives,
                               std::uint32_t mask, const Limits& limits) {
   dynamics_.update(view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),

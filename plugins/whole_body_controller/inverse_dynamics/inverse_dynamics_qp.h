@@ -86,6 +86,8 @@ class InverseDynamicsQp {
   void get_state(GaitdWholeBodyControllerState& state) const;
   void set_state(const GaitdWholeBodyControllerState& state);
 
+  // Whether the foot of `side` is in contact.
+  static bool stands(const GaitdObjectives& objectives, int side);
   // Takes the state, the contacts, all tasks of the objectives and the momentum rows of `mask`.
   void begin(const GaitdRobotState& robot, const GaitdObjectives& objectives, std::uint32_t mask,
              const Limits& limits);

@@ -8,6 +8,7 @@ namespace gaitd::plugins {
 
 NullSpaceProjector::NullSpaceProjector(int columns, int max_rows)
     : columns_(columns), claimed_(columns), place_(columns), column_(columns) {
+  ease_.setOnes(columns);
   J_.setZero(max_rows, columns);
   X_.setZero(max_rows, columns);
   gram_.setZero(max_rows, max_rows);
@@ -16,6 +17,7 @@ NullSpaceProjector::NullSpaceProjector(int columns, int max_rows)
 void NullSpaceProjector::clear() {
   rows_ = 0;
   std::fill(claimed_.begin(), claimed_.end(), false);
+  ease_.setOnes();
 }
 
 void NullSpaceProjector::add(
@@ -31,7 +33,7 @@ void NullSpaceProjector::compute(double alpha) {
   }
   int kept = 0;
   for (int r = 0; r < rows_; ++r) {
-    for (int k = 0; k < free_; ++k) X_(kept, k) = J_(r, column_[k]);
+    for (int k = 0; k < free_; ++k) X_(kept, k) = J_(r, column_[k]) * ease_[column_[k]];
     const double length = X_.row(kept).head(free_).norm();
     if (length < 1e-9) continue;
     X_.row(kept++).head(free_) /= length;
@@ -43,7 +45,7 @@ void NullSpaceProjector::compute(double alpha) {
     for (int j = 0; j <= i; ++j) L(i, j) = X.row(i).dot(X.row(j));
   }
   L.diagonal().array() += alpha * alpha;
-  // Cholesky factor row by row, L^-1 J on the way.
+  // Cholesky factor row by row, L^-1 J D on the way.
   for (int i = 0; i < rows_; ++i) {
     for (int j = 0; j < i; ++j) {
       L(i, j) = (L(i, j) - L.row(i).head(j).dot(L.row(j).head(j))) / L(j, j);
@@ -66,7 +68,7 @@ void NullSpaceProjector::row(int column, Eigen::Ref<Eigen::VectorXd> out) const 
   for (int k = free_ - 1; k >= 0; --k) {
     const double entry = out[k];
     out[k] = 0.0;
-    out[column_[k]] = entry;
+    out[column_[k]] = entry * (ease_[column] / ease_[column_[k]]);
   }
 }
 

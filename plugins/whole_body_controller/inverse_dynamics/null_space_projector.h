@@ -7,15 +7,19 @@
 namespace gaitd::plugins {
 
 // Damped projector onto what no task claims (Griffin et al. 2018; theory section 4):
-//   N = I - J' (J J' + alpha^2 I)^-1 J
-// with the rows of J scaled to unit length. Columns that tasks of single joints claim are taken out
-// beforehand: nothing is free there. Allocates at construction only.
+//   N = I - D^2 J' (J D^2 J' + alpha^2 I)^-1 J
+// with the rows of J D scaled to unit length. The tasks are served by the unknowns in proportion to
+// the square of their ease, the diagonal of D; it is 1 unless said otherwise. Columns that tasks of
+// single joints claim are taken out beforehand: nothing is free there. Allocates at construction
+// only.
 class NullSpaceProjector {
  public:
   NullSpaceProjector(int columns, int max_rows);
 
-  // Begins with no task.
+  // Begins with no task, and every ease 1.
   void clear();
+  // Tasks that this unknown and others can serve are left to it the more, the larger its ease.
+  void ease(int column, double ease) { ease_[column] = ease; }
   // A task of a single unknown: the column is taken.
   void claim(int column) { claimed_[column] = true; }
   // A task row; rows of no length claim nothing.
@@ -38,9 +42,10 @@ class NullSpaceProjector {
   std::vector<bool> claimed_;
   std::vector<int> place_;   // of a column among the free ones, -1 if claimed
   std::vector<int> column_;  // of a free place
+  Eigen::VectorXd ease_;     // diagonal of D
   Rows J_;                   // max_rows x columns, all columns as added
-  Rows X_;                   // free columns of J, then L^-1 J
-  Rows gram_;                // J J' + alpha^2 I, then its Cholesky factor
+  Rows X_;                   // free columns of J D, then L^-1 J D
+  Rows gram_;                // J D^2 J' + alpha^2 I, then its Cholesky factor
 };
 
 }  // namespace gaitd::plugins

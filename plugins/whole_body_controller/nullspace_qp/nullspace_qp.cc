@@ -5,6 +5,10 @@ namespace gaitd::plugins {
 namespace {
 
 constexpr double kLittleFreedom = 0.05;  // of the projector's trace, in the joints of one leg
+// Of the joints of a leg that swings: its foot is for them to move. The height of the hip, which no
+// task claims, would otherwise take its share, and a foot that is lifted off bent legs would throw
+// the robot up.
+constexpr double kSwingEase = 1.5;
 
 }  // namespace
 
@@ -30,6 +34,12 @@ GaitdStatus NullspaceQp::process(const GaitdWholeBodyControllerInput& in,
 void NullspaceQp::add_privileged(const GaitdObjectives& objectives) {
   projector_.clear();
   qp_.claim(objectives, projector_);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    if (InverseDynamicsQp::stands(objectives, side)) continue;
+    for (int k = 0; k < legs_[side].joint_count; ++k) {
+      projector_.ease(6 + legs_[side].joints[k], kSwingEase);
+    }
+  }
   projector_.compute(p_[P::kDamping]);
   for (const GaitdLeg& leg : legs_) {
     double freedom = 0.0;
