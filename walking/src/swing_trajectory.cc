@@ -22,6 +22,7 @@ constexpr double kOnset = 0.05;  // s
 // caught on), and how far its toe draws back as it rises before one.
 constexpr double kBeyondEdge = 0.035;
 constexpr double kDrawBack = 0.06;
+constexpr double kGentle = 15.0;  // m/s^2, while it does
 // Parts of a swing: its highest point, on level ground and down an edge; onto an edge, the first
 // one in which the foot rises and does not advance, and the one after which the sole is level; down
 // an edge, the one after which the foot is above its foothold.
@@ -160,7 +161,9 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
       (sdk::view(to.pose.position) + goal * Eigen::Vector3d(led_, 0.0, 0.0)).head<2>();
   const Eigen::Vector2d beyond = drop * kBeyondEdge * (end - lift_off_.position.head<2>());
   const Eigen::Vector2d toe = shifted(lift_off_, led_).position.head<2>();
-  const Eigen::Vector2d drawn = toe - rise * kDrawBack * (end - toe);
+  const double most = kGentle * leave_ * leave_ / kPeakAcceleration;
+  const double back = std::min(rise * kDrawBack, most / std::max((end - toe).norm(), 1e-9));
+  const Eigen::Vector2d drawn = toe - back * (end - toe);
   // A foothold that moves late is reached in its own time, and at touchdown at the latest.
   const auto needed = [](const Eigen::Vector2d& way) {
     return std::sqrt(kPeakAcceleration * way.norm() / kBrisk);
