@@ -8,7 +8,7 @@ constexpr double kLittleFreedom = 0.05;  // of the projector's trace, in the joi
 // Of the joints of a leg that swings: its foot is for them to move. The height of the hip, which no
 // task claims, would otherwise take its share, and a foot that is lifted off bent legs would throw
 // the robot up.
-constexpr double kSwingEase = 1.5;
+constexpr double kSwingEase = 1.25;
 
 }  // namespace
 
