@@ -180,13 +180,13 @@ void SwingTrajectory::plan(double t, const Sample& now, const GaitdFootstep& to,
   const double way = arrive_ - leave_;
   for (int i = 0; i < 2; ++i) {
     const double over = end[i] + (goes_beyond ? beyond[i] : 0.0);
+    double x = led.position[i], v = led.velocity[i], a = led.acceleration[i];
     if (draws) {
-      drawn_[i].fit(led.position[i], led.velocity[i], led.acceleration[i], drawn[i], 0.0, 0.0,
-                    leave_ - t);
-      ahead_[i].fit(drawn[i], 0.0, 0.0, over, 0.0, 0.0, way);
-    } else {
-      ahead_[i].fit(led.position[i], led.velocity[i], led.acceleration[i], over, 0.0, 0.0, way);
+      drawn_[i].fit(x, v, a, drawn[i], 0.0, 0.0, leave_ - t);
+      x = drawn[i];
+      v = a = 0.0;
     }
+    ahead_[i].fit(x, v, a, over, 0.0, 0.0, way);
     back_[i].fit(over, 0.0, 0.0, end[i], 0.0, 0.0, std::max(duration_ - arrive_, kShortest));
   }
   const double goal_height = to.pose.position[2];

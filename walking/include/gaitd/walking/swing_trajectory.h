@@ -80,7 +80,7 @@ class SwingTrajectory {
   Eigen::Quaterniond from_orientation_ = Eigen::Quaterniond::Identity();
   GaitdFootstep goal_{};  // what the polynomials lead to
   double ground_ = 0.0;   // m, height of the foothold that was left
-  Sample lift_off_{};
+  Sample lift_off_{};     // where the swing began
 };
 
 }  // namespace gaitd::walking
