@@ -19,12 +19,15 @@ constexpr double kStartTilt = 0.005;              // rad, of a state that was ha
 constexpr double kStartGyroBias = 0.005;          // rad/s
 constexpr double kStartAccelerometerBias = 0.05;  // m/s^2
 
-// s, in which a robot that is set on its feet sways: its CoP tells nothing.
+// s, in which a robot that is set on its feet sways: neither feet nor CoP tell anything, and what
+// they seem to tell would be taken for biases of the IMU.
 constexpr double kJolt = 0.1;
 
 // A foot gives way under its load, mostly down: its random walk there is so many times that across.
 constexpr double kGivesWay = 2.5;
 constexpr double kStandingShare = 0.1;  // of both, while the robot stands and its feet are at rest
+// rad/s/sqrt(Hz), about the vertical: joints that stick and bend turn it so by 2 mrad in each stance.
+constexpr double kFootTurns = 1.5e-3;
 constexpr double kTiltNoise = 3e-3;     // rad/sqrt(Hz), of an IMU that measures its orientation
 
 double low_pass(double pole, double dt) { return 1.0 - std::exp(-pole * dt); }
@@ -174,7 +177,7 @@ Eigen::Quaterniond InvariantEkf::sole_orientation(int side) const {
   return Eigen::Quaterniond(kinematics_.R_WB(foot.body)) * sdk::quaternion(foot.sole.orientation);
 }
 
-// What the operator says of the heading and the place, and what gravity says of the tilt.
+// The tilt comes from gravity.
 void InvariantEkf::initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints) {
   filter_.reset();
   choose_imu(sdk::first_usable_imu(model_, *in.sensors), joints);
@@ -183,8 +186,18 @@ void InvariantEkf::initialise(const GaitdStateEstimatorInput& in, const GaitdRob
   // Upright, until gravity shows.
   const Eigen::Vector3d up =
       initialised_ ? Eigen::Vector3d(place_.orientation * force) : Eigen::Vector3d::UnitZ();
-  const Eigen::Quaterniond level = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
+  filter_.orientation = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
+  place(in, joints);
+  for (Foot& foot : feet_) {
+    foot.time_above = kTrustDelay;
+    foot.time_trusted = kRestDelay;
+  }
+}
+
+// The heading and the place come from the operator: the middle of the feet.
+void InvariantEkf::place(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints) {
   update_joint_kinematics(joints);
+  const Eigen::Quaterniond level = filter_.orientation;
   const double left = sdk::yaw_of(level * sole_orientation(GAITD_LEFT));
   const double right = sdk::yaw_of(level * sole_orientation(GAITD_RIGHT));
   const double yaw = left + 0.5 * std::remainder(right - left, 2.0 * M_PI);
@@ -194,10 +207,6 @@ void InvariantEkf::initialise(const GaitdStateEstimatorInput& in, const GaitdRob
   filter_.position = view(in.start.position) + filter_.orientation * (lever() - middle);
   filter_.velocity.setZero();
   set_covariance(view(in.start.position), true);
-  for (Foot& foot : feet_) {
-    foot.time_above = kTrustDelay;
-    foot.time_trusted = kRestDelay;
-  }
 }
 
 // The robot may have turned about `centre`, which is known. If gravity has levelled it, the error
@@ -259,7 +268,8 @@ void InvariantEkf::predict(const GaitdStateEstimatorInput& in, const GaitdRobotS
   noise.accelerometer_bias = p_[P::kAccelerometerBiasNoise];
   // In a walk every foot turns and settles a little under its load.
   const double share = in.gait->phase == GAITD_PHASE_STAND ? kStandingShare : 1.0;
-  noise.point_horizontal = share * p_[P::kContactNoise];
+  noise.foot_horizontal = share * p_[P::kContactNoise];
+  noise.foot_turn = kFootTurns;
   noise.point_vertical = share * (kGivesWay * p_[P::kContactNoise]);
   Eigen::Vector3d turn = rate_;
   if (same && !place_.fixed && in.time.period > 0.0) {
@@ -319,8 +329,12 @@ GaitdStatus InvariantEkf::process(const GaitdStateEstimatorInput& in, GaitdRobot
   }
   read_forces(in, out);
   update_trust(in);
-  correct(in, out);
-  if (time_since_start_ >= kJolt) observe_balance(in, out);
+  if (time_since_start_ < kJolt) {
+    place(in, out);
+  } else {
+    correct(in, out);
+    observe_balance(in, out);
+  }
   write(in, out);
   time_since_start_ += in.time.period;
   return GAITD_OK;

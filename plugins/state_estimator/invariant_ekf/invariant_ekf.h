@@ -94,6 +94,7 @@ class InvariantEkf {
   void read_forces(const GaitdStateEstimatorInput& in, GaitdRobotState& out);
   void observe_ground(const GaitdStateEstimatorInput& in);
   void initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
+  void place(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
   void set_covariance(const Eigen::Vector3d& centre, bool levelled);
   void choose_imu(int imu, const GaitdRobotState& joints);
   void predict(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);

@@ -71,9 +71,9 @@ void RightInvariantFilter::predict(const Eigen::Vector3d& gyro,
   add(kAccelerometerBias, noise.accelerometer_bias, noise.accelerometer_bias,
       noise.accelerometer_bias);
   for (int i = 0; i < kPoints; ++i) {
-    if (!present_[i]) continue;
-    add(block(i), noise.point_horizontal, noise.point_horizontal, noise.point_vertical);
+    if (present_[i]) add(block(i), 0.0, 0.0, noise.point_vertical);
   }
+  for (int first = 0; first < kPoints; first += kPointsOfFoot) move_foot(first, noise, dt);
 
   const Eigen::Vector3d angle = dt * (gyro - gyro_bias);
   const Eigen::Vector3d acceleration =
@@ -81,6 +81,31 @@ void RightInvariantFilter::predict(const Eigen::Vector3d& gyro,
   position += dt * velocity + 0.5 * dt * dt * acceleration;
   velocity += dt * acceleration;
   orientation = (orientation * sdk::exp_so3(angle)).normalized();
+}
+
+// Its points move over the ground together, and turn about the middle between them.
+void RightInvariantFilter::move_foot(int first, const Noise& noise, double dt) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (int i = first; i < first + kPointsOfFoot; ++i) {
+    if (!present_[i]) continue;
+    middle += points_[i];
+    ++count;
+  }
+  if (count == 0) return;
+  middle /= count;
+  const double moves = dt * noise.foot_horizontal * noise.foot_horizontal;
+  const double turns = dt * noise.foot_turn * noise.foot_turn;
+  const auto across = [&](int i) {
+    return Eigen::Vector2d(middle.y() - points_[i].y(), points_[i].x() - middle.x());
+  };
+  for (int i = first; i < first + kPointsOfFoot; ++i) {
+    for (int j = first; j < first + kPointsOfFoot; ++j) {
+      if (!present_[i] || !present_[j]) continue;
+      covariance.block<2, 2>(block(i), block(j)) +=
+          moves * Eigen::Matrix2d::Identity() + turns * across(i) * across(j).transpose();
+    }
+  }
 }
 
 void RightInvariantFilter::add_point(int i, const Eigen::Vector3d& p_IC, double sigma) {

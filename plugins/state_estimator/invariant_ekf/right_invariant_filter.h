@@ -23,7 +23,8 @@ namespace gaitd::plugins {
 // Noises are densities: nothing depends on the period. Nothing allocates.
 class RightInvariantFilter {
  public:
-  static constexpr int kPoints = 4;
+  static constexpr int kPointsOfFoot = 2;
+  static constexpr int kPoints = 2 * kPointsOfFoot;
   static constexpr int kSize = 9 + 3 * kPoints + 6;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
@@ -40,8 +41,9 @@ class RightInvariantFilter {
     double accelerometer = 0.0;       // m/s^2/sqrt(Hz)
     double gyro_bias = 0.0;           // rad/s^2/sqrt(Hz)
     double accelerometer_bias = 0.0;  // m/s^3/sqrt(Hz)
-    double point_horizontal = 0.0;    // m/s/sqrt(Hz), of a point of contact
-    double point_vertical = 0.0;      // m/s/sqrt(Hz)
+    double foot_horizontal = 0.0;     // m/s/sqrt(Hz), of a foot in contact
+    double foot_turn = 0.0;           // rad/s/sqrt(Hz), the same about the vertical
+    double point_vertical = 0.0;      // m/s/sqrt(Hz), of each of its points
   };
 
   explicit RightInvariantFilter(double gravity) : gravity_(0.0, 0.0, -gravity) {}
@@ -83,6 +85,7 @@ class RightInvariantFilter {
   using Gain = Eigen::Matrix<double, kSize, 3>;
 
   void transition_rows(const Eigen::Matrix3d& R, double dt);
+  void move_foot(int first, const Noise& noise, double dt);
   // One block of the error seen directly, but for its third axis.
   void correct_two_axes(int block, Eigen::Vector3d innovation, double sigma);
   void correct(const Gain& cross, const Eigen::Matrix3d& innovation_covariance,
