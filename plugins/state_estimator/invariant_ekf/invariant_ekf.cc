@@ -16,7 +16,7 @@ using sdk::view;
 constexpr double kStartAcceleration = 0.2;        // m/s^2, of a robot that should stand still
 constexpr double kStartVelocity = 0.02;           // m/s
 constexpr double kStartTilt = 0.005;              // rad, of a state that was handed over
-constexpr double kStartGyroBias = 0.005;          // rad/s
+constexpr double kStartGyroBias = 1e-3;           // rad/s
 constexpr double kStartAccelerometerBias = 0.05;  // m/s^2
 
 // s, in which a robot that is set on its feet sways: neither feet nor CoP tell anything, and what
@@ -26,9 +26,10 @@ constexpr double kJolt = 0.1;
 // A foot gives way under its load, mostly down: its random walk there is so many times that across.
 constexpr double kGivesWay = 2.5;
 constexpr double kStandingShare = 0.1;  // of both, while the robot stands and its feet are at rest
-// rad/s/sqrt(Hz), about the vertical: joints that stick and bend turn it so by 2 mrad in each stance.
+// rad/s/sqrt(Hz), about the vertical: joints that stick and bend turn it so by 2 mrad in each
+// stance.
 constexpr double kFootTurns = 1.5e-3;
-constexpr double kTiltNoise = 3e-3;     // rad/sqrt(Hz), of an IMU that measures its orientation
+constexpr double kTiltNoise = 3e-3;  // rad/sqrt(Hz), of an IMU that measures its orientation
 
 double low_pass(double pole, double dt) { return 1.0 - std::exp(-pole * dt); }
 

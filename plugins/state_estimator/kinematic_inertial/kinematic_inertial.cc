@@ -48,6 +48,7 @@ void KinematicInertial::reset() {
   gravity_.reset();
   time_since_start_ = 0.0;
   time_quiet_ = 0.0;
+  time_bias_ = kBiasKnown;
   shaking_.setZero();
   time_still_ = 0.0;
   turned_.setZero();

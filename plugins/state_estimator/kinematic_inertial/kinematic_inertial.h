@@ -57,6 +57,9 @@ class KinematicInertial {
   // samples so far, carried along by the gyroscope, takes its place: what the robot does averages
   // out.
   static constexpr double kAveragingTime = 0.4;
+  // s, for which the gyroscope is taken to have been watched before: what the feet of a robot that
+  // has just been set on them tell of its bias is mostly that joints stick and bend.
+  static constexpr double kBiasKnown = 4.0;
   // 1/s: what the drives shake the IMU by averages out.
   static constexpr double kShakingPole = 50.0;
 
@@ -70,6 +73,9 @@ class KinematicInertial {
     Eigen::Vector3d anchored_point = Eigen::Vector3d::Zero();  // m, sole frame
     Eigen::Quaterniond anchor_orientation = Eigen::Quaterniond::Identity();
     bool orientation_anchored = false;
+    double time_carrying = 0.0;  // s, in a walk, flat on the ground
+    double heading_first = 0.0;  // rad, of the sole, over this time
+    double heading_last = 0.0;
   };
 
   const GaitdImuSensor* imu(const GaitdSensors& sensors, int& index) const;
@@ -86,6 +92,9 @@ class KinematicInertial {
   void observe_bias(const GaitdStateEstimatorInput& in, const GaitdRobotState& robot);
   void update_trust(const GaitdStateEstimatorInput& in, double dt);
   void observe_gyro_bias(double dt);
+  // rad/s, pelvis frame, by which the feet seemed to turn for so long (s).
+  void learn_gyro_bias(const Eigen::Vector3d& found, double time);
+  void observe_heading(bool carries, const Eigen::Quaterniond& now, Foot& f, double dt);
   void update_anchors(const GaitdStateEstimatorInput& in, double dt);
   void update_position(const GaitdStateEstimatorInput& in, double dt);
   void level_attitude(double dt, bool standing);
@@ -107,6 +116,7 @@ class KinematicInertial {
   double time_quiet_ = 0.0;                            // s, for which the robot has been at rest
   Eigen::Vector3d shaking_ = Eigen::Vector3d::Zero();  // m/s^2, accelerometer beside the balance
   double time_still_ = 0.0;                            // s, of the window in which its feet
+  double time_bias_ = 0.0;                             // s, that the bias is a mean over
   Eigen::Vector3d turned_ = Eigen::Vector3d::Zero();   // turned by this, rad, pelvis frame
   bool joints_seen_ = false;
   // Of the legs, and between pelvis and IMU: what is built from their rates and the gyroscope's has

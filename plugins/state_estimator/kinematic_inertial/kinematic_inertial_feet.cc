@@ -16,8 +16,9 @@ using sdk::view;
 constexpr double kStandingBalanceFactor = 6.0;
 // Share of the weight that the feet must carry before CoP and CoM tell anything.
 constexpr double kBalancedShare = 0.5;
-// m/s^2, most that the accelerometer may show beside the balance: a push is in it too.
-constexpr double kLargestError = 2.0;
+// m/s^2, most that the accelerometer may show beside the balance: a push is in it too. Touchdowns
+// must fit in: clipped, they would leave what feet do the rest of the time, and tilt the robot.
+constexpr double kLargestError = 5.0;
 // A robot at rest: for so long (s) no more of that (m/s^2), no foot turned faster (rad/s), and no
 // joint of arms and neck, whose motions shift the pelvis against the CoM and take angular momentum.
 constexpr double kQuietTime = 0.1;
@@ -29,13 +30,13 @@ constexpr double kStillTime = 0.2;      // s
 // Share of the load that makes a foot an anchor: near half, as feet sink in under their load, and
 // rise as they lose it.
 constexpr double kTrustOn = 0.48;
-constexpr double kHeadingRate = 2.0;  // 1/s, of the heading by feet at rest
-// 1/s^2, gyroscope bias from the same; in a walk every foot turns a little when it is loaded.
-constexpr double kHeadingBias = 0.5;
-constexpr double kHeadingBiasWalking = 0.05;  // of it
-constexpr double kStillShare = 0.8;    // of what the feet of a robot at rest tell of the bias
-constexpr double kBalanceRate = 0.08;  // 1/s, accelerometer bias from CoP and CoM
-constexpr double kBalanceLimit = 0.2;  // m/s^2, of that bias
+constexpr double kHeadingRate = 2.0;  // 1/s, of a standing robot, by feet at rest
+// s, of contacts of which the bias of the gyroscope is the mean: each turns by 2 mrad that are
+// none.
+constexpr double kBiasMemory = 40.0;
+constexpr double kShortestStance = 0.2;  // s, which tells anything
+constexpr double kBalanceRate = 0.08;    // 1/s, accelerometer bias from CoP and CoM
+constexpr double kBalanceLimit = 0.2;    // m/s^2, of that bias
 
 double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * hertz * dt); }
 
@@ -161,28 +162,54 @@ void KinematicInertial::observe_gyro_bias(double dt) {
   // What the attitude has turned by, which the rates of joints between pelvis and IMU are not in.
   turned_ += dt * (orientation_.conjugate() * rate + (turn_ - rate_));
   if (time_still_ < kStillTime) return;
-  const Eigen::Vector3d found = turned_ / time_still_;
-  if (found.norm() < kLargestDrift) gyro_bias_ += kStillShare * found;
+  learn_gyro_bias(turned_ / time_still_, time_still_);
   time_still_ = 0.0;
   turned_.setZero();
 }
 
+void KinematicInertial::learn_gyro_bias(const Eigen::Vector3d& found, double time) {
+  if (found.norm() > kLargestDrift) return;
+  time_bias_ = std::min(kBiasMemory, time_bias_ + time);
+  gyro_bias_ += time / time_bias_ * found;
+}
+
+// Of a robot that walks only the turn about the vertical of each foot while it carries.
+void KinematicInertial::observe_heading(bool carries, const Eigen::Quaterniond& now, Foot& f,
+                                        double dt) {
+  if (!carries) {
+    if (f.time_carrying > kShortestStance) {
+      const double turned = std::remainder(f.heading_last - f.heading_first, 2.0 * M_PI);
+      learn_gyro_bias(
+          orientation_.conjugate() * Eigen::Vector3d(0.0, 0.0, turned / f.time_carrying),
+          f.time_carrying);
+    }
+    f.time_carrying = 0.0;
+    return;
+  }
+  f.heading_last = sdk::yaw_of(now);
+  if (f.time_carrying <= 0.0) f.heading_first = f.heading_last;
+  f.time_carrying += dt;
+}
+
 void KinematicInertial::update_anchors(const GaitdStateEstimatorInput& in, double dt) {
+  const bool standing = in.gait->phase == GAITD_PHASE_STAND;
   Eigen::Vector3d error = Eigen::Vector3d::Zero();
   double total = 0.0;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     Foot& f = feet_[side];
-    if (!f.trusted) continue;
-    const bool toe = in.gait->footholds[side].contact == GAITD_CONTACT_TOE;
+    const bool toe = f.trusted && in.gait->footholds[side].contact == GAITD_CONTACT_TOE;
     const Eigen::Vector3d point =
         toe ? Eigen::Vector3d(view(model_.feet[side].toe_point)) : Eigen::Vector3d::Zero();
-    if (point != f.anchored_point) {  // the foot begins to roll over its toe, or comes down again
+    if (f.trusted &&
+        point != f.anchored_point) {  // the foot begins to roll over its toe, or comes down again
       f.anchored_point = point;
       f.anchor = sole_point(side, point);
     }
     if (toe) f.orientation_anchored = false;
-    if (toe || f.time_trusted < kRestDelay) continue;
+    const bool carries = f.trusted && !toe && f.time_trusted >= kRestDelay;
     const Eigen::Quaterniond now = sole_orientation(side);
+    observe_heading(carries && !standing, now, f, dt);
+    if (!carries) continue;
     if (!f.orientation_anchored) {
       f.orientation_anchored = true;
       f.anchor_orientation = now;
@@ -191,11 +218,8 @@ void KinematicInertial::update_anchors(const GaitdStateEstimatorInput& in, doubl
     error.z() += f.normal_force * sdk::log_so3(f.anchor_orientation * now.conjugate()).z();
     total += f.normal_force;
   }
-  if (total <= 0.0) return;
-  error /= total;
-  orientation_ = (sdk::exp_so3(kHeadingRate * dt * error) * orientation_).normalized();
-  const double share = in.gait->phase == GAITD_PHASE_STAND ? 1.0 : kHeadingBiasWalking;
-  gyro_bias_ -= share * kHeadingBias * dt * (orientation_.conjugate() * error);
+  if (total <= 0.0 || !standing) return;
+  orientation_ = (sdk::exp_so3(kHeadingRate * dt * error / total) * orientation_).normalized();
 }
 
 }  // namespace gaitd::plugins
