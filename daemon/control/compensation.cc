@@ -19,6 +19,9 @@ constexpr double kLargestBend = 0.1;        // rad
 // In which friction turns round with the rate that the link is to have. The Stribeck speed of real
 // joints is 0.02 to 0.15 rad/s; a step there would make the drive chatter while it stands.
 constexpr double kTurnRate = 0.08;  // rad/s
+// Hz, up to which friction is made up for on two feet. Faster, it is all that damps a robot whose
+// legs move while it stands: Atlas shook at 18 Hz (see docs/decisions/compensation.md).
+constexpr double kStandingBandwidth = 5.0;
 
 }  // namespace
 
@@ -94,14 +97,18 @@ void Compensation::sensors(double dt, TickData& d) {
   known_ = true;
 }
 
-void Compensation::commands(TickData& d) const {
+void Compensation::commands(double dt, TickData& d) {
   if (!used_) return;
+  const double share = d.gait.phase == GAITD_PHASE_STAND
+                           ? -std::expm1(-2.0 * std::numbers::pi * kStandingBandwidth * dt)
+                           : 1.0;
   for (int i = 0; i < model_.joint_count; ++i) {
     GaitdJointCommand& command = d.commands.joints[i];
     command.position += calibration_.joints[i].zero + bend(i, command.torque);
     if (command.mode != GAITD_JOINT_MODE_TORQUE) continue;
     const double limit = model_.joints[i].effort_limit;
-    command.torque = std::clamp(command.torque + lost(i, command.velocity), -limit, limit);
+    rate_[i] += share * (command.velocity - rate_[i]);
+    command.torque = std::clamp(command.torque + lost(i, rate_[i]), -limit, limit);
   }
 }
 

@@ -18,14 +18,18 @@ namespace gaitd::daemon {
 class Compensation {
  public:
   Compensation(const GaitdModel& model, const Calibration& calibration);
-  void reset() { known_ = false; }
+  void reset() {
+    known_ = false;
+    rate_.fill(0.0);
+  }
 
   /// Once in a tick of `dt` seconds, in place: d.sensors. Turns the feet as d.robot of the tick
   /// before has them.
   void sensors(double dt, TickData& d);
-  /// In place: d.commands. With the torque of the command, not the measured one: that would close a
-  /// loop around the encoder through the stiffness, with the delay of its filter.
-  void commands(TickData& d) const;
+  /// Once in a tick of `dt` seconds, in place: d.commands. With the torque of the command, not the
+  /// measured one: that would close a loop around the encoder through the stiffness, with the delay
+  /// of its filter.
+  void commands(double dt, TickData& d);
 
  private:
   double bend(int joint, double torque) const;
@@ -40,6 +44,7 @@ class Compensation {
   bool used_ = false;                              // something differs from the model
   bool known_ = false;                             // the filters have begun
   std::array<double, GAITD_MAX_JOINTS> torque_{};  // N m, filtered
+  std::array<double, GAITD_MAX_JOINTS> rate_{};    // rad/s, whose friction is made up for
 };
 
 }  // namespace gaitd::daemon

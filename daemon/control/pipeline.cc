@@ -205,7 +205,7 @@ void Pipeline::run(std::int64_t tick) {
     d.icp_margin = std::numeric_limits<double>::quiet_NaN();
   }
   safety_.write(period_, ok, d);
-  compensation_.commands(d);
+  compensation_.commands(period_, d);
 }
 
 bool Pipeline::control(double dt) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -42,7 +43,7 @@ TEST_F(CompensationTest, ARobotLikeItsModelIsLeftAsItIs) {
   data_->commands.joints[kJoint].torque = 100.0;
   const auto before = std::make_unique<TickData>(*data_);
   compensation.sensors(kPeriod, *data_);
-  compensation.commands(*data_);
+  compensation.commands(kPeriod, *data_);
   EXPECT_EQ(std::memcmp(&data_->sensors, &before->sensors, sizeof(GaitdSensors)), 0);
   EXPECT_EQ(std::memcmp(&data_->commands, &before->commands, sizeof(GaitdJointCommands)), 0);
 }
@@ -65,13 +66,14 @@ TEST_F(CompensationTest, TheLinkIsBehindItsMotorByTorqueOverStiffness) {
 TEST_F(CompensationTest, FrictionIsMadeUpForWithTheRateThatTheLinkIsToHave) {
   calibration_.joints[kJoint] = {.torque_bias = 3.0, .coulomb = 4.0, .viscous = 6.0};
   Compensation compensation(atlas(), calibration_);
+  data_->gait.phase = GAITD_PHASE_SWING;
   GaitdJointCommand& command = data_->commands.joints[kJoint];
   const auto torque_at = [&](double rate, int mode = GAITD_JOINT_MODE_TORQUE) {
     command = {};
     command.mode = mode;
     command.torque = 5.0;
     command.velocity = rate;
-    compensation.commands(*data_);
+    compensation.commands(kPeriod, *data_);
     return command.torque;
   };
   EXPECT_NEAR(torque_at(0.0), 5.0 - 3.0, 1e-12);
@@ -83,6 +85,29 @@ TEST_F(CompensationTest, FrictionIsMadeUpForWithTheRateThatTheLinkIsToHave) {
   // The layers get the torque that arrives, but for friction.
   read(&compensation, 0.0, 40.0, 1);
   EXPECT_EQ(joint().torque, 43.0);
+}
+
+// What is made up for does not damp: a robot that stands and straightens its legs shook at 18 Hz.
+TEST_F(CompensationTest, FrictionDampsWhatShakesARobotThatStands) {
+  calibration_.joints[kJoint] = {.viscous = 10.0};
+  GaitdJointCommand& command = data_->commands.joints[kJoint];
+  // Amplitude of what is added to the torque of a joint that swings by 1 rad/s.
+  const auto added = [&](int phase, double hertz) {
+    Compensation compensation(atlas(), calibration_);
+    data_->gait.phase = phase;
+    double most = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+      command = {};
+      command.mode = GAITD_JOINT_MODE_TORQUE;
+      command.velocity = std::sin(2.0 * M_PI * hertz * kPeriod * i);
+      compensation.commands(kPeriod, *data_);
+      if (i > 1000) most = std::max(most, command.torque);
+    }
+    return most;
+  };
+  EXPECT_GT(added(GAITD_PHASE_STAND, 0.5), 9.9);
+  EXPECT_LT(added(GAITD_PHASE_STAND, 18.0), 3.0);
+  EXPECT_NEAR(added(GAITD_PHASE_SWING, 18.0), 10.0, 0.1);
 }
 
 TEST_F(CompensationTest, ABadTorqueSensorMovesAJointByABoundedAngle) {
@@ -99,7 +124,7 @@ TEST_F(CompensationTest, ReferencesAreThoseOfTheEncoder) {
   read(&compensation, 0.5, -400.0, 10);  // what is measured closes no loop
   data_->commands.joints[kJoint].position = 0.3;
   data_->commands.joints[kJoint].torque = 100.0;
-  compensation.commands(*data_);
+  compensation.commands(kPeriod, *data_);
   EXPECT_NEAR(data_->commands.joints[kJoint].position, 0.3 + 0.01 + 0.01, 1e-12);
 }
 
