@@ -189,7 +189,7 @@ TEST(RightInvariantFilter, FeetThatMoveButDoNotTurnTellTheBiasAboutTheVertical) 
   filter.covariance.diagonal().segment<3>(Filter::kGyroBias).setConstant(16e-6);
   Filter::Noise walking = noise();
   walking.foot_horizontal = walking.point_vertical = 0.004;
-  walking.foot_turn = 1.5e-3;
+  walking.foot_turn = 4e-3;
   const Vector3d ahead(0.1, 0.1, -0.9), behind(-0.1, 0.1, -0.9);
   for (int i = 0; i < 20000; ++i) {
     filter.predict(bias, up, kPeriod, walking);

@@ -26,9 +26,9 @@ constexpr double kJolt = 0.1;
 // A foot gives way under its load, mostly down: its random walk there is so many times that across.
 constexpr double kGivesWay = 2.5;
 constexpr double kStandingShare = 0.1;  // of both, while the robot stands and its feet are at rest
-// rad/s/sqrt(Hz), about the vertical: joints that stick and bend turn it so by 2 mrad in each
-// stance.
-constexpr double kFootTurns = 1.5e-3;
+// rad/s/sqrt(Hz), about the vertical: in each stance joints that stick and bend turn a foot by 2
+// mrad in the eyes of the encoders, and one that lands on an edge turns on it.
+constexpr double kFootTurns = 4e-3;
 constexpr double kTiltNoise = 3e-3;  // rad/sqrt(Hz), of an IMU that measures its orientation
 
 double low_pass(double pole, double dt) { return 1.0 - std::exp(-pole * dt); }
