@@ -103,8 +103,9 @@ class Commands(unittest.TestCase):
 
     def test_a_push_moves_it(self):
         events = robot.events(timeout=0.3)
-        robot.push("utorso", (60.0, 0.0, 0.0), 0.1)
-        [pushed] = [event.text for event in events if event.kind == "command"]
+        taken = robot.push("utorso", (60.0, 0.0, 0.0), 0.1)
+        told = [event for event in events if event.tick >= taken["tick"]]  # not the command before
+        [pushed] = [event.text for event in told if event.kind == "command"]
         self.assertEqual((pushed["command"], pushed["force"], pushed["duration"]), ("sim.push", [60, 0, 0], 0.1))
 
     def test_each_thread_has_its_own(self):
