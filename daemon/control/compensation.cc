@@ -23,6 +23,11 @@ constexpr double kTurnRate = 0.08;  // rad/s
 // legs move while it stands: Atlas shook at 18 Hz (see docs/decisions/compensation.md).
 constexpr double kStandingBandwidth = 5.0;
 
+// Share of a step that a low-pass of the first order follows in `dt` seconds.
+double low_pass(double hertz, double dt) {
+  return -std::expm1(-2.0 * std::numbers::pi * hertz * dt);
+}
+
 }  // namespace
 
 Compensation::Compensation(const GaitdModel& model, const Calibration& calibration)
@@ -91,7 +96,7 @@ void Compensation::foot(int side, const GaitdRobotState& robot,
 
 void Compensation::sensors(double dt, TickData& d) {
   if (!used_) return;
-  const double gain = -std::expm1(-2.0 * std::numbers::pi * kTorqueBandwidth * dt);
+  const double gain = low_pass(kTorqueBandwidth, dt);
   for (int i = 0; i < model_.joint_count; ++i) joint(gain, dt, i, d.sensors.joints[i]);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) foot(side, d.robot, d.sensors.feet[side]);
   known_ = true;
@@ -99,9 +104,7 @@ void Compensation::sensors(double dt, TickData& d) {
 
 void Compensation::commands(double dt, TickData& d) {
   if (!used_) return;
-  const double share = d.gait.phase == GAITD_PHASE_STAND
-                           ? -std::expm1(-2.0 * std::numbers::pi * kStandingBandwidth * dt)
-                           : 1.0;
+  const double share = d.gait.phase == GAITD_PHASE_STAND ? low_pass(kStandingBandwidth, dt) : 1.0;
   for (int i = 0; i < model_.joint_count; ++i) {
     GaitdJointCommand& command = d.commands.joints[i];
     command.position += calibration_.joints[i].zero + bend(i, command.torque);

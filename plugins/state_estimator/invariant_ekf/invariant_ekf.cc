@@ -178,7 +178,7 @@ Eigen::Quaterniond InvariantEkf::sole_orientation(int side) const {
   return Eigen::Quaterniond(kinematics_.R_WB(foot.body)) * sdk::quaternion(foot.sole.orientation);
 }
 
-// The tilt comes from gravity.
+// The tilt comes from gravity. place() does the rest, until the robot no longer jolts.
 void InvariantEkf::initialise(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints) {
   filter_.reset();
   choose_imu(sdk::first_usable_imu(model_, *in.sensors), joints);
@@ -188,7 +188,6 @@ void InvariantEkf::initialise(const GaitdStateEstimatorInput& in, const GaitdRob
   const Eigen::Vector3d up =
       initialised_ ? Eigen::Vector3d(place_.orientation * force) : Eigen::Vector3d::UnitZ();
   filter_.orientation = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
-  place(in, joints);
   for (Foot& foot : feet_) {
     foot.time_above = kTrustDelay;
     foot.time_trusted = kRestDelay;

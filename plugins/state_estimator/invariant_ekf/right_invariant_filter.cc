@@ -85,22 +85,15 @@ void RightInvariantFilter::predict(const Eigen::Vector3d& gyro,
 
 // Its points move over the ground together, and turn about the middle between them.
 void RightInvariantFilter::move_foot(int first, const Noise& noise, double dt) {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  int count = 0;
-  for (int i = first; i < first + kPointsOfFoot; ++i) {
-    if (!present_[i]) continue;
-    middle += points_[i];
-    ++count;
-  }
-  if (count == 0) return;
-  middle /= count;
+  const int end = first + kPointsOfFoot;
+  const Eigen::Vector3d centre = middle(first, end);
   const double moves = dt * noise.foot_horizontal * noise.foot_horizontal;
   const double turns = dt * noise.foot_turn * noise.foot_turn;
   const auto across = [&](int i) {
-    return Eigen::Vector2d(middle.y() - points_[i].y(), points_[i].x() - middle.x());
+    return Eigen::Vector2d(centre.y() - points_[i].y(), points_[i].x() - centre.x());
   };
-  for (int i = first; i < first + kPointsOfFoot; ++i) {
-    for (int j = first; j < first + kPointsOfFoot; ++j) {
+  for (int i = first; i < end; ++i) {
+    for (int j = first; j < end; ++j) {
       if (!present_[i] || !present_[j]) continue;
       covariance.block<2, 2>(block(i), block(j)) +=
           moves * Eigen::Matrix2d::Identity() + turns * across(i) * across(j).transpose();
@@ -160,7 +153,7 @@ void RightInvariantFilter::correct(const Gain& cross, const Eigen::Matrix3d& inn
   covariance -= gain * cross.transpose();
   covariance = 0.5 * (covariance + covariance.transpose()).eval();
 
-  const Eigen::Vector3d held = middle();
+  const Eigen::Vector3d held = middle(0, kPoints);
   const Eigen::Vector3d angle = change.segment<3>(kOrientation);
   const Eigen::Quaterniond turn = sdk::exp_so3(angle);
   const Eigen::Matrix3d J = left_jacobian(angle);
@@ -175,10 +168,10 @@ void RightInvariantFilter::correct(const Gain& cross, const Eigen::Matrix3d& inn
   hold(held, -angle.z());
 }
 
-Eigen::Vector3d RightInvariantFilter::middle() const {
+Eigen::Vector3d RightInvariantFilter::middle(int first, int end) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int count = 0;
-  for (int i = 0; i < kPoints; ++i) {
+  for (int i = first; i < end; ++i) {
     if (!present_[i]) continue;
     sum += points_[i];
     ++count;
@@ -190,7 +183,7 @@ void RightInvariantFilter::hold(const Eigen::Vector3d& held, double yaw) {
   const Eigen::Quaterniond turn = sdk::from_yaw(yaw);
   orientation = (turn * orientation).normalized();
   velocity = turn * velocity;
-  const Eigen::Vector3d shift = held - turn * middle();
+  const Eigen::Vector3d shift = held - turn * middle(0, kPoints);
   position = turn * position + shift;
   for (int i = 0; i < kPoints; ++i) {
     if (present_[i]) points_[i] = turn * points_[i] + shift;

@@ -90,8 +90,8 @@ class RightInvariantFilter {
   void correct_two_axes(int block, Eigen::Vector3d innovation, double sigma);
   void correct(const Gain& cross, const Eigen::Matrix3d& innovation_covariance,
                const Eigen::Vector3d& innovation);
-  // Of the points, m, W; without any the position.
-  Eigen::Vector3d middle() const;
+  // Of the points from `first` to before `end`, m, W; without any the position.
+  Eigen::Vector3d middle(int first, int end) const;
   // Turns everything by `yaw` (rad) about the vertical and moves it until the middle is at `held`.
   void hold(const Eigen::Vector3d& held, double yaw);
   static constexpr int block(int i) { return kFirstPoint + 3 * i; }

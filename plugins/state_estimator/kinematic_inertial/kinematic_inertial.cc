@@ -361,6 +361,7 @@ GaitdStatus KinematicInertial::process(const GaitdStateEstimatorInput& in, Gaitd
   } else {
     update_trust(in, dt);
     observe_gyro_bias(dt);
+    observe_turns(in, dt);
     update_anchors(in, dt);
     update_kinematics(out);
     update_position(in, dt);

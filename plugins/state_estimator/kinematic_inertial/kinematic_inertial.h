@@ -76,6 +76,8 @@ class KinematicInertial {
     double time_carrying = 0.0;  // s, in a walk, flat on the ground
     double heading_first = 0.0;  // rad, of the sole, over this time
     double heading_last = 0.0;
+
+    bool rests() const { return trusted && time_trusted >= kRestDelay; }
   };
 
   const GaitdImuSensor* imu(const GaitdSensors& sensors, int& index) const;
@@ -94,7 +96,9 @@ class KinematicInertial {
   void observe_gyro_bias(double dt);
   // rad/s, pelvis frame, by which the feet seemed to turn for so long (s).
   void learn_gyro_bias(const Eigen::Vector3d& found, double time);
-  void observe_heading(bool carries, const Eigen::Quaterniond& now, Foot& f, double dt);
+  void observe_turns(const GaitdStateEstimatorInput& in, double dt);
+  // Over its toe: the rest of the sole is in the air.
+  bool rolls(int side, const GaitdStateEstimatorInput& in) const;
   void update_anchors(const GaitdStateEstimatorInput& in, double dt);
   void update_position(const GaitdStateEstimatorInput& in, double dt);
   void level_attitude(double dt, bool standing);

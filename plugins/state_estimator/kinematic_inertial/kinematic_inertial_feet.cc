@@ -173,22 +173,28 @@ void KinematicInertial::learn_gyro_bias(const Eigen::Vector3d& found, double tim
   gyro_bias_ += time / time_bias_ * found;
 }
 
-// Of a robot that walks only the turn about the vertical of each foot while it carries.
-void KinematicInertial::observe_heading(bool carries, const Eigen::Quaterniond& now, Foot& f,
-                                        double dt) {
-  if (!carries) {
+bool KinematicInertial::rolls(int side, const GaitdStateEstimatorInput& in) const {
+  return in.gait->footholds[side].contact == GAITD_CONTACT_TOE;
+}
+
+// In a walk, the bias about the vertical from by what each foot turned while it carried.
+void KinematicInertial::observe_turns(const GaitdStateEstimatorInput& in, double dt) {
+  const bool walking = in.gait->phase != GAITD_PHASE_STAND;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    Foot& f = feet_[side];
+    if (walking && f.rests() && !rolls(side, in)) {
+      f.heading_last = sdk::yaw_of(sole_orientation(side));
+      if (f.time_carrying <= 0.0) f.heading_first = f.heading_last;
+      f.time_carrying += dt;
+      continue;
+    }
     if (f.time_carrying > kShortestStance) {
       const double turned = std::remainder(f.heading_last - f.heading_first, 2.0 * M_PI);
-      learn_gyro_bias(
-          orientation_.conjugate() * Eigen::Vector3d(0.0, 0.0, turned / f.time_carrying),
-          f.time_carrying);
+      const Eigen::Vector3d rate(0.0, 0.0, turned / f.time_carrying);
+      learn_gyro_bias(orientation_.conjugate() * rate, f.time_carrying);
     }
     f.time_carrying = 0.0;
-    return;
   }
-  f.heading_last = sdk::yaw_of(now);
-  if (f.time_carrying <= 0.0) f.heading_first = f.heading_last;
-  f.time_carrying += dt;
 }
 
 void KinematicInertial::update_anchors(const GaitdStateEstimatorInput& in, double dt) {
@@ -197,28 +203,27 @@ void KinematicInertial::update_anchors(const GaitdStateEstimatorInput& in, doubl
   double total = 0.0;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     Foot& f = feet_[side];
-    const bool toe = f.trusted && in.gait->footholds[side].contact == GAITD_CONTACT_TOE;
+    if (!f.trusted) continue;
+    const bool toe = rolls(side, in);
     const Eigen::Vector3d point =
         toe ? Eigen::Vector3d(view(model_.feet[side].toe_point)) : Eigen::Vector3d::Zero();
-    if (f.trusted &&
-        point != f.anchored_point) {  // the foot begins to roll over its toe, or comes down again
+    if (point != f.anchored_point) {  // the foot begins to roll over its toe, or comes down again
       f.anchored_point = point;
       f.anchor = sole_point(side, point);
     }
     if (toe) f.orientation_anchored = false;
-    const bool carries = f.trusted && !toe && f.time_trusted >= kRestDelay;
+    if (toe || !f.rests()) continue;
     const Eigen::Quaterniond now = sole_orientation(side);
-    observe_heading(carries && !standing, now, f, dt);
-    if (!carries) continue;
     if (!f.orientation_anchored) {
       f.orientation_anchored = true;
       f.anchor_orientation = now;
     }
+    if (!standing) continue;
     // The heading only: under load a foot tilts by some milliradians.
     error.z() += f.normal_force * sdk::log_so3(f.anchor_orientation * now.conjugate()).z();
     total += f.normal_force;
   }
-  if (total <= 0.0 || !standing) return;
+  if (total <= 0.0) return;
   orientation_ = (sdk::exp_so3(kHeadingRate * dt * error / total) * orientation_).normalized();
 }
 
