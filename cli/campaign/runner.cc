@@ -198,8 +198,11 @@ PoolEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs
   logs.keep_worst(results->results());
   int finished = 0;
   const auto append = [&](const CampaignResult& result, std::string* why) {
+    // Logs first: whoever is killed in between plays this run again, and finds what it needs.
+    CampaignResults with = results->results();
+    with.insert_or_assign(result.number, result);
+    logs.keep_worst(with);
     if (!results->append(result, why)) return false;
-    logs.keep_worst(results->results());
     ++finished;
     return true;
   };

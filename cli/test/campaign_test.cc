@@ -342,6 +342,13 @@ TEST_F(CampaignTest, GoesOnAfterAKill) {
   EXPECT_EQ(lines("calls"), 0);
 }
 
+TEST_F(CampaignTest, ALogIsThereBeforeItsRow) {
+  campaign("scenarios: [" + file("good.yaml") + "]\nseeds: 1\nkeep_logs: 1\n");
+  gaitd("rm " + file("results/results.csv") + "; mkdir " + file("results/results.csv"));
+  EXPECT_HAS(run().err, "results.csv: cannot write");
+  EXPECT_TRUE(has_log(file("results"), 1));
+}
+
 TEST_F(CampaignTest, WhatCouldNotBeJudgedIsNoSuccessAndTriedAgain) {
   campaign("scenarios: [" + file("good.yaml") + "]\nseeds: 2\n");
   gaitd("kill -SEGV $$");
