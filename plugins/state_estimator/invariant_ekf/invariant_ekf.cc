@@ -16,7 +16,8 @@ using sdk::view;
 constexpr double kStartAcceleration = 0.2;        // m/s^2, of a robot that should stand still
 constexpr double kStartVelocity = 0.02;           // m/s
 constexpr double kStartTilt = 0.005;              // rad, of a state that was handed over
-constexpr double kStartGyroBias = 1e-3;           // rad/s
+constexpr double kStartGyroBias = 5e-3;           // rad/s, about level axes: the tilt tells it soon
+constexpr double kStartTurnBias = 1e-3;           // rad/s, about the vertical: only the feet tell it
 constexpr double kStartAccelerometerBias = 0.05;  // m/s^2
 
 // s, in which a robot that is set on its feet sways: neither feet nor CoP tell anything, and what
@@ -225,6 +226,8 @@ void InvariantEkf::set_covariance(const Eigen::Vector3d& centre, bool levelled) 
   };
   add(F::kVelocity, kStartVelocity);
   add(F::kGyroBias, kStartGyroBias);
+  // The axes of the pelvis are close enough to level.
+  filter_.covariance(F::kGyroBias + 2, F::kGyroBias + 2) = kStartTurnBias * kStartTurnBias;
   add(F::kAccelerometerBias, kStartAccelerometerBias);
   if (!levelled) return;
   Eigen::Matrix3d by_bias;  // the tilt that an error of the accelerometer makes

@@ -94,8 +94,8 @@ class KinematicInertial {
   void observe_bias(const GaitdStateEstimatorInput& in, const GaitdRobotState& robot);
   void update_trust(const GaitdStateEstimatorInput& in, double dt);
   void observe_gyro_bias(double dt);
-  // rad/s, pelvis frame, by which the feet seemed to turn for so long (s).
-  void learn_gyro_bias(const Eigen::Vector3d& found, double time);
+  // rad/s about the vertical, by which the feet seemed to turn for so long (s).
+  void learn_turn_bias(double found, double time);
   void observe_turns(const GaitdStateEstimatorInput& in, double dt);
   // Over its toe: the rest of the sole is in the air.
   bool rolls(int side, const GaitdStateEstimatorInput& in) const;
@@ -120,8 +120,8 @@ class KinematicInertial {
   double time_quiet_ = 0.0;                            // s, for which the robot has been at rest
   Eigen::Vector3d shaking_ = Eigen::Vector3d::Zero();  // m/s^2, accelerometer beside the balance
   double time_still_ = 0.0;                            // s, of the window in which its feet
-  double time_bias_ = 0.0;                             // s, that the bias is a mean over
-  Eigen::Vector3d turned_ = Eigen::Vector3d::Zero();   // turned by this, rad, pelvis frame
+  double time_bias_ = 0.0;  // s, that the bias about the vertical is a mean over
+  Eigen::Vector3d turned_ = Eigen::Vector3d::Zero();  // turned by this, rad, pelvis frame
   bool joints_seen_ = false;
   // Of the legs, and between pelvis and IMU: what is built from their rates and the gyroscope's has
   // to be equally late, so nothing is expected of their commands.

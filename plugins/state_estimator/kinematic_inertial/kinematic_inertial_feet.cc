@@ -30,8 +30,11 @@ constexpr double kStillTime = 0.2;      // s
 // Share of the load that makes a foot an anchor: near half, as feet sink in under their load, and
 // rise as they lose it.
 constexpr double kTrustOn = 0.48;
+// Of what the feet of a robot at rest tell in kStillTime of its bias about level axes. If they tell
+// it wrongly, the tilt soon puts it right.
+constexpr double kStillShare = 0.2;
 constexpr double kHeadingRate = 2.0;  // 1/s, of a standing robot, by feet at rest
-// s, of contacts of which the bias of the gyroscope is the mean: each turns by 2 mrad that are
+// s, of contacts of which the bias about the vertical is the mean: each turns by 2 mrad that are
 // none.
 constexpr double kBiasMemory = 40.0;
 constexpr double kShortestStance = 0.2;  // s, which tells anything
@@ -162,15 +165,21 @@ void KinematicInertial::observe_gyro_bias(double dt) {
   // What the attitude has turned by, which the rates of joints between pelvis and IMU are not in.
   turned_ += dt * (orientation_.conjugate() * rate + (turn_ - rate_));
   if (time_still_ < kStillTime) return;
-  learn_gyro_bias(turned_ / time_still_, time_still_);
+  const Eigen::Vector3d found = turned_ / time_still_;
+  if (found.norm() < kLargestDrift) {
+    const Eigen::Vector3d up = orientation_.conjugate() * Eigen::Vector3d::UnitZ();
+    const double turn = found.dot(up);
+    gyro_bias_ += kStillShare * (found - turn * up);
+    learn_turn_bias(turn, time_still_);
+  }
   time_still_ = 0.0;
   turned_.setZero();
 }
 
-void KinematicInertial::learn_gyro_bias(const Eigen::Vector3d& found, double time) {
-  if (found.norm() > kLargestDrift) return;
+void KinematicInertial::learn_turn_bias(double found, double time) {
+  if (std::abs(found) > kLargestDrift) return;
   time_bias_ = std::min(kBiasMemory, time_bias_ + time);
-  gyro_bias_ += time / time_bias_ * found;
+  gyro_bias_ += time / time_bias_ * found * (orientation_.conjugate() * Eigen::Vector3d::UnitZ());
 }
 
 bool KinematicInertial::rolls(int side, const GaitdStateEstimatorInput& in) const {
@@ -190,8 +199,7 @@ void KinematicInertial::observe_turns(const GaitdStateEstimatorInput& in, double
     }
     if (f.time_carrying > kShortestStance) {
       const double turned = std::remainder(f.heading_last - f.heading_first, 2.0 * M_PI);
-      const Eigen::Vector3d rate(0.0, 0.0, turned / f.time_carrying);
-      learn_gyro_bias(orientation_.conjugate() * rate, f.time_carrying);
+      learn_turn_bias(turned / f.time_carrying, f.time_carrying);
     }
     f.time_carrying = 0.0;
   }
