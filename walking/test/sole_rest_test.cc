@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kDt = 1e-3;
 constexpr double kWeight = 1000.0;  // N
+constexpr double kLever = 0.006;    // m, beside the line of a tilted sole
 constexpr SoleRest::Limits kLimits{.start = 0.02, .full = 0.04};
 
 GaitdFoothold sole() {
@@ -62,8 +63,9 @@ TEST(SoleRest, OnItsToesItBearsOnTheLineOfTheToes) {
   foot.run_for(0.1, rest);
   EXPECT_EQ(rest.share(), 1.0);
   for (double y : {0.06, -0.06}) {
-    EXPECT_LT((rest.bearing_point({-0.13, y}) - Eigen::Vector2d(0.13, y)).norm(), 1e-9);
-    EXPECT_LT((rest.bearing_point({0.13, y}) - Eigen::Vector2d(0.13, y)).norm(), 1e-9);
+    const Eigen::Vector2d bearing(0.13 - kLever, y);
+    EXPECT_LT((rest.bearing_point({-0.13, y}) - bearing).norm(), 1e-9);
+    EXPECT_LT((rest.bearing_point({0.13, y}) - bearing).norm(), 1e-9);
   }
   EXPECT_LT((rest.way_back() - Eigen::Vector3d(0.0, -0.06, 0.0)).norm(), 1e-3);
   EXPECT_LT((rest.pivot() - Eigen::Vector2d(0.13, 0.01)).norm(), 1e-9);
@@ -79,8 +81,25 @@ TEST(SoleRest, OnAnEdgeOfTheGroundItBearsThere) {
   foot.press(-0.03, 0.0);
   foot.run_for(0.05, rest);
   EXPECT_EQ(rest.share(), 1.0);
-  EXPECT_NEAR(rest.bearing_point({-0.13, 0.06}).x(), -0.03, 1e-9);
-  EXPECT_NEAR(rest.bearing_point({0.13, 0.06}).x(), -0.03, 1e-9);
+  EXPECT_NEAR(rest.bearing_point({-0.13, 0.06}).x(), -0.03 + kLever, 1e-9);
+  EXPECT_NEAR(rest.bearing_point({0.13, 0.06}).x(), -0.03 + kLever, 1e-9);
+}
+
+// Over the same edge the other way: what has to come down is the heel.
+TEST(SoleRest, ItPressesWhereItHasToComeDown) {
+  SoleRest rest;
+  Foot foot;
+  foot.press(-0.05, 0.0);
+  foot.run_for(0.5, rest);
+  foot.turn({0.0, 0.06, 0.0});  // the toes drop
+  foot.state.twist[1] = 0.5;
+  foot.press(-0.03, 0.0);
+  foot.run_for(0.05, rest);
+  EXPECT_NEAR(rest.bearing_point({0.13, 0.06}).x(), -0.03 - kLever, 1e-9);
+  foot.turn({0.06, 0.0, 0.0});  // on its right edge
+  foot.press(0.0, -0.06);
+  foot.run_for(0.001, rest);
+  EXPECT_NEAR(rest.bearing_point({0.0, 0.06}).y(), -0.06 + kLever, 1e-9);
 }
 
 TEST(SoleRest, BetweenFlatAndTiltedTheBearingMovesWithoutAJump) {
@@ -97,7 +116,7 @@ TEST(SoleRest, BetweenFlatAndTiltedTheBearingMovesWithoutAJump) {
     EXPECT_LT(x - before, 0.02);
     before = x;
   }
-  EXPECT_NEAR(before, 0.13, 1e-9);
+  EXPECT_NEAR(before, 0.13 - kLever, 1e-9);
 }
 
 TEST(SoleRest, FlatIsHowTheFootCameToLieAfterTouchdown) {

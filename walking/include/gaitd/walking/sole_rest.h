@@ -10,7 +10,8 @@ namespace gaitd::walking {
 
 // How the sole of a loaded foot rests on the ground: flat, as it settled, or tilted about a line
 // through its centre of pressure, when the CoP has come to an edge of the foot or of the ground
-// under it. A tilted sole can press on that line only, whatever its polygon is.
+// under it. A tilted sole can press on that line only, whatever its polygon is. Told to press just
+// beside it, where the sole has to come down, it turns back.
 class SoleRest {
  public:
   struct Limits {
@@ -40,8 +41,8 @@ class SoleRest {
   double share_ = 0.0;
   Eigen::Vector3d way_back_ = Eigen::Vector3d::Zero();
   Eigen::Vector2d pivot_ = Eigen::Vector2d::Zero();
-  Eigen::Vector2d cop_ = Eigen::Vector2d::Zero();    // m, axes of the sole: a point of the line
-  Eigen::Vector2d line_ = Eigen::Vector2d::UnitX();  // its direction
+  Eigen::Vector2d bearing_ = Eigen::Vector2d::Zero();  // m, axes of the sole: a point of the line
+  Eigen::Vector2d line_ = Eigen::Vector2d::UnitX();    // its direction
 };
 
 }  // namespace gaitd::walking
