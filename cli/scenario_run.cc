@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/scenario_run.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -28,8 +30,22 @@ using daemon::Issues;
 using daemon::Scenario;
 using nlohmann::json;
 
+// What gaitd prints.
+fs::path output_of(const fs::path& log) { return fs::path(log).replace_extension(".txt"); }
+
+// Takes the name for this run, so that another one, begun in the same second, does not write there.
+bool reserve(const fs::path& log) {
+  std::error_code ignored;
+  if (fs::exists(log, ignored)) return false;
+  const int file = open(output_of(log).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file >= 0) close(file);
+  return file >= 0 || errno != EEXIST;  // anything else the run will tell
+}
+
 // A name that no log in the folder has: <scenario>-<UTC time>.mcap.
 fs::path fresh_log(const fs::path& folder, const std::string& scenario) {
+  std::error_code ignored;
+  fs::create_directories(folder, ignored);
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
   gmtime_r(&now, &utc);
@@ -37,8 +53,7 @@ fs::path fresh_log(const fs::path& folder, const std::string& scenario) {
   std::strftime(stamp, sizeof(stamp), "%Y%m%d-%H%M%S", &utc);
   const std::string base = scenario + "-" + stamp;
   fs::path path = folder / (base + ".mcap");
-  std::error_code ignored;
-  for (int i = 2; fs::exists(path, ignored); ++i) {
+  for (int i = 2; !reserve(path); ++i) {
     path = folder / (base + "-" + std::to_string(i) + ".mcap");
   }
   return path;
@@ -195,9 +210,8 @@ RunReport run_scenario(const std::string& name, const RunOptions& options,
   std::error_code ignored;
   fs::remove(log, ignored);
 
-  DaemonRun run{
-      options.gaitd,    report.file,   log,          fs::path(log).replace_extension(".txt"),
-      options.settings, options.trust, options.robot};
+  DaemonRun run{options.gaitd,    report.file,   log,          output_of(log),
+                options.settings, options.trust, options.robot};
   Watch watch;
   if (progress) {
     watch = [&](const std::string& socket) {

@@ -59,6 +59,19 @@ TEST_F(Run, TheVerdictIsTheLastLineAndFiguresAreForV) {
   EXPECT_HAS(verbose.out, "realtime_factor");
 }
 
+TEST_F(Run, TwoAtOnceHaveTwoLogs) {
+  gaitd("log=$(echo \"$@\" | sed 's/.*--log \\([^ ]*\\).*/\\1/'); sleep 0.5; cp " +
+        workspace_.file("sample.mcap") + " \"$log\"");
+  const std::string one = "XDG_STATE_HOME=" + workspace_.file("state") + " " +
+                          workspace_.file("gaitctl") + " run " + workspace_.file("stand.yaml");
+  const Outcome outcome = run_shell(workspace_, one + " & " + one + "; wait");
+  int logs = 0;
+  for (const auto& entry : fs::directory_iterator(workspace_.file("state") + "/gaitd/logs")) {
+    logs += entry.path().extension() == ".mcap" ? 1 : 0;
+  }
+  EXPECT_EQ(logs, 2) << outcome.out << outcome.err;
+}
+
 TEST_F(Run, SeveralEndWithATableOfWhatFailed) {
   scenario("low", "  checks: [{signal: com/z, stat: max, max: 0.5}]\n");
   const Outcome outcome = run(workspace_.file("stand.yaml") + " " + workspace_.file("low.yaml"));
