@@ -16,8 +16,8 @@ using sdk::view;
 constexpr double kStartAcceleration = 0.2;        // m/s^2, of a robot that should stand still
 constexpr double kStartVelocity = 0.02;           // m/s
 constexpr double kStartTilt = 0.005;              // rad, of a state that was handed over
-constexpr double kStartGyroBias = 5e-3;           // rad/s, about level axes: the tilt tells it soon
-constexpr double kStartTurnBias = 1e-3;           // rad/s, about the vertical: only the feet tell it
+constexpr double kStartGyroBias = 5e-3;           // rad/s, about level axes: the tilt tells it
+constexpr double kStartTurnBias = 1e-3;           // rad/s, about the vertical: only feet tell it
 constexpr double kStartAccelerometerBias = 0.05;  // m/s^2
 
 // s, in which a robot that is set on its feet sways: neither feet nor CoP tell anything, and what
