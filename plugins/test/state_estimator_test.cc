@@ -395,6 +395,15 @@ TYPED_TEST(StateEstimator, FindsItsTiltAtTheStart) {
   EXPECT_NEAR(rpy.y(), 0.03, 2e-3);
 }
 
+// The bias is on all axes: about the level ones, gravity shows it.
+TYPED_TEST(StateEstimator, ABiasedGyroscopeHardlyTiltsIt) {
+  Bench<TypeParam> b(0.0, {.gyro_bias = 0.004});
+  double tilt = 0.0;
+  b.check = [&] { tilt = std::max(tilt, b.tilt_error()); };
+  b.run_for(6.0);
+  EXPECT_LT(tilt, 0.003);
+}
+
 TYPED_TEST(StateEstimator, TheBalanceShowsTheBiasOfTheAccelerometer) {
   Bench<TypeParam> b(0.0, {});
   b.accelerometer_bias = {0.08, -0.1, 0.0};
