@@ -42,10 +42,8 @@ bool reserve(const fs::path& log) {
   return file >= 0 || errno != EEXIST;  // anything else the run will tell
 }
 
-// A name that no log in the folder has: <scenario>-<UTC time>.mcap.
+// A name that no log in the folder, which exists, has: <scenario>-<UTC time>.mcap.
 fs::path fresh_log(const fs::path& folder, const std::string& scenario) {
-  std::error_code ignored;
-  fs::create_directories(folder, ignored);
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
   gmtime_r(&now, &utc);
@@ -66,13 +64,15 @@ bool is_folder(const fs::path& path) {
 
 // Where the log of this scenario goes; its folder is made. Empty with a reason in `problem`.
 fs::path choose_log(const fs::path& asked, const std::string& scenario, std::string* problem) {
-  const fs::path path = asked.empty()      ? fresh_log(default_log_folder(), scenario)
-                        : is_folder(asked) ? asked / (scenario + ".mcap")
-                                           : asked;
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const bool file = !asked.empty() && !is_folder(asked);
+  fs::path folder = asked.empty() ? default_log_folder() : file ? asked.parent_path() : asked;
+  if (folder.empty()) folder = ".";
   std::error_code error;
   fs::create_directories(folder, error);
-  if (!error) return fs::absolute(path);
+  if (!error) {
+    if (asked.empty()) return fs::absolute(fresh_log(folder, scenario));
+    return fs::absolute(file ? asked : folder / (scenario + ".mcap"));
+  }
   *problem = "cannot make the folder " + folder.string() + ": " + error.message() +
              "; give another place with --log";
   return {};

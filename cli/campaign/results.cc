@@ -239,9 +239,8 @@ bool ResultFile::open(const fs::path& path, std::string* error) {
   return write_results(path, format_, results_, error);
 }
 
-bool ResultFile::append(const CampaignResult& result, std::string* error) {
+bool ResultFile::write(const CampaignResult& result, std::string* error) const {
   const std::string line = format_.row(result);
-  results_[result.number] = result;
   const int file = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   const bool written =
       file >= 0 && ::write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&

@@ -74,7 +74,9 @@ class ResultFile {
   /// Reads the rows of an earlier start, if there are any, drops a last row that was cut off and
   /// those of runs that could not be judged, which are played again, and opens the file for more.
   bool open(const std::filesystem::path& path, std::string* error);
-  bool append(const CampaignResult& result, std::string* error);
+  /// Among the results from now on; in the file once it is written.
+  void add(const CampaignResult& result) { results_[result.number] = result; }
+  bool write(const CampaignResult& result, std::string* error) const;
   /// Puts the rows in the order of the runs.
   bool sort(std::string* error) const { return write_results(path_, format_, results_, error); }
 

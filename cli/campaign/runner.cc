@@ -199,10 +199,9 @@ PoolEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs
   int finished = 0;
   const auto append = [&](const CampaignResult& result, std::string* why) {
     // Logs first: whoever is killed in between plays this run again, and finds what it needs.
-    CampaignResults with = results->results();
-    with.insert_or_assign(result.number, result);
-    logs.keep_worst(with);
-    if (!results->append(result, why)) return false;
+    results->add(result);
+    logs.keep_worst(results->results());
+    if (!results->write(result, why)) return false;
     ++finished;
     return true;
   };

@@ -225,9 +225,9 @@ void InvariantEkf::set_covariance(const Eigen::Vector3d& centre, bool levelled) 
     filter_.covariance.diagonal().segment<3>(row).array() += sigma * sigma;
   };
   add(F::kVelocity, kStartVelocity);
-  add(F::kGyroBias, kStartGyroBias);
   // The axes of the pelvis are close enough to level.
-  filter_.covariance(F::kGyroBias + 2, F::kGyroBias + 2) = kStartTurnBias * kStartTurnBias;
+  filter_.covariance.diagonal().segment<3>(F::kGyroBias) =
+      Eigen::Vector3d(kStartGyroBias, kStartGyroBias, kStartTurnBias).cwiseAbs2();
   add(F::kAccelerometerBias, kStartAccelerometerBias);
   if (!levelled) return;
   Eigen::Matrix3d by_bias;  // the tilt that an error of the accelerometer makes

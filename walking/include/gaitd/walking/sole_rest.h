@@ -32,7 +32,7 @@ class SoleRest {
   const Eigen::Vector3d& way_back() const { return way_back_; }
   // m, axes of the sole: the point about which it tilts; the origin when flat.
   const Eigen::Vector2d& pivot() const { return pivot_; }
-  // m, axes of the sole: where a contact point of the flat sole bears now.
+  // m, axes of the sole: where a contact point of the flat sole is taken to bear now.
   Eigen::Vector2d bearing_point(const Eigen::Vector2d& p) const;
 
  private:
