@@ -109,6 +109,8 @@ void add_daemon_commands(CLI::App* app, Context* context) {
   add_plain(app, context, "stop", "stop", "Finish the present step, close the feet and stand");
   add_plain(app, context, "abort", "abort",
             "Drop the footsteps ahead, put the foot down and stand");
+  add_plain(app, context, "tare", "tare",
+            "Nobody pulls at the robot, which stands: what shows now is zero");
   auto* plugin = app->add_subcommand("plugin", "The control layers of the daemon");
   plugin->require_subcommand(1);
   add_plain(plugin, context, "list", "plugin.list",

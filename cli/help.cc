@@ -27,7 +27,7 @@ const std::vector<Group>& groups() {
   static const std::vector<Group> kGroups = {
       {"Command the robot",
        {"status", "watch", "view", "arm", "disarm", "estop", "reset", "mode", "walk", "steps",
-        "drive", "goto", "teleop", "pose", "pause", "resume", "stop", "abort"}},
+        "drive", "goto", "teleop", "pose", "pause", "resume", "stop", "abort", "tare"}},
       {"Play scenarios", {"run", "campaign", "compare", "sim"}},
       {"Read logs", {"report", "log", "doctor"}},
       {"Set up", {"robot", "param", "plugin", "joint", "calibrate", "completion"}}};
@@ -58,6 +58,7 @@ const std::map<std::string, const char*>& examples() {
       {"resume", "gaitctl resume"},
       {"stop", "gaitctl stop"},
       {"abort", "gaitctl abort"},
+      {"tare", "gaitctl tare"},
       {"run", "gaitctl run flat-0.35 turn --set seed=2 --log logs/"},
       {"campaign", "gaitctl campaign push-map.yaml -o pushes --jobs 4"},
       {"campaign merge", "gaitctl campaign merge shard-1 shard-2 -o merged"},

@@ -91,6 +91,15 @@ std::string health(const json& health) {
   return (healthy ? "healthy" : text(at(health, "text"))) + counts;
 }
 
+// The force that pulls at the robot.
+std::string pull(const json& external) {
+  const json force = at(external, "force");
+  if (!force.is_array() || force.size() != 3) return "unknown before the tare";
+  std::string words;
+  for (const json& along : force) words += (words.empty() ? "" : ", ") + number(along, 0);
+  return words + " N" + (at(external, "pulled") == true ? ", counted on" : "");
+}
+
 }  // namespace
 
 std::vector<std::string> status_screen(const json& status) {
@@ -106,6 +115,7 @@ std::vector<std::string> status_screen(const json& status) {
       "step       " + steps(status),
       "ICP error  " + number(at(status, "icp_error"), 1, 1e-3) + " mm, margin " +
           number(at(status, "icp_margin"), 1, 1e-3) + " mm",
+      "pull       " + pull(at(status, "external")),
       "pelvis     " + pose(at(status, "pelvis")),
       "log        " + log(at(status, "log")),
       ""};

@@ -84,6 +84,13 @@ json status_of(const Telemetry& telemetry) {
                                                    icp[1].get<double>() - icp[3].get<double>()))
                                  : json();
   status["icp_margin"] = controlled ? get("icp/margin") : json();
+  const auto vector = [&](const std::string& of) {
+    return json::array({get(of + "/x"), get(of + "/y"), get(of + "/z")});
+  };
+  status["external"] = get("external/tared") == true ? json{{"force", vector("external/force")},
+                                                            {"moment", vector("external/moment")},
+                                                            {"pulled", get("external/pulled")}}
+                                                     : json();
   // Of the last tick, and the longest within a second or two.
   const std::vector<double> longest = telemetry.recent_maxima();
   const auto get_longest = [&](const std::string& name) {

@@ -32,6 +32,7 @@ enum class CommandType : std::uint8_t {
   kPose,       // of pelvis, chest, an arm or a hand
   kDrive,      // walk at a velocity
   kGoto,       // footsteps to a place are planned, and replace those ahead
+  kTare,       // what pulls at the robot now is nothing
 };
 
 // Where the middle of the feet is to be, W.

@@ -27,7 +27,7 @@ struct PlainMethod {
   std::string_view name;
   CommandType type;
 };
-constexpr std::array<PlainMethod, 9> kPlainMethods = {{
+constexpr std::array<PlainMethod, 10> kPlainMethods = {{
     {"arm", CommandType::kArm},
     {"disarm", CommandType::kDisarm},
     {"estop", CommandType::kEstop},
@@ -36,6 +36,7 @@ constexpr std::array<PlainMethod, 9> kPlainMethods = {{
     {"resume", CommandType::kResume},
     {"stop", CommandType::kStop},
     {"abort", CommandType::kAbort},
+    {"tare", CommandType::kTare},
     {"sim.reset", CommandType::kSimReset},
 }};
 

@@ -73,6 +73,7 @@ class Story {
       case CommandType::kPause:
       case CommandType::kResume:
       case CommandType::kPose:
+      case CommandType::kTare:
         check_armed();
         break;
       case CommandType::kStop:

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kNames[] = {"arm",        "disarm",    "estop",    "reset",     "mode",
                                   "walk",       "footsteps", "pause",    "resume",    "stop",
                                   "abort",      "param.set", "sim.push", "sim.reset", "plugin.swap",
-                                  "joint.test", "pose",      "drive",    "goto"};
+                                  "joint.test", "pose",      "drive",    "goto",      "tare"};
 
 class Writer {
  public:

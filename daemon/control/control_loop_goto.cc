@@ -22,6 +22,7 @@ bool replaces_goto(const Command& command) {
     case CommandType::kSwap:
     case CommandType::kJointTest:
     case CommandType::kPose:
+    case CommandType::kTare:
       return false;
     case CommandType::kMode:
       return command.mode == GAITD_MODE_STAND;

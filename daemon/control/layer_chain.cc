@@ -121,6 +121,7 @@ bool LayerChain::estimate(const GaitdStart& start, TickData& d) {
   in.sensors = &d.sensors;
   in.gait = &d.gait;
   in.commands = &d.commands;
+  std::copy_n(d.robot.external_wrench, 6, in.external_wrench);
   return run<GAITD_LAYER_STATE_ESTIMATOR>(in, d.robot, d.times);
 }
 

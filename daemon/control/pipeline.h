@@ -8,6 +8,7 @@
 #include "daemon/control/sensor_monitor.h"
 #include "daemon/control/tick_data.h"
 #include "daemon/parameters/live_parameters.h"
+#include "gaitd/walking/external_wrench.h"
 #include "gaitd/walking/gait_machine.h"
 #include "gaitd/walking/motions.h"
 #include "gaitd/walking/objectives.h"
@@ -52,6 +53,9 @@ class Pipeline {
   bool apply(int owner, int index, double value);
   CommandReply move(const Command& command);
   void begin_control();
+  // nullptr, or why not.
+  const char* tare();
+  void observe_external(double dt);
   bool control(double dt);
 
   const GaitdModel model_;
@@ -60,6 +64,7 @@ class Pipeline {
   LiveParameters* const parameters_;
   LayerChain layers_;
   walking::GaitMachine gait_;
+  walking::ExternalWrench external_;
   walking::ObjectiveBuilder objectives_;
   walking::Motions motions_;
   Safety safety_;

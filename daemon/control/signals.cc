@@ -127,6 +127,10 @@ void visit_balance(V& v, const TickData& d) {
   axes(v, d.adjustment.cmp, 2, "m", "cmp/desired/");
   v.real(d.adjustment.kappa, "", "cmp/kappa");
   axes(v, d.robot.cop, 2, "m", "cop/");
+  axes(v, d.external.wrench + 3, 3, "N", "external/force/");
+  axes(v, d.external.wrench, 3, "N m", "external/moment/");
+  v.boolean(d.external.tared, "external/tared");
+  v.boolean(d.external.pulled, "external/pulled");
   pose(v, d.robot.pelvis_position, d.robot.pelvis_orientation, "pelvis/");
   const Eigen::Quaterniond orientation = sdk::quaternion(d.robot.pelvis_orientation);
   const Eigen::Vector3d velocity = orientation * sdk::view(d.robot.pelvis_twist).tail<3>();

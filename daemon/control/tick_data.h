@@ -59,6 +59,13 @@ struct Drive {
   walking::Velocity step{};    // of the step that was begun last
 };
 
+// What pushes and pulls at the robot beside the ground: walking::ExternalWrench.
+struct External {
+  double wrench[6] = {};  // moment first, about the CoM, W; N m and N
+  bool tared = false;
+  bool pulled = false;  // steadily: the controller counts on it
+};
+
 // Everything one tick reads and writes, stage by stage, in the order of the pipeline.
 struct TickData {
   GaitdLayerTime time{};
@@ -68,6 +75,7 @@ struct TickData {
   JointMask dropped = 0;     // joints that the robot goes on without: SensorMonitor
   std::uint32_t health = 0;  // GAITD_HEALTH_* that the backend reports
   GaitdRobotState robot{};
+  External external{};
   GaitdGaitState gait{};
   GaitdMotions motions{};
   Drive drive{};

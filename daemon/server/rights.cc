@@ -32,6 +32,7 @@ constexpr MethodRight kRights[] = {
     {"sim.reset", Role::kAdminister},
     {"status", Role::kObserve},
     {"stop", Role::kCommand},
+    {"tare", Role::kCommand},
     {"telemetry.subscribe", Role::kObserve},
     {"telemetry.unsubscribe", Role::kObserve},
     {"version", Role::kObserve},

@@ -83,6 +83,19 @@ void Kinematics::update(const Vector3d& p_WP, const Eigen::Quaterniond& R_WP, co
   com_velocity_ = momentum / total_mass_;
 }
 
+Vector6d Kinematics::centroidal_momentum() const {
+  Vector3d angular = Vector3d::Zero();
+  for (int i = 0; i < body_count(); ++i) {
+    const Body& body = bodies_[i];
+    const MassProperties& m = masses_[i];
+    angular += m.mass * (body.com - com_from_O_).cross(body.velocity + body.omega.cross(body.com)) +
+               body.R * (m.inertia_B * (body.R.transpose() * body.omega));
+  }
+  Vector6d momentum;
+  momentum << angular, total_mass_ * com_velocity_;
+  return momentum;
+}
+
 void Kinematics::update_base(const Eigen::Quaterniond& R_WP, const Vector6d& V_P) {
   Body& base = bodies_[0];
   base.R = R_WP.toRotationMatrix();

@@ -48,7 +48,7 @@
   X(GaitdHost, 24) \
   X(GaitdLayerTime, 24) \
   X(GaitdStart, 32) \
-  X(GaitdStateEstimatorInput, 96) \
+  X(GaitdStateEstimatorInput, 144) \
   X(GaitdIcpPlannerInput, 48) \
   X(GaitdStepAdjusterInput, 64) \
   X(GaitdToeOffInput, 64) \
@@ -429,6 +429,7 @@
   X(GaitdStateEstimatorInput, sensors, 72) \
   X(GaitdStateEstimatorInput, gait, 80) \
   X(GaitdStateEstimatorInput, commands, 88) \
+  X(GaitdStateEstimatorInput, external_wrench, 96) \
   X(GaitdIcpPlannerInput, size, 0) \
   X(GaitdIcpPlannerInput, reserved, 4) \
   X(GaitdIcpPlannerInput, time, 8) \

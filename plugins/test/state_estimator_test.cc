@@ -149,7 +149,7 @@ class Bench {
       imu.specific_force[k] = force[k] + accelerometer_bias[k] + noise_.accelerometer * normal();
     }
     // Contact forces whose line goes through the CoM.
-    const Vector3d load = atlas().total_mass * (motion.com_acceleration(t) + gravity);
+    const Vector3d load = atlas().total_mass * (motion.com_acceleration(t) + gravity) - pull;
     const Vector3d com = motion.com(t);
     if (balanced) {
       for (int k = 0; k < 2; ++k) cop[k] = com[k] - com.z() * load[k] / load.z();
@@ -176,6 +176,7 @@ class Bench {
     in.sensors = sensors.get();
     in.gait = &gait;
     in.commands = commands.get();
+    if (told_of_pull) sdk::view(in.external_wrench).tail<3>() = pull;
     return estimator.process(in, state);
   }
   void run_for(double seconds) {
@@ -211,6 +212,8 @@ class Bench {
   double cop[2] = {0.0, 0.0};                  // m, in each sole
   Quaterniond lean = Quaterniond::Identity();  // of all that is simulated, in W
   Vector3d accelerometer_bias = Vector3d::Zero();
+  Vector3d pull = Vector3d::Zero();  // N, at the CoM
+  bool told_of_pull = false;
   int tick = 0;
   std::function<void()> tamper;
   std::function<void()> check;
@@ -253,6 +256,21 @@ struct Names {
   }
 };
 TYPED_TEST_SUITE(StateEstimator, Estimators, Names);
+
+// The ground then pushes the robot askew, though it is upright.
+TYPED_TEST(StateEstimator, APullIsNoTilt) {
+  double tilt[2];
+  for (const bool told : {false, true}) {
+    Bench<TypeParam> b(0.0, {});
+    b.run_for(1.0);
+    b.pull = {0.06 * atlas().total_mass * atlas().gravity, 0.0, 0.0};
+    b.told_of_pull = told;
+    b.run_for(10.0);
+    tilt[told] = b.tilt_error();
+  }
+  EXPECT_LT(tilt[true], 1e-3);
+  EXPECT_GT(tilt[false], 2.0 * tilt[true]);
+}
 
 // A robot that is let go of just above the ground: its accelerometer shows nothing, then the
 // impact.

@@ -210,6 +210,10 @@ class Robot:
         """Goes on after a pause."""
         return dict(self.call("resume"))
 
+    def tare(self) -> Dict[str, Any]:
+        """Takes what seems to pull at the standing robot for nothing: nobody touches it now."""
+        return dict(self.call("tare"))
+
     def push(
         self, link: str, force: Tuple[float, float, float], duration: float, point: Optional[Sequence[float]] = None
     ) -> Dict[str, Any]:

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/external_wrench.h"
 
 namespace gaitd::walking {
 
@@ -29,7 +30,9 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
   auto start = view(state_.start_ecmp);
   const double omega = gait.omega;
   // The first reference is where the robot rests: the CoM, which is far less noisy than the ICP.
-  const Eigen::Vector2d at_rest = view(robot.com).head<2>();
+  const Eigen::Vector2d at_rest =
+      view(robot.com).head<2>() +
+      lean(view(robot.external_wrench), model_.total_mass, model_.gravity, omega);
 
   trajectory_.build(model_, gait, offsets);
   const bool from_standing = gait.phase == GAITD_PHASE_TRANSFER && gait.trailing_side == GAITD_BOTH;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/external_wrench.h"
 #include "gaitd/walking/hip_descent.h"
 #include "gaitd/walking/support.h"
 #include "objective_terms.h"
@@ -125,8 +126,7 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
   out.rho_rate_weight =
       parameters_[Objective::kRhoRateWeight] / (weight_ * weight_) * (1e-3 / dt) * 1e3;
   out.acceleration_weight = kAccelerationWeight;
-  std::copy(std::begin(robot.external_wrench), std::end(robot.external_wrench),
-            out.external_wrench);
+  view(out.external_wrench) = view(robot.external_wrench);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const bool touching = gait.footholds[side].contact != GAITD_CONTACT_NONE;
     time_in_contact_[side] = touching ? time_in_contact_[side] + dt : 0.0;
@@ -183,8 +183,10 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
       height_.acceleration() + stiffness * (height_.value() - robot.com[2]) +
       damping(stiffness, kHeightDamping) * (height_.velocity() - robot.com_velocity[2]);
   for (int i = 0; i < 3; ++i) out.momentum_rate[i] = adjustment.angular_momentum_rate[i];
-  out.momentum_rate[3] = adjustment.linear_momentum_rate[0];
-  out.momentum_rate[4] = adjustment.linear_momentum_rate[1];
+  // Of the ground, as the adjuster asks, and of what pulls beside it.
+  const Eigen::Vector2d pull = lean(view(robot.external_wrench), mass, model_.gravity, gait.omega);
+  view(out.momentum_rate).segment<2>(3) =
+      view(adjustment.linear_momentum_rate) + mass * gait.omega * gait.omega * pull;
   out.momentum_rate[5] = mass * std::clamp(wanted, -limit, limit);
   for (double& weight : out.momentum_weight) {
     weight = parameters_[Objective::kMomentumWeight] / (mass * mass);

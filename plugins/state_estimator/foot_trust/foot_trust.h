@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every state estimator takes a foot for, by the force on it.
+// What every state estimator takes a foot for, by the force on it, and what a pull makes of that.
 #pragma once
 
+#include "gaitd/abi/plugin.h"
 #include "gaitd/sdk/parameter.h"
+#include "gaitd/sdk/views.h"
 
 namespace gaitd::plugins {
 
@@ -22,5 +24,10 @@ inline constexpr double kTrustOff = 0.30;
 inline constexpr double kTrustDelay = 0.02;
 // s, after which a trusted foot has come to rest, and holds the heading too.
 inline constexpr double kRestDelay = 0.1;
+
+// Somebody pulls at the robot: CoM and CoP do not tell where gravity points.
+inline bool pulled(const GaitdStateEstimatorInput& in) {
+  return !sdk::view(in.external_wrench).tail<3>().isZero(0.0);
+}
 
 }  // namespace gaitd::plugins

@@ -115,6 +115,7 @@ void InvariantEkf::correct(const GaitdStateEstimatorInput& in, const GaitdRobotS
 void InvariantEkf::observe_balance(const GaitdStateEstimatorInput& in,
                                    const GaitdRobotState& robot) {
   if (sdk::first_usable_imu(model_, *in.sensors) < 0) return;
+  if (pulled(in)) return;
   double load = 0.0;
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), loaded = Eigen::Vector3d::Zero();
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {

@@ -84,7 +84,7 @@ void KinematicInertial::observe_bias(const GaitdStateEstimatorInput& in,
                                      const GaitdRobotState& robot) {
   int index = 0;
   const GaitdImuSensor* sensor = imu(*in.sensors, index);
-  if (sensor == nullptr || sensor->has_orientation != 0) return;
+  if (sensor == nullptr || sensor->has_orientation != 0 || pulled(in)) return;
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), cop = Eigen::Vector3d::Zero();
   double total = 0.0;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {

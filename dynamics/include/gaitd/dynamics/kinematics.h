@@ -64,6 +64,8 @@ class Kinematics {
   double total_mass() const { return total_mass_; }                      // kg
   const Eigen::Vector3d& com() const { return com_; }                    // m, W
   const Eigen::Vector3d& com_velocity() const { return com_velocity_; }  // m/s, W
+  // About the CoM, moment first: N m s and N s, W. Without rotors.
+  Vector6d centroidal_momentum() const;
 
  private:
   friend class Dynamics;

@@ -130,6 +130,7 @@ typedef struct GaitdStateEstimatorInput {
   const GaitdSensors* sensors;
   const GaitdGaitState* gait;
   const GaitdJointCommands* commands;
+  double external_wrench[6]; /* of the last tick, steady: GaitdRobotState */
 } GaitdStateEstimatorInput;
 
 typedef struct GaitdIcpPlannerInput {

@@ -86,11 +86,13 @@ typedef struct GaitdRobotState {
   double joint_velocity[GAITD_MAX_JOINTS];
   double com[3];
   double com_velocity[3];
-  double icp[2]; /* m, W, with omega of the gait */
+  double icp[2]; /* m, W, with omega of the gait; the host adds what the external wrench leans it */
   double cop[2]; /* m, W, of both feet together; last valid one in flight */
   GaitdFootState feet[GAITD_MAX_FEET];
   double pelvis_velocity_covariance[9]; /* (m/s)^2, W, row-major */
-  double external_wrench[6];            /* moment first, about the CoM, W */
+  /* Moment first, about the CoM, W: what pulls at the robot steadily. By the host, who finds it from
+   * the rest of this state; 0 while nothing pulls. */
+  double external_wrench[6];
 } GaitdRobotState;
 
 typedef struct GaitdFootTruth {

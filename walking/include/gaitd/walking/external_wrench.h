@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// What pulls at the robot, and how the walk takes it.
+#ifndef GAITD_WALKING_EXTERNAL_WRENCH_H_
+#define GAITD_WALKING_EXTERNAL_WRENCH_H_
+
+#include <Eigen/Core>
+
+#include "gaitd/abi/gait.h"
+#include "gaitd/abi/state.h"
+#include "gaitd/dynamics/kinematics.h"
+#include "gaitd/dynamics/momentum_observer.h"
+#include "gaitd/walking/gait_scale.h"
+
+namespace gaitd::walking {
+
+// How far a steady external wrench F, M (about the CoM, W) leans a robot. With the CMP r on the
+// ground and no change of angular momentum the CoM c moves as it would at c + lean without it:
+//   c'' = omega^2 (c + lean - r),   lean = (M_y + h F_x, -M_x + h F_y) / N,
+// h = g / omega^2, N the load on the feet. Capture point and plan keep their meaning when the
+// capture point counts from there. m, W. mass: kg. gravity: m/s^2. omega: 1/s.
+Eigen::Vector2d lean(const dynamics::Vector6d& wrench, double mass, double gravity, double omega);
+
+// Tells a steady pull (a rope, wind, a hand that leads the robot) from a push, both from the
+// momentum. A push is over before a controller that believes in it does any good, and the belief
+// would push the robot on; so only what has lasted is steady, and no force that is too large to
+// lean against ever is.
+//
+// Where feet have no force sensors, the forces on them come from the same momentum: nothing is left
+// over, and nothing is estimated.
+//
+// What shows while nobody touches the robot (offsets of force sensors, an error of the CoM) is the
+// tare. It is taken once, when the robot first stands at rest, and again when asked for. Before
+// that nothing is believed.
+class ExternalWrench {
+ public:
+  using Vector6d = dynamics::Vector6d;
+
+  // Throws like Kinematics.
+  explicit ExternalWrench(const GaitdModel& model);
+
+  void reset();
+  // Nobody holds the robot or pulls at it: the tare is the mean of the next second at rest.
+  void tare();
+  // robot: as the state estimator gives it. controlled: it stands or walks by itself. dt: s.
+  void update(double dt, bool controlled, const GaitdGaitState& gait, const GaitdRobotState& robot);
+
+  bool tared() const { return tared_; }
+  // A pull is believed in.
+  bool pulled() const { return share_ > 0.0; }
+  // Moment first, about the CoM, W axes; N m and N. Zero before the tare; pushes are not in it.
+  Vector6d estimate() const;
+  // What the controller counts on; zero while no pull is believed in.
+  Vector6d steady() const;
+
+ private:
+  void observe(double dt, const GaitdRobotState& robot);
+  void update_tare(double dt, bool controlled, const GaitdGaitState& gait,
+                   const GaitdRobotState& robot);
+  void update_belief(double dt, bool pulls);
+
+  const GaitdModel model_;
+  const double weight_;  // N
+  const GaitScale scale_;
+  const bool sensed_;  // all feet have force sensors
+  dynamics::Kinematics kinematics_;
+  dynamics::MomentumObserver observer_;
+  double heading_ = 0.0;  // rad, of the pelvis
+  bool tared_ = false;
+  bool waits_ = true;          // for a tare
+  double time_at_rest_ = 0.0;  // s
+  // In the axes of the heading, as sensors and masses turn with the robot.
+  Vector6d sum_ = Vector6d::Zero();   // of the tare being taken, N m s and N s
+  Vector6d tare_ = Vector6d::Zero();  // N m and N
+  Vector6d slow_ = Vector6d::Zero();
+  Eigen::Vector3d recent_ = Eigen::Vector3d::Zero();  // N, the same force, sooner
+  double time_pulled_ = 0.0;                          // s
+  bool believed_ = false;
+  double share_ = 0.0;  // of the pull that the controller has taken over
+};
+
+}  // namespace gaitd::walking
+
+#endif  // GAITD_WALKING_EXTERNAL_WRENCH_H_

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/walking/external_wrench.h"
+
+#include <gtest/gtest.h>
+
+#include "atlas.h"
+
+namespace gaitd::walking {
+namespace {
+
+using dynamics::Vector6d;
+using Eigen::Vector3d;
+using testing::atlas;
+
+constexpr double kDt = 1e-3;
+
+// Atlas stands still on its left foot, which carries it against `pull` (at the CoM, W).
+struct Bench {
+  Bench() : robot(testing::standing_state(atlas())) { gait.phase = GAITD_PHASE_STAND; }
+
+  void turn(double yaw) {
+    sdk::store(sdk::from_yaw(yaw), robot.pelvis_orientation);
+    testing::fill_kinematics(atlas(), 3.0, robot);
+  }
+  void run_for(double seconds, bool controlled = true) {
+    const double weight = atlas().total_mass * atlas().gravity;
+    GaitdFootState& foot = robot.feet[GAITD_LEFT];
+    const Eigen::Quaterniond sole = sdk::quaternion(foot.orientation);
+    const Vector3d heading_offset =
+        sdk::from_yaw(sdk::yaw_of(sdk::quaternion(robot.pelvis_orientation))) * offset;
+    const Vector3d force = weight * Vector3d::UnitZ() - pull + heading_offset;
+    const Vector3d lever = Vector3d(sdk::view(robot.com)) - Vector3d(sdk::view(foot.position));
+    const Vector3d moment = lever.cross(force) - couple;
+    sdk::view(foot.wrench) << sole.conjugate() * moment, sole.conjugate() * force;
+    foot.normal_force = weight;
+    for (int i = 0; i < static_cast<int>(seconds / kDt + 0.5); ++i) {
+      external.update(kDt, controlled, gait, robot);
+    }
+  }
+  Vector3d force() const { return external.estimate().tail<3>(); }
+  Vector3d counted_on() const { return external.steady().tail<3>(); }
+
+  Vector3d pull = Vector3d::Zero();    // N
+  Vector3d couple = Vector3d::Zero();  // N m
+  Vector3d offset = Vector3d::Zero();  // N, of the force sensors, axes of the heading
+  GaitdRobotState robot;
+  GaitdGaitState gait{};
+  ExternalWrench external{atlas()};
+};
+
+const double kWeight = atlas().total_mass * atlas().gravity;  // N
+
+TEST(ExternalWrench, ASteadyPullIsFoundAndCountedOn) {
+  Bench b;
+  b.run_for(2.0);
+  EXPECT_TRUE(b.external.tared());
+  EXPECT_FALSE(b.external.pulled());
+  b.pull = 0.08 * kWeight * Vector3d(0.6, -0.8, 0.0);
+  b.couple = Vector3d(10.0, 5.0, -2.0);
+  b.run_for(0.5);
+  EXPECT_LT((b.force() - b.pull).norm(), 0.1 * b.pull.norm());
+  b.run_for(1.0);
+  EXPECT_TRUE(b.external.pulled());
+  EXPECT_LT((b.counted_on() - b.pull).norm(), 0.02 * b.pull.norm());
+  EXPECT_LT((b.external.steady().head<3>() - b.couple).norm(), 0.5);
+}
+
+TEST(ExternalWrench, APullThatEndsIsSoonForgotten) {
+  Bench b;
+  b.run_for(2.0);
+  b.pull = Vector3d(0.0, 0.1 * kWeight, 0.0);
+  b.run_for(3.0);
+  ASSERT_TRUE(b.external.pulled());
+  b.pull.setZero();
+  b.run_for(0.15);
+  EXPECT_LT(b.counted_on().norm(), 0.02 * kWeight);
+  b.run_for(2.0);
+  EXPECT_FALSE(b.external.pulled());
+  EXPECT_LT(b.force().norm(), 1.0);
+}
+
+// The largest that the robot has to hold standing, and one that it has to step for.
+TEST(ExternalWrench, APushIsNotCountedOn) {
+  for (const auto& [force, time] : {std::pair(340.0, 0.2), std::pair(1500.0, 0.1)}) {
+    Bench b;
+    b.run_for(2.0);
+    double most = 0.0;
+    const auto run = [&](double seconds) {
+      for (int i = 0; i < static_cast<int>(seconds / kDt); ++i) {
+        b.run_for(kDt);
+        most = std::max(most, b.counted_on().norm());
+      }
+    };
+    b.pull = Vector3d(force, 0.0, 0.0);
+    run(time);
+    b.pull.setZero();
+    run(1.0);
+    EXPECT_LT(most, 0.03 * kWeight) << force;
+    EXPECT_FALSE(b.external.pulled()) << force;
+  }
+}
+
+TEST(ExternalWrench, ADraughtIsLeftToTheFeedback) {
+  Bench b;
+  b.run_for(2.0);
+  b.pull = Vector3d(0.025 * kWeight, 0.0, 0.0);
+  b.run_for(3.0);
+  EXPECT_NEAR(b.force().x(), b.pull.x(), 1.0);
+  EXPECT_FALSE(b.external.pulled());
+}
+
+TEST(ExternalWrench, WhatShowsWhenNobodyPullsTurnsWithTheRobot) {
+  Bench b;
+  b.offset = Vector3d(60.0, -30.0, 20.0);
+  b.run_for(2.0);
+  EXPECT_LT(b.force().norm(), 1.0);
+  b.turn(2.0);
+  b.pull = Vector3d(0.0, 140.0, 0.0);
+  b.run_for(2.0);
+  EXPECT_LT((b.force() - b.pull).norm(), 2.0);
+}
+
+// The sensors of a light robot: their offsets turn with the feet.
+TEST(ExternalWrench, APullBelowTheOffsetsOfTheSensorsIsNotBelieved) {
+  Bench b;
+  b.offset = Vector3d(0.0, 0.12 * kWeight, 0.0);
+  b.run_for(2.0);
+  b.pull = Vector3d(0.1 * kWeight, 0.0, 0.0);
+  b.run_for(3.0);
+  EXPECT_FALSE(b.external.pulled());
+  b.pull = Vector3d(0.15 * kWeight, 0.0, 0.0);
+  b.run_for(3.0);
+  EXPECT_TRUE(b.external.pulled());
+}
+
+TEST(ExternalWrench, FeetWithoutSensorsShowNothing) {
+  GaitdModel model = atlas();
+  for (GaitdFoot& foot : model.feet) foot.force_sensor.body = -1;
+  Bench b;
+  ExternalWrench blind(model);
+  for (int i = 0; i < 3000; ++i) blind.update(kDt, true, b.gait, b.robot);
+  EXPECT_FALSE(blind.tared());
+}
+
+TEST(ExternalWrench, WithoutATareNothingIsBelieved) {
+  Bench b;
+  b.gait.phase = GAITD_PHASE_SWING;
+  b.pull = Vector3d(150.0, 0.0, 0.0);
+  b.run_for(3.0);
+  EXPECT_FALSE(b.external.tared());
+  EXPECT_EQ(b.external.estimate(), Vector6d::Zero().eval());
+  b.gait.phase = GAITD_PHASE_STAND;
+  b.run_for(3.0, false);  // not under control
+  EXPECT_FALSE(b.external.tared());
+}
+
+TEST(ExternalWrench, ATareThatIsAskedForReplacesTheFirst) {
+  Bench b;
+  b.pull = Vector3d(150.0, 0.0, 0.0);
+  b.run_for(2.0);  // somebody held it when it stood up
+  EXPECT_LT(b.force().norm(), 1.0);
+  b.pull.setZero();
+  b.run_for(1.0);
+  EXPECT_NEAR(b.force().x(), -150.0, 2.0);
+  b.external.tare();
+  b.run_for(2.0);
+  EXPECT_LT(b.force().norm(), 1.0);
+  EXPECT_FALSE(b.external.pulled());
+}
+
+// The balance of moments about the CoM, solved for the acceleration by hand.
+TEST(Lean, IsWhatTheWrenchDoesToTheCentreOfMass) {
+  const double mass = 100.0, gravity = 9.8, omega = 3.5, height = gravity / (omega * omega);
+  Vector6d wrench;
+  wrench << 12.0, -7.0, 3.0, 80.0, -40.0, 0.0;
+  const Vector3d com(0.1, 0.2, height), cmp(0.13, 0.15, 0.0);
+  // Contact force through the CMP, with a moment about the CoM that cancels that of the wrench.
+  const double load = mass * gravity;
+  const Vector3d arm = cmp - com;
+  const double f_x = (-load * arm.x() + wrench[1]) / height;
+  const double f_y = (-load * arm.y() - wrench[0]) / height;
+  const Vector3d moment = arm.cross(Vector3d(f_x, f_y, load)) + wrench.head<3>();
+  ASSERT_LT(moment.head<2>().norm(), 1e-9);
+  const Eigen::Vector2d acceleration = (Eigen::Vector2d(f_x, f_y) + wrench.segment<2>(3)) / mass;
+  const Eigen::Vector2d leaning = lean(wrench, mass, gravity, omega);
+  EXPECT_LT((acceleration - omega * omega * (com + leaning.homogeneous() - cmp).head<2>()).norm(),
+            1e-9);
+}
+
+}  // namespace
+}  // namespace gaitd::walking
