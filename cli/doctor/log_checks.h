@@ -2,6 +2,9 @@
 // One function per kind of trouble; each looks at one thing only and stands in its own file.
 #pragma once
 
+#include <Eigen/Core>
+#include <string>
+
 #include "cli/doctor/finding.h"
 #include "cli/doctor/log_case.h"
 
@@ -17,6 +20,10 @@ Findings check_timing(const LogCase& log);     // late ticks, in real time
 Findings check_estimate(const LogCase& log);   // IMU against legs, gravity and truth
 Findings check_footsteps(const LogCase& log);  // footsteps out of reach
 Findings check_weight(const LogCase& log);     // mass of the model against measured forces
+Findings check_pull(const LogCase& log);       // steady forces that the robot leaned against
+
+// "+x", "-y", "+x-y": the world axes that a horizontal vector is nearest to.
+std::string direction(const Eigen::Vector2d& v);
 
 // A finding of a log, at the tick where it began.
 Finding log_finding(const LogCase& log, const char* check, std::size_t tick, std::string what,

@@ -12,6 +12,7 @@ namespace gaitd::doctor {
 namespace {
 
 constexpr std::size_t kShown = 5;  // of what came after the first
+constexpr double kOnset = 0.2;     // s
 
 // Warnings do not make a robot fall: the first problem does.
 const Finding* first_problem(const Findings& findings) {
@@ -22,6 +23,12 @@ const Finding* first_problem(const Findings& findings) {
 }
 
 }  // namespace
+
+std::string direction(const Eigen::Vector2d& v) {
+  if (std::abs(v.x()) > 2.0 * std::abs(v.y())) return v.x() > 0.0 ? "+x" : "-x";
+  if (std::abs(v.y()) > 2.0 * std::abs(v.x())) return v.y() > 0.0 ? "+y" : "-y";
+  return std::string(v.x() > 0.0 ? "+x" : "-x") + (v.y() > 0.0 ? "+y" : "-y");
+}
 
 Finding log_finding(const LogCase& log, const char* check, std::size_t tick, std::string what,
                     std::string advice) {
@@ -36,12 +43,21 @@ LogDiagnosis diagnose_log(const daemon::LogReader& log) {
   const LogCase the_case(log);
   LogDiagnosis diagnosis{.ending = the_case.ending(), .findings = {}};
   for (const auto check :
-       {check_faults, check_weight, check_timing, check_estimate, check_footsteps, check_solver,
-        check_slip, check_torques, check_joints, check_support}) {
+       {check_faults, check_weight, check_pull, check_timing, check_estimate, check_footsteps,
+        check_solver, check_slip, check_torques, check_joints, check_support}) {
     for (Finding& finding : check(the_case)) diagnosis.findings.push_back(std::move(finding));
   }
   std::stable_sort(diagnosis.findings.begin(), diagnosis.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.time < b.time; });
+  // A force that stays begins like a push.
+  const auto pull = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
+                                 [](const Finding& f) { return f.check == "pull"; });
+  if (pull != diagnosis.findings.end()) {
+    const double began = pull->time;
+    std::erase_if(diagnosis.findings, [began](const Finding& f) {
+      return f.check == "push" && std::abs(f.time - began) < kOnset;
+    });
+  }
   // In a robot that slips or falls already, forces that the feet did not make are no push.
   const Finding* first = first_problem(diagnosis.findings);
   if (first != nullptr && first->check != "push") {

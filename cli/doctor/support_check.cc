@@ -111,12 +111,6 @@ double cop_margin(const LogCase& log, std::size_t i) {
   return soles.empty() ? kNoTime : soles.inside_distance({(*x)[i], (*y)[i]});
 }
 
-std::string direction(const Eigen::Vector2d& v) {
-  if (std::abs(v.x()) > 2.0 * std::abs(v.y())) return v.x() > 0.0 ? "+x" : "-x";
-  if (std::abs(v.y()) > 2.0 * std::abs(v.x())) return v.y() > 0.0 ? "+y" : "-y";
-  return std::string(v.x() > 0.0 ? "+x" : "-x") + (v.y() > 0.0 ? "+y" : "-y");
-}
-
 }  // namespace
 
 Findings check_support(const LogCase& log) {

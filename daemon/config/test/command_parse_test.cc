@@ -30,8 +30,8 @@ std::optional<Command> parse(const std::string& method, const json& params, std:
 
 TEST(CommandParse, PlainCommandsNeedNoParameters) {
   std::string error;
-  for (const char* method :
-       {"arm", "disarm", "estop", "reset", "pause", "resume", "stop", "abort", "tare", "sim.reset"}) {
+  for (const char* method : {"arm", "disarm", "estop", "reset", "pause", "resume", "stop", "abort",
+                             "tare", "sim.reset"}) {
     EXPECT_TRUE(parse(method, nullptr, &error)) << method << ": " << error;
     EXPECT_TRUE(parse(method, json::object(), &error)) << method << ": " << error;
     EXPECT_TRUE(parse(method, true, &error)) << method << ": " << error;

@@ -90,8 +90,8 @@ typedef struct GaitdRobotState {
   double cop[2]; /* m, W, of both feet together; last valid one in flight */
   GaitdFootState feet[GAITD_MAX_FEET];
   double pelvis_velocity_covariance[9]; /* (m/s)^2, W, row-major */
-  /* Moment first, about the CoM, W: what pulls at the robot steadily. By the host, who finds it from
-   * the rest of this state; 0 while nothing pulls. */
+  /* Moment first, about the CoM, W: what pulls at the robot steadily. By the host, who finds it
+   * from the rest of this state; 0 while nothing pulls. */
   double external_wrench[6];
 } GaitdRobotState;
 
