@@ -18,10 +18,12 @@ constexpr double kObserver = 10.0;  // Hz: touchdowns are cut off before anythin
 constexpr double kEstimate = 0.37;
 constexpr double kRecent = 1.2;  // of what decides whether there is a pull
 constexpr double kLasts = 0.33;
-constexpr double kTakeOver = 1.6;
+constexpr double kTakeOver = 2.4;
 // Forces, in weights.
-constexpr double kLeast = 0.035;  // less is left to the feedback
-constexpr double kLargest = 0.2;  // more is a push: nobody leans against that
+constexpr double kLeast = 0.05;       // less is left to the feedback
+constexpr double kLargest = 0.2;      // more is a push: nobody leans against that
+constexpr double kOutstanding = 3.0;  // times the rms of what comes and goes: drives stick and bend
+constexpr double kMemory = 2.0;       // s, of that
 // Of the tare.
 constexpr double kRest = 0.05;     // sqrt(g h), of the CoM; robots sway
 constexpr double kLoaded = 0.9;    // weights, on the feet: it does not hang on a hoist
@@ -59,6 +61,7 @@ void ExternalWrench::reset() {
   slow_.setZero();
   recent_.setZero();
   time_pulled_ = 0.0;
+  usual_ = 0.0;
   believed_ = false;
   share_ = 0.0;
   tare();
@@ -74,10 +77,12 @@ ExternalWrench::Vector6d ExternalWrench::estimate() const { return turned(headin
 
 // What the estimate is late by after the end of a pull is not counted on.
 ExternalWrench::Vector6d ExternalWrench::steady() const {
-  const Eigen::Vector3d slow = slow_.tail<3>();
+  const Eigen::Vector2d slow = slow_.segment<2>(3);
   const double square = slow.squaredNorm();
   if (square <= 0.0) return Vector6d::Zero();
-  return share_ * std::clamp(recent_.dot(slow) / square, 0.0, 1.0) * estimate();
+  Vector6d pull = share_ * std::clamp(recent_.dot(slow) / square, 0.0, 1.0) * estimate();
+  pull[5] = 0.0;
+  return pull;
 }
 
 void ExternalWrench::observe(double dt, const GaitdRobotState& robot) {
@@ -132,9 +137,12 @@ void ExternalWrench::update(double dt, bool controlled, const GaitdGaitState& ga
   const Vector6d now = turned(-heading_, observer_.wrench()) - tare_;
   if (now.tail<3>().norm() > kLargest * weight_) return update_belief(dt, false);
   slow_ += low_pass(kEstimate / scale_.time, dt) * (now - slow_);
-  recent_ += low_pass(kRecent / scale_.time, dt) * (now.tail<3>() - recent_);
+  recent_ += low_pass(kRecent / scale_.time, dt) * (now.segment<2>(3) - recent_);
+  const double change = (recent_ - slow_.segment<2>(3)).squaredNorm();
+  if (share_ <= 0.0) usual_ += dt / kMemory * (change - usual_);
   // The offset of a sensor turns with its foot: less than that says nothing.
-  const double least = std::max(kLeast * weight_, tare_.segment<2>(3).norm());
+  const double least =
+      std::max({kLeast * weight_, tare_.segment<2>(3).norm(), kOutstanding * std::sqrt(usual_)});
   update_belief(dt, recent_.norm() > least);
 }
 

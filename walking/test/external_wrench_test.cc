@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "atlas.h"
 
 namespace gaitd::walking {
@@ -107,6 +109,46 @@ TEST(ExternalWrench, ADraughtIsLeftToTheFeedback) {
   b.run_for(3.0);
   EXPECT_NEAR(b.force().x(), b.pull.x(), 1.0);
   EXPECT_FALSE(b.external.pulled());
+}
+
+// Drives that stick and bend: forces that come and go with the steps.
+TEST(ExternalWrench, WhatComesAndGoesIsNoPull) {
+  Bench b;
+  b.run_for(2.0);
+  bool pulled = false;
+  double largest = 0.0;
+  for (double time = 0.0; time < 16.0; time += 0.01) {
+    const double amplitude = 0.07 * kWeight * std::min(1.0, time / 12.0);
+    b.pull = Vector3d(0.0, amplitude * std::sin(2.0 * M_PI * 1.2 * time), 0.0);
+    b.run_for(0.01);
+    pulled |= b.external.pulled();
+    largest = std::max(largest, b.force().norm());
+  }
+  EXPECT_FALSE(pulled);
+  EXPECT_GT(largest, 0.04 * kWeight);
+  b.pull = Vector3d(0.12 * kWeight, 0.0, 0.0);
+  b.run_for(1.0);
+  EXPECT_TRUE(b.external.pulled());
+}
+
+TEST(ExternalWrench, AWindThatRisesIsAPull) {
+  Bench b;
+  b.run_for(2.0);
+  for (double time = 0.0; time < 5.0; time += 0.01) {
+    b.pull = Vector3d(0.016 * kWeight * time, 0.0, 0.0);
+    b.run_for(0.01);
+  }
+  EXPECT_TRUE(b.external.pulled());
+}
+
+TEST(ExternalWrench, ALoadIsShownAndNotCountedOn) {
+  Bench b;
+  b.run_for(2.0);
+  b.pull = Vector3d(0.08 * kWeight, 0.0, -0.06 * kWeight);
+  b.run_for(2.0);
+  EXPECT_NEAR(b.force().z(), b.pull.z(), 2.0);
+  EXPECT_EQ(b.counted_on().z(), 0.0);
+  EXPECT_NEAR(b.counted_on().x(), b.pull.x(), 2.0);
 }
 
 TEST(ExternalWrench, WhatShowsWhenNobodyPullsTurnsWithTheRobot) {

@@ -49,7 +49,8 @@ class ExternalWrench {
   bool pulled() const { return share_ > 0.0; }
   // Moment first, about the CoM, W axes; N m and N. Zero before the tare; pushes are not in it.
   Vector6d estimate() const;
-  // What the controller counts on; zero while no pull is believed in.
+  // What the controller counts on: across only, as what hangs on a robot moves with it; zero while
+  // no pull is believed in.
   Vector6d steady() const;
 
  private:
@@ -72,8 +73,9 @@ class ExternalWrench {
   Vector6d sum_ = Vector6d::Zero();   // of the tare being taken, N m s and N s
   Vector6d tare_ = Vector6d::Zero();  // N m and N
   Vector6d slow_ = Vector6d::Zero();
-  Eigen::Vector3d recent_ = Eigen::Vector3d::Zero();  // N, the same force, sooner
-  double time_pulled_ = 0.0;                          // s
+  Eigen::Vector2d recent_ = Eigen::Vector2d::Zero();  // N, the same force across, sooner
+  double usual_ = 0.0;        // N^2, of what comes and goes in it while no pull is believed in
+  double time_pulled_ = 0.0;  // s
   bool believed_ = false;
   double share_ = 0.0;  // of the pull that the controller has taken over
 };
