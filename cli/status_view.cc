@@ -94,7 +94,8 @@ std::string health(const json& health) {
 // The force that pulls at the robot.
 std::string pull(const json& external) {
   const json force = at(external, "force");
-  if (!force.is_array() || force.size() != 3) return "unknown before the tare";
+  if (!force.is_array() || force.size() != 3)
+    return "unknown: no tare yet, or feet without force sensors";
   std::string words;
   for (const json& along : force) words += (words.empty() ? "" : ", ") + number(along, 0);
   return words + " N" + (at(external, "pulled") == true ? ", counted on" : "");

@@ -13,7 +13,7 @@ const kLines = [
   ['step', (s) => `${s.step_index ?? '–'}, ${s.footsteps_ahead ?? 0} ahead${s.paused ? ', PAUSED' : ''}`],
   ['ICP margin', (s) => typeof s.icp_margin === 'number' ? `${number(1000 * s.icp_margin, 0)} mm` : '–'],
   ['ICP error', (s) => typeof s.icp_error === 'number' ? `${number(1000 * s.icp_error, 1)} mm` : '–'],
-  ['pull', (s) => !s.external ? 'unknown before the tare' :
+  ['pull', (s) => !s.external ? 'unknown: no tare yet, or feet without force sensors' :
       `${s.external.force.map((f) => number(f, 0)).join(', ')} N${s.external.pulled ? ', counted on' : ''}`],
   ['tick', (s) => `${number(s.tick_us, 0)} µs, longest ${number(s.tick_longest_us, 0)} µs`],
   ['overruns', (s) => `${s.overruns ?? '–'}${s.late ? `, last: ${s.late.what}, ${number(s.late.time_us, 0)} µs` : ''}`],
