@@ -336,6 +336,7 @@ CommandReply Pipeline::execute(const Command& command) {
       return move(command);
     case CommandType::kTare:
       why = tare();
+      note = "nobody may touch the robot for the next second at rest";
       break;
     case CommandType::kPause:
       refusal = gait_.pause();
