@@ -42,9 +42,9 @@ double low_pass(double hertz, double dt) { return -std::expm1(-2.0 * M_PI * hert
 }  // namespace
 
 Eigen::Vector2d lean(const dynamics::Vector6d& wrench, double mass, double gravity, double omega) {
-  const double load = mass * gravity - std::min(wrench[5], 0.5 * mass * gravity);
   const double height = gravity / (omega * omega);
-  return Eigen::Vector2d(wrench[1] + height * wrench[3], -wrench[0] + height * wrench[4]) / load;
+  return Eigen::Vector2d(wrench[1] + height * wrench[3], -wrench[0] + height * wrench[4]) /
+         (mass * gravity);
 }
 
 ExternalWrench::ExternalWrench(const GaitdModel& model)

@@ -97,7 +97,7 @@ void InverseDynamicsQp::begin(const GaitdRobotState& robot, const GaitdObjective
   add_costs(objectives);
   add_equalities(objectives);
   add_limits(robot, objectives, limits);
-  add_rise_limit(robot, objectives, limits);
+  add_rise_limit(robot, limits);
   separations_.begin(dynamics_, objectives);
 }
 
@@ -259,8 +259,7 @@ void InverseDynamicsQp::add_limits(const GaitdRobotState& robot, const GaitdObje
   }
 }
 
-void InverseDynamicsQp::add_rise_limit(const GaitdRobotState& robot,
-                                       const GaitdObjectives& objectives, const Limits& limits) {
+void InverseDynamicsQp::add_rise_limit(const GaitdRobotState& robot, const Limits& limits) {
   C_.row(joints_).head(nv_).setZero();
   C_.row(joints_).segment(nv_, rho_count_) = edges_.row(2).head(rho_count_);
   const double velocity = robot.com_velocity[2];
@@ -269,8 +268,7 @@ void InverseDynamicsQp::add_rise_limit(const GaitdRobotState& robot,
                              : (limits.rise_speed - velocity) / limits.rise_time;
   l_[joints_] = -std::numeric_limits<double>::infinity();
   u_[joints_] = dynamics_.total_mass() *
-                    std::max(dynamics_.gravity() + upwards, kLeastForce * dynamics_.gravity()) -
-                objectives.external_wrench[5];
+                std::max(dynamics_.gravity() + upwards, kLeastForce * dynamics_.gravity());
 }
 
 qp::Problem InverseDynamicsQp::problem() const {

@@ -119,8 +119,7 @@ class InverseDynamicsQp {
                   const Limits& limits);
   // Keeps the sum of the vertical forces from throwing the robot into the air: with the height
   // free, a large force is the cheapest way to a large horizontal one.
-  void add_rise_limit(const GaitdRobotState& robot, const GaitdObjectives& objectives,
-                      const Limits& limits);
+  void add_rise_limit(const GaitdRobotState& robot, const Limits& limits);
   // Torques of the joints by the last solution, with the damping of their drives.
   void compute_torque();
   // Adds the cost of each torque that jumps and has none yet; whether there was one.

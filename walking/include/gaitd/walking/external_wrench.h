@@ -13,10 +13,10 @@
 
 namespace gaitd::walking {
 
-// How far a steady external wrench F, M (about the CoM, W) leans a robot. With the CMP r on the
+// How far a steady pull, F across and M (about the CoM, W), leans a robot. With the CMP r on the
 // ground and no change of angular momentum the CoM c moves as it would at c + lean without it:
-//   c'' = omega^2 (c + lean - r),   lean = (M_y + h F_x, -M_x + h F_y) / N,
-// h = g / omega^2, N the load on the feet. Capture point and plan keep their meaning when the
+//   c'' = omega^2 (c + lean - r),   lean = (M_y + h F_x, -M_x + h F_y) / (m g),
+// h = g / omega^2. Capture point and plan keep their meaning when the
 // capture point counts from there. m, W. mass: kg. gravity: m/s^2. omega: 1/s.
 Eigen::Vector2d lean(const dynamics::Vector6d& wrench, double mass, double gravity, double omega);
 
