@@ -16,9 +16,7 @@ using testing::atlas;
 template <class Model>
 void update(Model& model, const GaitdRobotState& robot) {
   const int joints = atlas().joint_count;
-  model.update(sdk::view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
-               sdk::view(robot.pelvis_twist), sdk::head(robot.joint_position, joints),
-               sdk::head(robot.joint_velocity, joints));
+  model.update(robot);
 }
 
 // Five frames: pelvis, chest, feet and the last body.

@@ -25,9 +25,9 @@ struct Group {
 
 const std::vector<Group>& groups() {
   static const std::vector<Group> kGroups = {
-      {"Command the robot",
-       {"status", "watch", "view", "arm", "disarm", "estop", "reset", "mode", "walk", "steps",
-        "drive", "goto", "teleop", "pose", "pause", "resume", "stop", "abort", "tare"}},
+      {"Command the robot", {"status",  "watch", "view",   "arm",   "disarm", "estop",  "reset",
+                             "mode",    "walk",  "steps",  "drive", "goto",   "teleop", "pose",
+                             "payload", "pause", "resume", "stop",  "abort",  "tare"}},
       {"Play scenarios", {"run", "campaign", "compare", "sim"}},
       {"Read logs", {"report", "log", "doctor"}},
       {"Set up", {"robot", "param", "plugin", "joint", "calibrate", "completion"}}};
@@ -54,6 +54,9 @@ const std::map<std::string, const char*>& examples() {
       {"pose chest", "gaitctl pose chest --yaw 0.3 --duration 2"},
       {"pose arm", "gaitctl pose arm left --joint l_arm_elx=1.2 --joint l_arm_shz=0.3"},
       {"pose hand", "gaitctl pose hand left --frame pelvis --x 0.5 --y 0.3 --z 0.2 --duration 2"},
+      {"payload estimate", "gaitctl payload estimate --link l_hand"},
+      {"payload set", "gaitctl payload set --link utorso --mass 10 --com 0.35,0,0.2"},
+      {"payload clear", "gaitctl payload clear"},
       {"pause", "gaitctl pause"},
       {"resume", "gaitctl resume"},
       {"stop", "gaitctl stop"},
@@ -66,6 +69,7 @@ const std::map<std::string, const char*>& examples() {
       {"campaign tune", "gaitctl campaign tune sim/campaigns/tune-pushes.yaml -o tuned"},
       {"compare", "gaitctl compare push-bent-forward -- a.yaml b.yaml"},
       {"sim push", "gaitctl sim push --link utorso --force 0,200,0 --duration 0.1"},
+      {"sim load", "gaitctl sim load --link utorso --mass 10 --com 0.35,0,0.2"},
       {"sim reset", "gaitctl sim reset"},
       {"report", "gaitctl report walk.mcap slower.mcap -o walks.html"},
       {"log info", "gaitctl log info walk.mcap"},

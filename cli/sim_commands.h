@@ -7,7 +7,7 @@
 
 namespace gaitd::cli {
 
-/// Adds `sim push` and `sim reset`, which act on the simulation of the daemon.
+/// Adds `sim push`, `sim load` and `sim reset`, which act on the simulation of the daemon.
 void add_sim_commands(CLI::App* app, Context* context);
 
 }  // namespace gaitd::cli

@@ -91,17 +91,34 @@ std::string health(const json& health) {
   return (healthy ? "healthy" : text(at(health, "text"))) + counts;
 }
 
+std::string triple(const json& values, int digits) {
+  std::string words;
+  for (const json& value : values) words += (words.empty() ? "" : ", ") + number(value, digits);
+  return words;
+}
+
 // The force that pulls at the robot.
 std::string pull(const json& external) {
   const json force = at(external, "force");
   if (!force.is_array() || force.size() != 3)
     return "unknown: no tare yet, or feet without force sensors";
-  std::string words;
-  for (const json& along : force) words += (words.empty() ? "" : ", ") + number(along, 0);
-  return words + " N" + (at(external, "pulled") == true ? ", counted on" : "");
+  return triple(force, 0) + " N" + (at(external, "pulled") == true ? ", counted on" : "");
 }
 
 }  // namespace
+
+std::string payload_text(const json& payload) {
+  const json loads = at(payload, "loads");
+  if (!loads.is_array() || loads.empty()) return "nothing";
+  std::string words;
+  for (const json& load : loads) {
+    words += (words.empty() ? "" : "; ") + number(at(load, "mass"), 2) + " kg on " +
+             text(at(load, "link")) + " at " + triple(at(load, "com"), 3) + " m";
+    const json uncertainty = at(load, "uncertainty");
+    if (uncertainty.is_array()) words += " (within " + triple(uncertainty, 3) + ")";
+  }
+  return words;
+}
 
 std::vector<std::string> status_screen(const json& status) {
   std::vector<std::string> lines = {
@@ -117,6 +134,8 @@ std::vector<std::string> status_screen(const json& status) {
       "ICP error  " + number(at(status, "icp_error"), 1, 1e-3) + " mm, margin " +
           number(at(status, "icp_margin"), 1, 1e-3) + " mm",
       "pull       " + pull(at(status, "external")),
+      "carries    " + payload_text(at(status, "payload")) +
+          (at(at(status, "payload"), "estimating") == true ? ", being weighed" : ""),
       "pelvis     " + pose(at(status, "pelvis")),
       "log        " + log(at(status, "log")),
       ""};

@@ -10,7 +10,10 @@ namespace gaitd::cli {
 /// The status of the daemon as a table for a screen. What is missing in it is shown as "-".
 std::vector<std::string> status_screen(const nlohmann::json& status);
 
-/// The same on one line, for outputs that are no terminal.
+/// What the robot carries, of `payload` of a status, on one line.
+std::string payload_text(const nlohmann::json& payload);
+
+/// The status on one line, for outputs that are no terminal.
 std::string status_line(const nlohmann::json& status);
 
 }  // namespace gaitd::cli

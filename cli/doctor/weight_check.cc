@@ -19,7 +19,9 @@ Findings check_weight(const LogCase& log) {
   const daemon::Column* right = log.find("foot/right/force/z");
   const GaitdModel* model = log.model();
   if (left == nullptr || right == nullptr || model == nullptr) return {};
+  const daemon::Column* carried = log.find("payload/mass");
   double sum = 0.0;
+  double known = 0.0;
   std::size_t count = 0;
   std::size_t first = 0;
   std::size_t last = 0;
@@ -31,6 +33,7 @@ Findings check_weight(const LogCase& log) {
     if (count++ == 0) first = i;
     last = i;
     sum += (*left)[i] + (*right)[i];
+    known += carried == nullptr ? 0.0 : (*carried)[i];
   }
   if (count < least) return {};
   // What rises or sinks weighs more or less.
@@ -40,13 +43,14 @@ Findings check_weight(const LogCase& log) {
       velocity == nullptr ? 0.0 : ((*velocity)[last] - (*velocity)[first]) / seconds;
   const double measured =
       sum / static_cast<double>(count) / std::max(1.0, model->gravity + acceleration);
-  const double error = measured / model->total_mass - 1.0;
+  const double mass = model->total_mass + known / static_cast<double>(count);
+  const double error = measured / mass - 1.0;
   if (!(std::abs(error) > kNoticed)) return {};
   Finding finding = log_finding(
       log, "weight", first,
       format("the feet carry %.1f kg where the model weighs %.1f kg, %.0f %% %s", measured,
-             model->total_mass, 100.0 * std::abs(error), error > 0.0 ? "more" : "less"),
-      "masses in the URDF, a load that it does not know of, or the calibration of the foot force "
+             mass, 100.0 * std::abs(error), error > 0.0 ? "more" : "less"),
+      "masses in the URDF, a load that it does not know of (gaitctl payload estimate), or the calibration of the foot force "
       "sensors");
   if (std::abs(error) < kWrong) finding.severity = Severity::kWarning;
   return {finding};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "daemon/control/signals.h"
+#include "daemon/control/state_text.h"
 #include "daemon/control/tick_data.h"
 #include "daemon/host/layers.h"
 
@@ -130,6 +131,36 @@ void add_times(const TickWatch::Report& report, const RealtimeReport& realtime, 
   (*status)["realtime"] = {{"got", realtime.got}, {"degraded", realtime.degraded}};
 }
 
+// What the robot carries, by the names of its links.
+json payload_of(const Telemetry& telemetry, const GaitdModel& model) {
+  std::vector<double> values;
+  if (!telemetry.latest(values)) values.clear();
+  const auto get = [&](const std::string& name) {
+    return signal_value(telemetry.table(), values, "payload/" + name);
+  };
+  const auto vector = [&](const std::string& of) {
+    return json::array({get(of + "/x"), get(of + "/y"), get(of + "/z")});
+  };
+  const int outcome = find_signal(telemetry.table(), "payload/outcome");
+  const bool known = outcome >= 0 && static_cast<std::size_t>(outcome) < values.size();
+  json payload = {{"mass", get("mass")},
+                  {"estimating", get("estimating")},
+                  {"outcome", get("outcome")},
+                  {"what", known ? json(outcome_text(static_cast<int>(values[outcome]))) : json()},
+                  {"loads", json::array()}};
+  for (int i = 0; i < GAITD_MAX_LOADS; ++i) {
+    const std::string slot = std::to_string(i);
+    const json body = get(slot + "/body");
+    if (!body.is_number() || body < 0 || body >= model.body_count) continue;
+    payload["loads"].push_back(
+        {{"link", model.bodies[body.get<int>()].name},
+         {"mass", get(slot + "/mass")},
+         {"com", vector(slot + "/com")},
+         {"uncertainty", body == get("weighed") ? vector("uncertainty") : json()}});
+  }
+  return payload;
+}
+
 }  // namespace
 
 void show_estop(const EstopFlag& estop, json* status) {
@@ -151,6 +182,7 @@ void StatusReport::set_realtime(const RealtimeReport& realtime) {
 
 json StatusReport::status() const {
   json s = status_of(*sources_.telemetry);
+  s["payload"] = payload_of(*sources_.telemetry, *sources_.model);
   show_estop(*sources_.estop, &s);
   s.update(sources_.constants);
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {

@@ -33,6 +33,15 @@ enum class CommandType : std::uint8_t {
   kDrive,      // walk at a velocity
   kGoto,       // footsteps to a place are planned, and replace those ahead
   kTare,       // what pulls at the robot now is nothing
+  kPayload,    // what the robot carries
+  kSimLoad,    // simulation only
+};
+
+enum class PayloadAction : std::uint8_t { kSet, kClear, kEstimate };
+
+struct PayloadCommand {
+  PayloadAction action = PayloadAction::kSet;
+  GaitdLoad load{};  // body -1: all of them
 };
 
 // Where the middle of the feet is to be, W.
@@ -63,6 +72,8 @@ struct Command {
   GaitdDisturbance push;
   JointTest joint_test;
   walking::MotionCommand pose;
+  PayloadCommand payload;
+  GaitdLoad load{};  // of the simulation
   GotoTarget target;
   int parameter_index = -1;  // into the rows of LiveParameters
   double parameter_value = 0.0;

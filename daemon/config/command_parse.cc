@@ -22,6 +22,7 @@ constexpr int kMaxSteps = 1000;
 constexpr std::int64_t kMaxSession = std::int64_t{1} << 53;  // whole as a double
 constexpr Bounds kDuration = {0.05, 20.0, "s"};
 constexpr Bounds kSolePosition = {-1.0, 1.0, "m"};
+constexpr double kLeastLoad = 0.001;  // kg
 
 struct PlainMethod {
   std::string_view name;
@@ -38,6 +39,16 @@ constexpr std::array<PlainMethod, 10> kPlainMethods = {{
     {"abort", CommandType::kAbort},
     {"tare", CommandType::kTare},
     {"sim.reset", CommandType::kSimReset},
+}};
+
+struct PayloadMethod {
+  std::string_view name;
+  PayloadAction action;
+};
+constexpr std::array<PayloadMethod, 3> kPayloadMethods = {{
+    {"payload.set", PayloadAction::kSet},
+    {"payload.clear", PayloadAction::kClear},
+    {"payload.estimate", PayloadAction::kEstimate},
 }};
 
 NodePtr map_of(std::string_view key, const NodePtr& value) {
@@ -194,16 +205,38 @@ void read_footsteps(MapReader* map, bool replace, Command* command) {
   command->replace = map->boolean("replace").value_or(replace) || replace;
 }
 
+// -1: there is none.
+int read_link(MapReader* map, const GaitdModel* model) {
+  const auto link = map->text("link");
+  if (!link || model == nullptr) return -1;
+  const int body = body_index(*model, *link);
+  if (body < 0) {
+    map->fail("link", "a link of the robot that moves", *link,
+              suggestion(*link, body_names(*model)));
+  }
+  return body;
+}
+
+// A load of the simulation may be taken off by a mass of 0.
+void read_load(MapReader* map, const GaitdModel* model, double least, GaitdLoad* load) {
+  map->require({"link", "mass"});
+  load->body = read_link(map, model);
+  load->mass = map->number("mass", {least, 1000.0, "kg"}).value_or(least);
+  map->numbers("com", load->com, {-10.0, 10.0, "m"});
+}
+
+void read_payload(MapReader* map, const GaitdModel* model, PayloadAction action,
+                  PayloadCommand* payload) {
+  payload->action = action;
+  if (action == PayloadAction::kSet) return read_load(map, model, kLeastLoad, &payload->load);
+  payload->load.body = read_link(map, model);
+  const bool needs_link = action == PayloadAction::kEstimate;
+  if (needs_link && model != nullptr && !map->has("link")) payload->load.body = model->chest_body;
+}
+
 void read_push(MapReader* map, const GaitdModel* model, GaitdDisturbance* push) {
   map->require({"link", "force", "duration"});
-  push->body = -1;
-  if (const auto link = map->text("link"); link && model) {
-    push->body = body_index(*model, *link);
-    if (push->body < 0) {
-      map->fail("link", "a link of the robot that moves", *link,
-                suggestion(*link, body_names(*model)));
-    }
-  }
+  push->body = read_link(map, model);
   map->numbers("force", push->force, {-1e5, 1e5, "N"});
   map->numbers("point", push->point, {-10.0, 10.0, "m"});
   push->duration = map->number("duration", {1e-4, 60.0, "s"}).value_or(0.0);
@@ -228,8 +261,10 @@ void read_joint_test(MapReader* map, const GaitdModel* model, JointTest* test) {
 
 const std::vector<std::string>& command_methods() {
   static const std::vector<std::string> kMethods = [] {
-    std::vector<std::string> names = {"mode",      "walk",    "drive", "velocity", "goto",
-                                      "footsteps", "replace", "pose",  "sim.push", "joint.test"};
+    std::vector<std::string> names = {"mode",     "walk",      "drive",     "velocity",
+                                      "goto",     "footsteps", "replace",   "pose",
+                                      "sim.push", "sim.load",  "joint.test"};
+    for (const PayloadMethod& payload : kPayloadMethods) names.emplace_back(payload.name);
     for (const PlainMethod& plain : kPlainMethods) names.emplace_back(plain.name);
     std::sort(names.begin(), names.end());
     return names;
@@ -243,6 +278,8 @@ std::optional<Command> parse_command(std::string_view method, const NodePtr& par
   const auto plain = std::find_if(kPlainMethods.begin(), kPlainMethods.end(),
                                   [&](const PlainMethod& m) { return m.name == method; });
   const bool is_plain = plain != kPlainMethods.end();
+  const auto payload = std::find_if(kPayloadMethods.begin(), kPayloadMethods.end(),
+                                    [&](const PayloadMethod& m) { return m.name == method; });
   Issues found;
   MapReader map(expanded(method, params, is_plain, path, &found), path, &found);
   Command command{};
@@ -267,6 +304,12 @@ std::optional<Command> parse_command(std::string_view method, const NodePtr& par
   } else if (method == "sim.push") {
     command.type = CommandType::kPush;
     read_push(&map, model, &command.push);
+  } else if (method == "sim.load") {
+    command.type = CommandType::kSimLoad;
+    read_load(&map, model, 0.0, &command.load);
+  } else if (payload != kPayloadMethods.end()) {
+    command.type = CommandType::kPayload;
+    read_payload(&map, model, payload->action, &command.payload);
   } else if (method == "pose") {
     command.type = CommandType::kPose;
     read_pose(&map, model, &command.pose);

@@ -24,6 +24,8 @@ const std::vector<std::string>& command_methods();
 //   goto       {x, y, yaw}
 //   replace    footsteps with replace: true
 //   sim.push   {link, force: [x, y, z], duration, point: [x, y, z]}
+//   sim.load   {link, mass, com: [x, y, z]}
+//   payload.set {link, mass, com: [x, y, z]}, payload.clear {link}, payload.estimate {link}
 //   joint.test {joint, amplitude, duration}
 //   pose       {pelvis: {x, y, z, roll, pitch, yaw}, duration}
 // Everything that is wrong goes to `issues`; then nothing is returned. Without a model the names of

@@ -186,8 +186,13 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
 void check_scenario(const Scenario& scenario, const GaitdModel& model, Issues* issues) {
   check_start(scenario, model, issues);
   for (const ScenarioCommand& command : scenario.commands) {
-    if (command.method != "sim.push" && command.method != "joint.test") continue;
-    const std::string path = command.method == "sim.push" ? "push" : command.method;
+    const bool names_links = command.method.starts_with("sim.") ||
+                             command.method.starts_with("payload.") ||
+                             command.method == "joint.test";
+    if (!names_links) continue;
+    const std::string path = command.method == "sim.push"   ? "push"
+                             : command.method == "sim.load" ? "load"
+                                                            : command.method;
     parse_command(command.method, from_json(command.params, command.where), &model, path, issues);
   }
   for (const ScenarioDisturbance& disturbance : scenario.disturbances) {

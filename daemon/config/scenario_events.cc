@@ -24,6 +24,7 @@ std::vector<Verb> all_verbs() {
   std::vector<Verb> verbs;
   for (const std::string& method : command_methods()) verbs.push_back({method, method});
   verbs.push_back({"push", "sim.push"});
+  verbs.push_back({"load", "sim.load"});
   verbs.push_back({"swap", "plugin.swap"});
   verbs.push_back({"param", "param.set"});
   return verbs;

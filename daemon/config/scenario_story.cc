@@ -74,6 +74,7 @@ class Story {
       case CommandType::kResume:
       case CommandType::kPose:
       case CommandType::kTare:
+      case CommandType::kPayload:
         check_armed();
         break;
       case CommandType::kStop:

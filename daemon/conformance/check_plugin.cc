@@ -60,6 +60,7 @@ constexpr Demand kSuite[] = {
     {"standing", Of::kSimulations, "a robot that is held in its posture stands for a minute"},
     {"truth", Of::kSimulations, "truth and sensors are of the same robot"},
     {"push", Of::kSimulations, "a push moves the robot, a bad one is refused"},
+    {"carry", Of::kSimulations, "a load weighs, where masses can be changed"},
     {"reset", Of::kSimulations, "starts over, and the same commands give the same bits"}};
 
 // The check that a reason of the host belongs to.

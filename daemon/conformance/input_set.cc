@@ -22,6 +22,7 @@ GaitdStateEstimatorInput InputSet::estimator() const {
   in.sensors = &sensors;
   in.gait = &gait_before;
   in.commands = &commands;
+  in.loads = &robot.loads;
   return in;
 }
 GaitdIcpPlannerInput InputSet::planner() const {

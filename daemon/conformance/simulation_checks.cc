@@ -2,6 +2,7 @@
 // What a simulated backend must do: docs/backend.md. In lockstep, on flat ground, ideal sensors and
 // drives.
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -160,6 +161,42 @@ class Simulation {
     return true;
   }
 
+  // On the ground under the feet, which it has to press on from the first period on.
+  bool check_carry() {
+    run_.begin("carry");
+    const GaitdBackendVtable& v = *c_.vtable;
+    const bool has = v.size >= offsetof(GaitdBackendVtable, carry) + sizeof(v.carry) && v.carry;
+    GaitdLoad load{};
+    load.mass = 0.1 * run_.model().total_mass;
+    if (!has || v.carry(c_.self, &load) == GAITD_NOT_SUPPORTED) {
+      run_.pass("it cannot change masses");
+      return true;
+    }
+    load.body = run_.model().body_count;
+    if (v.carry(c_.self, &load) == GAITD_OK) {
+      return run_.fail("carry() takes a body that the robot does not have");
+    }
+    if (v.reset(c_.self) != GAITD_OK || read() != GAITD_OK) return run_.fail("reset() failed");
+    load.body = 0;
+    if (v.carry(c_.self, &load) != GAITD_OK) return run_.fail("carry() failed");
+    constexpr int kTicks = 1000;
+    double impulse = 0.0;  // of the ground, N s
+    for (int i = 0; i < kTicks; ++i) {
+      if (!tick() || truth(truth_.get()) != GAITD_OK) return run_.fail("no tick with a load");
+      impulse += kPeriod * (truth_->feet[0].force[2] + truth_->feet[1].force[2]);
+    }
+    const double mass = run_.model().total_mass + load.mass;
+    const double expected =
+        mass * (run_.model().gravity * kPeriod * kTicks + truth_->com_velocity[2]);
+    if (std::abs(impulse - expected) > 0.01 * expected) {
+      return run_.fail("the ground carries " + number(impulse / (kPeriod * kTicks)) +
+                       " N of a robot with a load of " + number(load.mass) + " kg, expected " +
+                       number(expected / (kPeriod * kTicks)) + " N");
+    }
+    run_.pass();
+    return true;
+  }
+
   // Twice from the start under the same commands: the same bits.
   bool check_reset() {
     run_.begin("reset");
@@ -232,7 +269,7 @@ void check_simulation(CheckRun& run) {
   Simulation simulation(run);
   const bool good = simulation.check_init() && simulation.check_first_reading() &&
                     simulation.check_standing() && simulation.check_truth() &&
-                    simulation.check_push() && simulation.check_reset();
+                    simulation.check_push() && simulation.check_carry() && simulation.check_reset();
   if (good) simulation.stop();
 }
 

@@ -44,6 +44,13 @@ void visit_point(Point& point, Field&& field) {
   field("value", point.value);
 }
 
+template <class Load, class Field>
+void visit_load(Load& load, Field&& field) {
+  field("body", load.body);
+  field("mass", load.mass);
+  field("com", load.com);
+}
+
 template <class Walk, class Field>
 void visit_walk(Walk& walk, Field&& field) {
   field("steps", walk.steps);
@@ -115,6 +122,13 @@ std::string input_text(const Command& c, int parameter_owner, int parameter_plac
       out["force"] = c.push.force;
       out["duration"] = c.push.duration;
       break;
+    case CommandType::kSimLoad:
+      visit_load(c.load, Write{&out});
+      break;
+    case CommandType::kPayload:
+      out["action"] = static_cast<int>(c.payload.action);
+      visit_load(c.payload.load, Write{&out});
+      break;
     case CommandType::kJointTest:
       visit_joint_test(c.joint_test, Write{&out});
       break;
@@ -150,6 +164,11 @@ bool read_input(const json& in, Command* c, int* parameter_owner, int* parameter
     if (c->type == CommandType::kMode) c->mode = in.at("mode").get<int>();
     if (c->type == CommandType::kWalk) visit_walk(c->walk, Read{&in});
     if (c->type == CommandType::kJointTest) visit_joint_test(c->joint_test, Read{&in});
+    if (c->type == CommandType::kSimLoad) visit_load(c->load, Read{&in});
+    if (c->type == CommandType::kPayload) {
+      c->payload.action = static_cast<PayloadAction>(in.at("action").get<int>());
+      visit_load(c->payload.load, Read{&in});
+    }
     if (c->type == CommandType::kPose) {
       GaitdMotion& motion = c->pose.motion;
       c->pose.part = in.at("part").get<int>();

@@ -10,10 +10,10 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr const char* kNames[] = {"arm",        "disarm",    "estop",    "reset",     "mode",
-                                  "walk",       "footsteps", "pause",    "resume",    "stop",
-                                  "abort",      "param.set", "sim.push", "sim.reset", "plugin.swap",
-                                  "joint.test", "pose",      "drive",    "goto",      "tare"};
+constexpr const char* kNames[] = {
+    "arm",    "disarm", "estop", "reset",     "mode",     "walk",      "footsteps",   "pause",
+    "resume", "stop",   "abort", "param.set", "sim.push", "sim.reset", "plugin.swap", "joint.test",
+    "pose",   "drive",  "goto",  "tare",      "payload",  "sim.load"};
 
 class Writer {
  public:
@@ -58,6 +58,11 @@ void add_motion(Writer& w, const walking::MotionCommand& command) {
   w.add("]");
 }
 
+void add_load(Writer& w, const GaitdLoad& load) {
+  w.add(R"(,"body":%d,"mass":%.17g,"com":[%.17g,%.17g,%.17g])", load.body, load.mass, load.com[0],
+        load.com[1], load.com[2]);
+}
+
 }  // namespace
 
 std::string_view command_text(const Command& c, const CommandReply& reply, char* buffer,
@@ -88,6 +93,12 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
     w.add(R"(,"body":%d,"force":[%.17g,%.17g,%.17g],"duration":%.17g)", c.push.body,
           c.push.force[0], c.push.force[1], c.push.force[2], c.push.duration);
   }
+  if (c.type == CommandType::kSimLoad) add_load(w, c.load);
+  if (c.type == CommandType::kPayload) {
+    constexpr const char* kActions[] = {"set", "clear", "estimate"};
+    w.add(R"(,"action":"%s")", kActions[static_cast<int>(c.payload.action)]);
+    add_load(w, c.payload.load);
+  }
   if (c.type == CommandType::kSwap) {
     w.add(R"(,"layer":"%s","to":)", sdk::kLayerNames[c.swap_layer].data());
     w.add_quoted(c.swap_to.data());
@@ -114,6 +125,15 @@ std::string_view push_text(const GaitdDisturbance& push, const char* link, char*
         push.force[2]);
   w.add(R"(,"point":[%.17g,%.17g,%.17g],"duration":%.17g})", push.point[0], push.point[1],
         push.point[2], push.duration);
+  return w.text();
+}
+
+std::string_view load_text(const char* what, const GaitdLoad& load, const char* link, char* buffer,
+                           std::size_t size) {
+  Writer w(buffer, size);
+  w.add(R"({"%s":"%s")", what, link);
+  add_load(w, load);
+  w.add("}");
   return w.text();
 }
 

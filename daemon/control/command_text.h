@@ -17,6 +17,10 @@ std::string_view command_text(const Command& command, const CommandReply& reply,
 std::string_view parameter_text(const char* key, const Command& command, const CommandReply& reply,
                                 char* buffer, std::size_t size);
 
+// {what: link, "body", "mass", "com"} of a load: "load" of the simulation, "payload" of one that
+// was weighed. [rt]
+std::string_view load_text(const char* what, const GaitdLoad& load, const char* link, char* buffer,
+                           std::size_t size);
 // {"push": link, "force", "point", "duration"} of a push that was made. [rt]
 std::string_view push_text(const GaitdDisturbance& push, const char* link, char* buffer,
                            std::size_t size);

@@ -9,7 +9,6 @@
 #include "daemon/control/command_text.h"
 #include "daemon/control/denormals.h"
 #include "daemon/control/signals.h"
-#include "daemon/control/sim_push.h"
 #include "daemon/control/state_text.h"
 #include "daemon/control/stopwatch.h"
 #include "daemon/control/tick_guard.h"
@@ -182,8 +181,9 @@ void ControlLoop::take_commands() {
 
 void ControlLoop::execute(const Command& command, bool from_client) {
   if (command.type == CommandType::kGoto) return begin_goto(command, from_client);
-  const bool simulation =
-      command.type == CommandType::kPush || command.type == CommandType::kSimReset;
+  const bool simulation = command.type == CommandType::kPush ||
+                          command.type == CommandType::kSimLoad ||
+                          command.type == CommandType::kSimReset;
   const bool clears = command.type == CommandType::kReset || command.type == CommandType::kSimReset;
   const bool outdated = from_client && clears && command.estops < estop_->asked();
   CommandReply reply = outdated                             ? refuse_outdated(command)
@@ -220,21 +220,6 @@ CommandReply ControlLoop::refuse_outdated(const Command& command) {
   return reply;
 }
 
-// Of the scenario: one that is not made would pass for one that was withstood.
-void ControlLoop::push_robot(const GaitdDisturbance& push) {
-  const char* why = sim_push(backend_, push);
-  if (why == nullptr) return tell_push(push);
-  end(RunEnd::kPush,
-      std::string("the push on ") + model_.bodies[push.body].name + " was not made: " + why);
-}
-
-// For whoever looks at the log: what came from the simulation's side.
-void ControlLoop::tell_push(const GaitdDisturbance& push) {
-  char text[kMaxEventText];
-  telemetry_->push_event(EventKind::kNote, tick_, static_cast<double>(tick_) * options_.period,
-                         push_text(push, model_.bodies[push.body].name, text, sizeof(text)));
-}
-
 void ControlLoop::backend_failed(const char* what) {
   raise(kFaultBackend, "backend");
   char text[96];
@@ -250,29 +235,6 @@ void ControlLoop::raise(Fault fault, const char* name) {
   const int length = std::snprintf(text, sizeof(text), R"({"fault":"%s"})", name);
   telemetry_->push_event(EventKind::kDecision, tick_, static_cast<double>(tick_) * options_.period,
                          std::string_view(text, length));
-}
-
-CommandReply ControlLoop::simulate(const Command& command) {
-  CommandReply reply;
-  reply.request = command.request;
-  reply.tick = tick_;
-  if (command.type == CommandType::kPush) {
-    const char* why = sim_push(backend_, command.push);
-    if (why != nullptr) {
-      std::snprintf(reply.message.data(), reply.message.size(), "sim push: %s", why);
-    } else {
-      reply.accepted = true;
-      tell_push(command.push);
-    }
-  } else if (backend_.vtable->reset == nullptr ||
-             backend_.vtable->reset(backend_.self) != GAITD_OK) {
-    std::snprintf(reply.message.data(), reply.message.size(), "%s",
-                  "sim reset: this backend is no simulation; start gaitd with --backend simbody");
-  } else {
-    pipeline_->reset(options_.arm);
-    reply.accepted = true;
-  }
-  return reply;
 }
 
 CommandReply ControlLoop::request_swap(const Command& command) {
@@ -337,6 +299,11 @@ void ControlLoop::report_changes() {
                            dropped_text(pipeline_->monitor(), i, text, sizeof(text)));
   }
   report_hands();
+  if (d.payload.concluded) {
+    telemetry_->push_event(
+        EventKind::kNote, d.time.tick, d.time.time,
+        payload_text(d.payload, model_.bodies[d.payload.found.body].name, text, sizeof(text)));
+  }
   if (d.safety == last_state_ && d.faults == last_faults_) return;
   last_state_ = d.safety;
   last_faults_ = d.faults;

@@ -85,6 +85,7 @@ class ControlLoop {
   CommandReply request_swap(const Command& command);
   void push_robot(const GaitdDisturbance& push);
   void tell_push(const GaitdDisturbance& push);
+  void tell_load(const char* what, const GaitdLoad& load);
   void raise(Fault fault, const char* name);
   void backend_failed(const char* what);
   void end(RunEnd how, const std::string& problem = "");

@@ -23,6 +23,8 @@ bool replaces_goto(const Command& command) {
     case CommandType::kJointTest:
     case CommandType::kPose:
     case CommandType::kTare:
+    case CommandType::kPayload:
+    case CommandType::kSimLoad:
       return false;
     case CommandType::kMode:
       return command.mode == GAITD_MODE_STAND;

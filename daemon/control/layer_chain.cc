@@ -122,6 +122,8 @@ bool LayerChain::estimate(const GaitdStart& start, TickData& d) {
   in.gait = &d.gait;
   in.commands = &d.commands;
   std::copy_n(d.robot.external_wrench, 6, in.external_wrench);
+  in.external_wrench[5] += d.external.load;
+  in.loads = &d.loads;
   return run<GAITD_LAYER_STATE_ESTIMATOR>(in, d.robot, d.times);
 }
 

@@ -40,6 +40,7 @@ Pipeline::Pipeline(const GaitdModel& model, const Calibration& calibration,
       layers_(std::move(layers), model_),
       gait_(model),
       external_(model),
+      payload_(model),
       objectives_(model),
       motions_(model),
       safety_(model),
@@ -175,6 +176,7 @@ void Pipeline::reset(bool arm) {
   monitor_.reset();
   compensation_.reset();
   external_.reset();
+  payload_.reset();
   const auto variants = data_.variants;
   data_ = TickData{};
   data_.variants = variants;
@@ -197,7 +199,9 @@ void Pipeline::run(std::int64_t tick) {
   monitor_.check(period_, safety_.parameters(), d);
   compensation_.sensors(period_, d);
   const bool estimated = layers_.estimate(start_, d);
+  d.robot.loads = d.loads;
   if (estimated && d.robot.valid != 0) observe_external(period_);
+  update_payload(period_);
   safety_.check(d, estimated);
   if (safety_.update(period_, d, gait_.walking())) begin_control();
   const bool controlled = safety_.controlled();
@@ -209,25 +213,6 @@ void Pipeline::run(std::int64_t tick) {
   }
   safety_.write(period_, ok, d);
   compensation_.commands(period_, d);
-}
-
-const char* Pipeline::tare() {
-  if (safety_.state() != SafetyState::kStanding || gait_.walking()) {
-    return "the tare is taken of a robot that stands; `gaitctl stop`, then try again";
-  }
-  external_.tare();
-  return nullptr;
-}
-
-void Pipeline::observe_external(double dt) {
-  TickData& d = data_;
-  external_.update(dt, safety_.controlled(), d.gait, d.robot);
-  const dynamics::Vector6d steady = external_.steady();
-  sdk::view(d.external.wrench) = external_.estimate();
-  d.external.tared = external_.tared();
-  d.external.pulled = external_.pulled();
-  sdk::view(d.robot.external_wrench) = steady;
-  sdk::view(d.robot.icp) += walking::lean(steady, model_.total_mass, model_.gravity, d.gait.omega);
 }
 
 bool Pipeline::control(double dt) {
@@ -337,6 +322,12 @@ CommandReply Pipeline::execute(const Command& command) {
     case CommandType::kTare:
       why = tare();
       note = "nobody may touch the robot for the next second at rest";
+      break;
+    case CommandType::kPayload:
+      refusal = payload(command.payload);
+      if (command.payload.action == PayloadAction::kEstimate) {
+        note = "weighed for four seconds at rest; `gaitctl status` shows the load";
+      }
       break;
     case CommandType::kPause:
       refusal = gait_.pause();

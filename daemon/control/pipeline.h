@@ -12,6 +12,7 @@
 #include "gaitd/walking/gait_machine.h"
 #include "gaitd/walking/motions.h"
 #include "gaitd/walking/objectives.h"
+#include "gaitd/walking/payload.h"
 
 namespace gaitd::daemon {
 
@@ -56,6 +57,9 @@ class Pipeline {
   // nullptr, or why not.
   const char* tare();
   void observe_external(double dt);
+  void update_payload(double dt);
+  bool stands() const;
+  walking::Refusal payload(const PayloadCommand& command);
   bool control(double dt);
 
   const GaitdModel model_;
@@ -65,6 +69,7 @@ class Pipeline {
   LayerChain layers_;
   walking::GaitMachine gait_;
   walking::ExternalWrench external_;
+  walking::Payload payload_;
   walking::ObjectiveBuilder objectives_;
   walking::Motions motions_;
   Safety safety_;

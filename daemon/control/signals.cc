@@ -7,6 +7,7 @@
 #include <string>
 
 #include "daemon/host/layers.h"
+#include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/views.h"
 
 namespace gaitd::daemon {
@@ -17,6 +18,7 @@ using Kind = SignalDescription::Kind;
 
 constexpr const char* kSides[] = {"left", "right"};
 constexpr const char* kAxes[] = {"x", "y", "z"};
+constexpr const char* kSlots[GAITD_MAX_LOADS] = {"0", "1", "2", "3"};
 
 // Two visitors walk the same enumeration below: one writes down the names, the other the values.
 // A name comes in parts, so that recording does not have to put any together.
@@ -131,6 +133,20 @@ void visit_balance(V& v, const TickData& d) {
   axes(v, d.external.wrench, 3, "N m", "external/moment/");
   v.boolean(d.external.tared, "external/tared");
   v.boolean(d.external.pulled, "external/pulled");
+  v.real(d.external.load, "N", "external/load");
+  v.real(sdk::mass_of(d.loads), "kg", "payload/mass");
+  v.boolean(d.payload.estimating, "payload/estimating");
+  v.word(static_cast<int>(d.payload.outcome),
+         {"none", "found", "nothing", "moved", "pulled", "too much"}, "payload/outcome");
+  v.integer(d.payload.found.mass > 0.0 ? d.payload.found.body : -1, "payload/weighed");
+  axes(v, d.payload.uncertainty, 3, "m", "payload/uncertainty/");
+  for (int i = 0; i < GAITD_MAX_LOADS; ++i) {
+    const GaitdLoad& load = d.loads.loads[i];
+    const bool is = i < d.loads.count;
+    v.integer(is ? load.body : -1, "payload/", kSlots[i], "/body");
+    v.real(is ? load.mass : 0.0, "kg", "payload/", kSlots[i], "/mass");
+    axes(v, load.com, 3, "m", "payload/", kSlots[i], "/com/");
+  }
   pose(v, d.robot.pelvis_position, d.robot.pelvis_orientation, "pelvis/");
   const Eigen::Quaterniond orientation = sdk::quaternion(d.robot.pelvis_orientation);
   const Eigen::Vector3d velocity = orientation * sdk::view(d.robot.pelvis_twist).tail<3>();

@@ -60,12 +60,47 @@ std::string_view state_text(const Pipeline& pipeline, char* buffer, std::size_t 
   return text.view();
 }
 
+const char* outcome_text(int outcome) {
+  constexpr const char* kTexts[] = {
+      "nothing was weighed",
+      "found",
+      "nothing is carried",
+      "the robot did not stand at rest",
+      "something pulls sideways: let go of load and robot",
+      "more than the robot can carry, or too far off",
+  };
+  static_assert(std::size(kTexts) == static_cast<int>(walking::Payload::Outcome::kTooMuch) + 1);
+  return kTexts[std::clamp<int>(outcome, 0, std::size(kTexts) - 1)];
+}
+
 std::string_view dropped_text(const SensorMonitor& monitor, int index, char* buffer,
                               std::size_t size) {
   const SensorMonitor::Suspect& joint = monitor.dropped(index);
   Text text(buffer, size);
   text.add(R"({"dropped":"%s","what":"%s for %.0f ms: damped until the robot is armed again"})",
            joint.sensor, name_of(joint.suspicion), 1e3 * joint.age);
+  return text.view();
+}
+
+std::string_view payload_text(const PayloadData& payload, const char* link, char* buffer,
+                              std::size_t size) {
+  using Outcome = walking::Payload::Outcome;
+  Text text(buffer, size);
+  const double* c = payload.found.com;
+  const double* u = payload.uncertainty;
+  switch (payload.outcome) {
+    case Outcome::kFound:
+      text.add(R"({"payload":"%s","mass":%.3f,"com":[%.4f,%.4f,%.4f],)", link, payload.found.mass,
+               c[0], c[1], c[2]);
+      text.add(R"("uncertainty":[%.3f,%.3f,%.3f]})", u[0], u[1], u[2]);
+      break;
+    case Outcome::kNothing:
+      text.add(R"({"payload":"nothing"})");
+      break;
+    default:
+      text.add(R"({"payload":"not weighed","what":"%s"})",
+               outcome_text(static_cast<int>(payload.outcome)));
+  }
   return text.view();
 }
 

@@ -16,6 +16,12 @@ std::string_view state_text(const Pipeline& pipeline, char* text, std::size_t si
 std::string_view dropped_text(const SensorMonitor& monitor, int joint, char* text,
                               std::size_t size);
 
+// Of an outcome of walking::Payload.
+const char* outcome_text(int outcome);
+// What a load was weighed at, or why it was not.
+std::string_view payload_text(const PayloadData& payload, const char* link, char* text,
+                              std::size_t size);
+
 // How far a hand is from where its motion should have brought it.
 std::string_view hand_text(int hand, const GaitdHandReference& reference, char* text,
                            std::size_t size);

@@ -9,6 +9,7 @@
 #include "gaitd/abi/plugin.h"
 #include "gaitd/walking/commands.h"
 #include "gaitd/walking/leg_configuration.h"
+#include "gaitd/walking/payload.h"
 
 namespace gaitd::daemon {
 
@@ -64,6 +65,16 @@ struct External {
   double wrench[6] = {};  // moment first, about the CoM, W; N m and N
   bool tared = false;
   bool pulled = false;  // steadily: the controller counts on it
+  double load = 0.0;    // N, upwards: of what was put on a standing robot, and is not known yet
+};
+
+// What the robot carries: walking::Payload.
+struct PayloadData {
+  bool estimating = false;
+  walking::Payload::Outcome outcome = walking::Payload::Outcome::kNone;  // of the last estimate
+  bool concluded = false;                                                // in this tick
+  GaitdLoad found{};                                                     // then
+  double uncertainty[3] = {};                                            // m, of found.com
 };
 
 // Everything one tick reads and writes, stage by stage, in the order of the pipeline.
@@ -75,6 +86,8 @@ struct TickData {
   JointMask dropped = 0;     // joints that the robot goes on without: SensorMonitor
   std::uint32_t health = 0;  // GAITD_HEALTH_* that the backend reports
   GaitdRobotState robot{};
+  GaitdLoads loads{};  // that the layers count on
+  PayloadData payload{};
   External external{};
   GaitdGaitState gait{};
   GaitdMotions motions{};

@@ -94,7 +94,8 @@ bool Player::execute(const Event& event, std::string* error) {
   } else if (command->type == CommandType::kSetParameter) {
     command->parameter_index = robot_.parameters().find_row(owner, place);
     if (command->parameter_index >= 0) robot_.pipeline().execute(*command);
-  } else if (command->type != CommandType::kPush && command->type != CommandType::kSwap) {
+  } else if (command->type != CommandType::kPush && command->type != CommandType::kSimLoad &&
+             command->type != CommandType::kSwap) {
     robot_.pipeline().execute(*command);
   }
   return true;

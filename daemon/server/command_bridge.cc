@@ -161,9 +161,27 @@ void CommandBridge::abandon() {
 }
 
 void add_command_methods(Methods* methods, CommandBridge* bridge, CommandParser parser) {
-  for (const char* name :
-       {"arm", "disarm", "reset", "mode", "walk", "drive", "footsteps", "goto", "pause", "resume",
-        "stop", "abort", "pose", "tare", "sim.push", "sim.reset", "joint.test"}) {
+  for (const char* name : {"arm",
+                           "disarm",
+                           "reset",
+                           "mode",
+                           "walk",
+                           "drive",
+                           "footsteps",
+                           "goto",
+                           "pause",
+                           "resume",
+                           "stop",
+                           "abort",
+                           "pose",
+                           "tare",
+                           "payload.set",
+                           "payload.clear",
+                           "payload.estimate",
+                           "sim.push",
+                           "sim.load",
+                           "sim.reset",
+                           "joint.test"}) {
     methods->add_async(
         name, [bridge, parser, method = std::string(name)](const nlohmann::json& params,
                                                            const Caller& caller, Respond respond) {

@@ -41,8 +41,17 @@ Dynamics::Dynamics(const GaitdModel& model) : kinematics_(model), gravity_(model
 void Dynamics::update(const Vector3d& p_WP, const Eigen::Quaterniond& R_WP, const Vector6d& V_P,
                       const Eigen::Ref<const Eigen::VectorXd>& q,
                       const Eigen::Ref<const Eigen::VectorXd>& qd) {
-  factor_valid_ = false;
   kinematics_.update(p_WP, R_WP, V_P, q, qd);
+  update_entries();
+}
+
+void Dynamics::update(const GaitdRobotState& robot) {
+  kinematics_.update(robot);
+  update_entries();
+}
+
+void Dynamics::update_entries() {
+  factor_valid_ = false;
   update_bodies();
   for (int i = joint_count() - 1; i >= 0; --i) update_joint_entries(i);
   update_base_entries();

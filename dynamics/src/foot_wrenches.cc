@@ -7,6 +7,7 @@
 
 #include "gaitd/dynamics/dynamics.h"
 #include "gaitd/sdk/imu_place.h"
+#include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/sensors.h"
 #include "gaitd/sdk/views.h"
 
@@ -36,7 +37,8 @@ Matrix3d inertia_of(const GaitdBody& body) {
 }  // namespace
 
 FootWrenches::FootWrenches(const GaitdModel& model)
-    : model_(model),
+    : own_(model.bodies, model.bodies + model.body_count),
+      model_(model),
       kinematics_(model),
       subtrees_(static_cast<std::size_t>(model.body_count)),
       q_(Eigen::VectorXd::Zero(model.joint_count)),
@@ -65,6 +67,17 @@ FootWrenches::FootWrenches(const GaitdModel& model)
     if (!in_leg_[static_cast<std::size_t>(j)]) mass_matrix_.col(j).setZero();
   }
   for (Vector6d& wrench : wrench_) wrench.setZero();
+}
+
+void FootWrenches::carry(const GaitdLoads& loads) {
+  if (sdk::same(loads, loads_)) return;
+  loads_ = loads;
+  loaded_anew_ = true;
+  for (int b = 0; b < model_.body_count; ++b) {
+    const GaitdLoad* load = sdk::load_on(loads_, b);
+    const GaitdBody& own = own_[static_cast<std::size_t>(b)];
+    model_.bodies[b] = load == nullptr ? own : sdk::loaded(own, *load);
+  }
 }
 
 // The inverse of the covariance of the residuals. Twice low-passed, the second difference of white
@@ -187,6 +200,8 @@ void FootWrenches::update(const Motion& motion, double bandwidth, double dt,
     last_momentum_ = momentum_;
     first_ = residual_ = -expected_;
   }
+  if (loaded_anew_) last_momentum_ = momentum_;
+  loaded_anew_ = false;
   const double share = -std::expm1(-2.0 * M_PI * bandwidth * dt);
   first_ += share * ((momentum_ - last_momentum_) / dt - expected_ - first_);
   residual_ += share * (first_ - residual_);

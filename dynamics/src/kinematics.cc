@@ -6,6 +6,7 @@
 #include <string>
 
 #include "gaitd/dynamics/model_check.h"
+#include "gaitd/sdk/loads.h"
 
 namespace gaitd::dynamics {
 namespace {
@@ -51,15 +52,29 @@ Kinematics::Kinematics(const GaitdModel& model) {
     support_masks_[i + 1] = support_masks_[joint.parent] | (std::uint64_t{1} << i);
   }
   for (int i = 0; i < model.body_count; ++i) {
-    const GaitdBody& from = model.bodies[i];
-    const double* v = from.inertia;
-    masses_[i].mass = from.mass;
-    masses_[i].com_B = Eigen::Map<const Vector3d>(from.com);
-    masses_[i].inertia_B << v[0], v[1], v[2], v[1], v[3], v[4], v[2], v[4], v[5];
-    total_mass_ += from.mass;
+    masses_[i] = MassProperties(model.bodies[i]);
+    total_mass_ += masses_[i].mass;
   }
+  own_.assign(model.bodies, model.bodies + model.body_count);
   update(Vector3d::Zero(), Eigen::Quaterniond::Identity(), Vector6d::Zero(),
          Eigen::VectorXd::Zero(model.joint_count), Eigen::VectorXd::Zero(model.joint_count));
+}
+
+Kinematics::MassProperties::MassProperties(const GaitdBody& body)
+    : mass(body.mass), com_B(body.com) {
+  const double* v = body.inertia;
+  inertia_B << v[0], v[1], v[2], v[1], v[3], v[4], v[2], v[4], v[5];
+}
+
+void Kinematics::carry(const GaitdLoads& loads) {
+  if (sdk::same(loads, loads_)) return;
+  loads_ = loads;
+  total_mass_ = 0.0;
+  for (int i = 0; i < body_count(); ++i) {
+    const GaitdLoad* load = sdk::load_on(loads_, i);
+    masses_[i] = MassProperties(load == nullptr ? own_[i] : sdk::loaded(own_[i], *load));
+    total_mass_ += masses_[i].mass;
+  }
 }
 
 void Kinematics::update(const Vector3d& p_WP, const Eigen::Quaterniond& R_WP, const Vector6d& V_P,
@@ -81,6 +96,13 @@ void Kinematics::update(const Vector3d& p_WP, const Eigen::Quaterniond& R_WP, co
   com_from_O_ = moment / total_mass_;
   com_ = p_WP_ + com_from_O_;
   com_velocity_ = momentum / total_mass_;
+}
+
+void Kinematics::update(const GaitdRobotState& robot) {
+  carry(robot.loads);
+  update(sdk::view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
+         sdk::view(robot.pelvis_twist), sdk::head(robot.joint_position, joint_count()),
+         sdk::head(robot.joint_velocity, joint_count()));
 }
 
 Vector6d Kinematics::centroidal_momentum() const {

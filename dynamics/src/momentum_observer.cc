@@ -17,6 +17,8 @@ void MomentumObserver::update(const Kinematics& robot, double gravity, const Vec
     last_momentum_ = momentum;
     begun_ = true;
   }
+  if (masses_changed_) last_momentum_ = momentum;
+  masses_changed_ = false;
   const double share = -std::expm1(-2.0 * M_PI * bandwidth * dt);
   wrench_ += share * ((momentum - last_momentum_) / dt - known - wrench_);
   last_momentum_ = momentum;

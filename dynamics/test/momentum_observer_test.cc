@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "gaitd/dynamics/dynamics.h"
+#include "gaitd/sdk/loads.h"
 #include "random_model.h"
 
 namespace gaitd::dynamics {
@@ -22,6 +23,41 @@ TEST(CentroidalMomentum, IsThatOfTheDynamics) {
     dynamics.update(s.p_WP, s.R_WP, s.V_P, s.q, s.qd);
     const Vector6d& expected = dynamics.centroidal_momentum();
     EXPECT_LE((kinematics.centroidal_momentum() - expected).norm(), 1e-9 * expected.norm());
+  }
+}
+
+// Of a robot that carries something, and of one that was built so.
+TEST(Loads, AreMassesOfTheirBodies) {
+  Random random(11);
+  for (int k = 0; k < 20; ++k) {
+    const GaitdModel model = make_random_model(random.integer(2, 20), &random);
+    const RandomState s(model.joint_count, &random);
+    GaitdLoads loads{};
+    sdk::put_load({1, 0, 2.5, {0.1, -0.2, 0.3}}, loads);
+    sdk::put_load({model.body_count - 1, 0, 0.7, {-0.4, 0.1, 0.0}}, loads);
+    Dynamics carries(model), built(sdk::loaded(model, loads)), bare(model);
+    carries.carry(loads);
+    for (Dynamics* d : {&carries, &built, &bare}) d->update(s.p_WP, s.R_WP, s.V_P, s.q, s.qd);
+    EXPECT_NEAR(carries.total_mass(), model.total_mass + 3.2, 1e-9);
+    EXPECT_LE((carries.com() - built.com()).norm(), 1e-12);
+    EXPECT_LE((carries.mass_matrix() - built.mass_matrix()).norm(),
+              1e-12 * built.mass_matrix().norm());
+    EXPECT_LE((carries.bias() - built.bias()).norm(), 1e-12 * built.bias().norm());
+    // The added inertia is that of the two points: their kinetic energy is what is new.
+    Eigen::VectorXd v(carries.velocity_size());
+    v << s.V_P, s.qd;
+    double points = 0.0;
+    for (int i = 0; i < loads.count; ++i) {
+      const GaitdLoad& load = loads.loads[i];
+      const Eigen::Vector3d velocity =
+          bare.frame_velocity(load.body, sdk::view(load.com)).tail<3>();
+      points += load.mass * velocity.squaredNorm();
+    }
+    const double added = v.dot((carries.mass_matrix() - bare.mass_matrix()) * v);
+    EXPECT_NEAR(added, points, 1e-9 * points);
+    carries.carry({});
+    carries.update(s.p_WP, s.R_WP, s.V_P, s.q, s.qd);
+    EXPECT_EQ(carries.mass_matrix(), bare.mass_matrix());
   }
 }
 

@@ -14,6 +14,8 @@
   X(GaitdFoot, 448) \
   X(GaitdLeg, 128) \
   X(GaitdCapsule, 80) \
+  X(GaitdLoad, 40) \
+  X(GaitdLoads, 168) \
   X(GaitdModel, 29328) \
   X(GaitdSignalInfo, 24) \
   X(GaitdJointSensor, 64) \
@@ -21,7 +23,7 @@
   X(GaitdFootForceSensor, 88) \
   X(GaitdSensors, 4880) \
   X(GaitdFootState, 240) \
-  X(GaitdRobotState, 1824) \
+  X(GaitdRobotState, 1992) \
   X(GaitdFootTruth, 136) \
   X(GaitdTruth, 1976) \
   X(GaitdPose, 56) \
@@ -48,7 +50,7 @@
   X(GaitdHost, 24) \
   X(GaitdLayerTime, 24) \
   X(GaitdStart, 32) \
-  X(GaitdStateEstimatorInput, 144) \
+  X(GaitdStateEstimatorInput, 152) \
   X(GaitdIcpPlannerInput, 48) \
   X(GaitdStepAdjusterInput, 64) \
   X(GaitdToeOffInput, 64) \
@@ -66,7 +68,7 @@
   X(GaitdInstance, 16) \
   X(GaitdDisturbance, 64) \
   X(GaitdHealth, 152) \
-  X(GaitdBackendVtable, 96) \
+  X(GaitdBackendVtable, 104) \
   X(GaitdBackendInstance, 16)
 
 #define GAITD_ABI_OFFSETS(X) \
@@ -121,6 +123,13 @@
   X(GaitdCapsule, ends, 8) \
   X(GaitdCapsule, radius, 56) \
   X(GaitdCapsule, reserve, 64) \
+  X(GaitdLoad, body, 0) \
+  X(GaitdLoad, reserved, 4) \
+  X(GaitdLoad, mass, 8) \
+  X(GaitdLoad, com, 16) \
+  X(GaitdLoads, count, 0) \
+  X(GaitdLoads, reserved, 4) \
+  X(GaitdLoads, loads, 8) \
   X(GaitdModel, size, 0) \
   X(GaitdModel, body_count, 4) \
   X(GaitdModel, joint_count, 8) \
@@ -198,6 +207,7 @@
   X(GaitdRobotState, feet, 1224) \
   X(GaitdRobotState, pelvis_velocity_covariance, 1704) \
   X(GaitdRobotState, external_wrench, 1776) \
+  X(GaitdRobotState, loads, 1824) \
   X(GaitdFootTruth, force, 0) \
   X(GaitdFootTruth, slip, 24) \
   X(GaitdFootTruth, penetration, 32) \
@@ -430,6 +440,7 @@
   X(GaitdStateEstimatorInput, gait, 80) \
   X(GaitdStateEstimatorInput, commands, 88) \
   X(GaitdStateEstimatorInput, external_wrench, 96) \
+  X(GaitdStateEstimatorInput, loads, 144) \
   X(GaitdIcpPlannerInput, size, 0) \
   X(GaitdIcpPlannerInput, reserved, 4) \
   X(GaitdIcpPlannerInput, time, 8) \
@@ -555,6 +566,7 @@
   X(GaitdBackendVtable, stop, 72) \
   X(GaitdBackendVtable, destroy, 80) \
   X(GaitdBackendVtable, health, 88) \
+  X(GaitdBackendVtable, carry, 96) \
   X(GaitdBackendInstance, self, 0) \
   X(GaitdBackendInstance, vtable, 8)
 /* clang-format on */

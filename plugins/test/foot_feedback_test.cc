@@ -22,9 +22,7 @@ struct Bench {
   Bench() : dynamics(atlas()), feedback(atlas()) {
     robot = testing::standing_state(atlas());
     const int n = atlas().joint_count;
-    dynamics.update(sdk::view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
-                    sdk::view(robot.pelvis_twist), sdk::head(robot.joint_position, n),
-                    sdk::head(robot.joint_velocity, n));
+    dynamics.update(robot);
     for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
       const GaitdFoot& foot = atlas().feet[side];
       for (int i = 0; i < foot.point_count; ++i)

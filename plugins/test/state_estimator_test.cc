@@ -176,6 +176,7 @@ class Bench {
     in.sensors = sensors.get();
     in.gait = &gait;
     in.commands = commands.get();
+    in.loads = &loads;
     if (told_of_pull) sdk::view(in.external_wrench).tail<3>() = pull;
     return estimator.process(in, state);
   }
@@ -213,6 +214,7 @@ class Bench {
   Quaterniond lean = Quaterniond::Identity();  // of all that is simulated, in W
   Vector3d accelerometer_bias = Vector3d::Zero();
   Vector3d pull = Vector3d::Zero();  // N, at the CoM
+  GaitdLoads loads{};
   bool told_of_pull = false;
   int tick = 0;
   std::function<void()> tamper;

@@ -210,6 +210,35 @@ class Robot:
         """Goes on after a pause."""
         return dict(self.call("resume"))
 
+    def payload_estimate(self, link: Optional[str] = None, *, timeout: float = 30.0) -> Dict[str, Any]:
+        """Weighs what a link of the standing robot carries, which takes four seconds; the controller counts on it then.
+
+        link: by default the chest. timeout: s. Gives ``payload`` of the status: the mass and the loads, each with its
+        centre of mass in the frame of its link and the standard deviation of that. Raises :class:`WaitTimeout` with
+        the reason where nothing could be weighed.
+        """
+        began = self.call("payload.estimate", **({} if link is None else {"link": link}))["tick"]
+        end = time.monotonic() + timeout
+        while time.monotonic() < end:
+            status = self.status()
+            payload = status["payload"]
+            if status["tick"] > began and not payload["estimating"]:
+                if payload["outcome"] in ("found", "nothing"):
+                    return dict(payload)
+                raise WaitTimeout("the payload was not weighed: " + payload["what"])
+            time.sleep(_LOOK_PERIOD)
+        raise WaitTimeout(f"the payload was not weighed within {timeout:g} s")
+
+    def payload_set(
+        self, link: str, mass: float, com: Sequence[float] = (0.0, 0.0, 0.0)
+    ) -> Dict[str, Any]:
+        """Says what a link carries, in place of what was known. mass: kg. com: m, in the frame of the link."""
+        return dict(self.call("payload.set", link=link, mass=mass, com=list(com)))
+
+    def payload_clear(self, link: Optional[str] = None) -> Dict[str, Any]:
+        """Says that nothing is carried any more, by ``link`` or by all of them."""
+        return dict(self.call("payload.clear", **({} if link is None else {"link": link})))
+
     def tare(self) -> Dict[str, Any]:
         """Takes what seems to pull at the standing robot for nothing: nobody touches it now."""
         return dict(self.call("tare"))
@@ -223,6 +252,13 @@ class Robot:
         """
         where = {} if point is None else {"point": list(point)}
         return dict(self.call("sim.push", link=link, force=list(force), duration=duration, **where))
+
+    def load(self, link: str, mass: float, com: Sequence[float] = (0.0, 0.0, 0.0)) -> Dict[str, Any]:
+        """Puts a mass (kg) on a link of a simulated robot, in place of what was there; 0: takes it off.
+
+        com: m, in the frame of the link. The controller is not told: see ``payload_set`` and ``payload_estimate``.
+        """
+        return dict(self.call("sim.load", link=link, mass=mass, com=list(com)))
 
     def sim_reset(self) -> Dict[str, Any]:
         """Puts a simulated robot back to the start and arms it."""

@@ -50,6 +50,7 @@ Eigen::Matrix3d matrix(const mjtNum* row_major) {
 
 MujocoPhysics::MujocoPhysics(const GaitdModel& model, const Terrain& terrain, double time_step)
     : model_(model),
+      terrain_(terrain),
       h_(time_step),
       m_(load(mujoco_document(model, terrain, time_step))),
       d_(mj_makeData(m_.get())),
@@ -94,6 +95,13 @@ void MujocoPhysics::place(const State& state) {
   touches_.clear();
   keep_touches();
   rest_on_touches();
+}
+
+// Of the same structure: the data of the simulation stay as they are.
+void MujocoPhysics::change_masses(const GaitdModel& model) {
+  model_ = model;
+  m_.reset(load(mujoco_document(model, terrain_, h_)));
+  update_positions();
 }
 
 // Where everything is and what touches, for the positions and rates in mjData.

@@ -23,6 +23,8 @@ class MujocoPhysics : public Physics {
 
   void place(const State& state) override;
   bool step(std::span<const BodyForce> forces, Drives* drives) override;
+  bool can_change_masses() const override { return true; }
+  void change_masses(const GaitdModel& model) override;
   const State& state() const override { return state_; }
   Bodies bodies() const override { return motions_; }
   std::span<const Touch> touches() const override { return touches_; }
@@ -48,6 +50,7 @@ class MujocoPhysics : public Physics {
   static constexpr int kMaxSolves = 5;
 
   GaitdModel model_;
+  const Terrain terrain_;
   double h_;  // s
   std::unique_ptr<mjModel, DeleteModel> m_;
   std::unique_ptr<mjData, DeleteData> d_;

@@ -117,6 +117,8 @@ Multibody::Multibody(const GaitdModel& model) : impl_(std::make_unique<Impl>()) 
 }
 
 Multibody::~Multibody() = default;
+Multibody::Multibody(Multibody&&) noexcept = default;
+Multibody& Multibody::operator=(Multibody&&) noexcept = default;
 
 int Multibody::body_count() const { return static_cast<int>(impl_->bodies.size()); }
 

@@ -17,8 +17,8 @@ class Multibody {
   // Throws std::invalid_argument if Simbody refuses a body (say an unphysical inertia).
   explicit Multibody(const GaitdModel& model);
   ~Multibody();
-  Multibody(const Multibody&) = delete;
-  Multibody& operator=(const Multibody&) = delete;
+  Multibody(Multibody&&) noexcept;
+  Multibody& operator=(Multibody&&) noexcept;
 
   int body_count() const;
   int joint_count() const;

@@ -54,6 +54,13 @@ bool SimbodyPhysics::step(std::span<const BodyForce> forces, Drives* drives) {
   return true;
 }
 
+void SimbodyPhysics::change_masses(const GaitdModel& model) {
+  model_ = model;
+  multibody_ = Multibody(model);
+  terms_ = DynamicsTerms(model);
+  move_to(state_);
+}
+
 void SimbodyPhysics::keep_touches() {
   touches_.clear();
   for (size_t i = 0; i < contacts_.contacts().size(); ++i) {

@@ -23,6 +23,8 @@ class SimbodyPhysics : public Physics {
 
   void place(const State& state) override;
   bool step(std::span<const BodyForce> forces, Drives* drives) override;
+  bool can_change_masses() const override { return true; }
+  void change_masses(const GaitdModel& model) override;
   const State& state() const override { return state_; }
   Bodies bodies() const override { return multibody_.bodies(); }
   std::span<const Touch> touches() const override { return touches_; }

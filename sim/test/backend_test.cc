@@ -144,6 +144,10 @@ TEST(SimbodyBackend, CommandsThatCannotBeAreRefused) {
   nowhere.body = 99;
   nowhere.duration = 1;
   EXPECT_EQ(backend.call().disturb(backend.self(), &nowhere), GAITD_INVALID_ARGUMENT);
+  const GaitdLoad less{0, 0, -1.0, {}};
+  EXPECT_EQ(backend.call().carry(backend.self(), &less), GAITD_INVALID_ARGUMENT);
+  const GaitdLoad far{0, 0, 1.0, {NAN, 0.0, 0.0}};
+  EXPECT_EQ(backend.call().carry(backend.self(), &far), GAITD_INVALID_ARGUMENT);
 }
 
 TEST(SimbodyBackend, RealtimePlantAdvancesExactlyOnePeriodPerWrite) {
@@ -187,6 +191,7 @@ TEST(SimbodyBackend, RealtimeAndLockstepGiveTheSameBits) {
   push.body = model.chest_body;
   push.force[1] = 200;
   push.duration = 0.05;
+  const GaitdLoad load{model.chest_body, 0, 10.0, {0.2, 0.0, 0.3}};
   GaitdTruth truth[2];
   GaitdSensors sensors[2];
   for (const int32_t clock : {GAITD_CLOCK_REALTIME, GAITD_CLOCK_LOCKSTEP}) {
@@ -196,6 +201,7 @@ TEST(SimbodyBackend, RealtimeAndLockstepGiveTheSameBits) {
     sensors[clock] = backend.read();
     ASSERT_EQ(backend.call().disturb(backend.self(), &push), GAITD_OK);
     for (int i = 0; i < 200; ++i) {
+      if (i == 100) ASSERT_EQ(backend.call().carry(backend.self(), &load), GAITD_OK);
       ASSERT_EQ(backend.call().write(backend.self(), &commands), GAITD_OK);
       if (clock == GAITD_CLOCK_LOCKSTEP) {
         ASSERT_EQ(backend.call().advance(backend.self()), GAITD_OK);

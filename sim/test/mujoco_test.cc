@@ -53,6 +53,32 @@ TEST(Mujoco, TheGroundCarriesTheWeightFromTheFirstReadingOn) {
   EXPECT_LT(truth_of(plant).feet[0].penetration, 1e-4);
 }
 
+// Under way, in both engines: the robot keeps its motion, and the ground gets the load.
+TEST(Mujoco, CarriesALoadLikeSimbody) {
+  Config config = block_config();
+  for (const PhysicsFactory& make :
+       {PhysicsFactory(MujocoPhysics::make), PhysicsFactory(SimbodyPhysics::make)}) {
+    Plant plant(block_model(), config, 0.001, make);
+    ASSERT_TRUE(plant.can_carry());
+    ASSERT_TRUE(test::run(&plant, 0.2));
+    const State before = plant.state();
+    ASSERT_TRUE(plant.carry({0, 0, 0.5 * kBlockMass, {0.0, 0.0, 0.0}}));
+    ASSERT_TRUE(test::run(&plant, 0.001));
+    EXPECT_LT((plant.state().p_WB - before.p_WB).norm(), 1e-5);
+    EXPECT_LT((plant.state().R_WB.coeffs() - before.R_WB.coeffs()).norm(), 1e-6);
+    EXPECT_NEAR(plant.model().total_mass, 1.5 * kBlockMass, 1e-9);
+    ASSERT_TRUE(test::run(&plant, 1.0));
+    GaitdSensors sensors;
+    plant.read(&sensors);
+    EXPECT_NEAR(sensors.feet[0].force[2] + sensors.feet[1].force[2], 1.5 * kWeight,
+                0.005 * kWeight);
+    plant.reset();
+    plant.read(&sensors);
+    EXPECT_NEAR(sensors.feet[0].force[2] + sensors.feet[1].force[2], kWeight, 0.01 * kWeight);
+    EXPECT_NEAR(plant.model().total_mass, kBlockMass, 1e-9);
+  }
+}
+
 TEST(Mujoco, SticksBelowTheFrictionConeWithoutCreepingAndSlidesAboveIt) {
   MujocoPlant plant(block_model(), block_config());  // friction 0.8
   ASSERT_TRUE(test::run(&plant, 0.2));

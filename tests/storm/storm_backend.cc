@@ -112,6 +112,7 @@ constexpr GaitdBackendVtable kVtable = {
     stop,
     destroy,
     nullptr,  // always healthy
+    nullptr,  // carries nothing
 };
 
 }  // namespace

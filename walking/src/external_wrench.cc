@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/sensors.h"
 #include "gaitd/sdk/views.h"
 
@@ -25,10 +26,11 @@ constexpr double kLargest = 0.2;      // more is a push: nobody leans against th
 constexpr double kOutstanding = 3.0;  // times the rms of what comes and goes: drives stick and bend
 constexpr double kMemory = 2.0;       // s, of that
 // Of the tare.
-constexpr double kRest = 0.05;     // sqrt(g h), of the CoM; robots sway
-constexpr double kLoaded = 0.9;    // weights, on the feet: it does not hang on a hoist
-constexpr double kSettle = 0.3;    // s of rest before it
-constexpr double kTareTime = 1.0;  // s, of which it is the mean
+constexpr double kRest = 0.05;         // sqrt(g h), of the CoM; robots sway
+constexpr double kLoaded = 0.9;        // weights, on the feet: it does not hang on a hoist
+constexpr double kSettle = 0.3;        // s of rest before it
+constexpr double kTareTime = 1.0;      // s, of which it is the mean
+constexpr double kUnknownLoad = 0.01;  // weights
 
 dynamics::Vector6d turned(double yaw, const dynamics::Vector6d& wrench) {
   const Eigen::Quaterniond turn = sdk::from_yaw(yaw);
@@ -52,28 +54,36 @@ ExternalWrench::ExternalWrench(const GaitdModel& model)
       weight_(model.total_mass * model.gravity),
       scale_(model),
       sensed_(std::all_of(std::begin(model.feet), std::end(model.feet), sdk::has_force_sensor)),
-      kinematics_(model) {}
+      kinematics_(model) {
+  reset();
+}
 
 void ExternalWrench::reset() {
   observer_.reset();
   tared_ = false;
   tare_.setZero();
+  now_.setZero();
   slow_.setZero();
   recent_.setZero();
   time_pulled_ = 0.0;
   usual_ = 0.0;
   believed_ = false;
   share_ = 0.0;
+  time_at_rest_ = 0.0;
+  time_unloaded_ = kSettle;
+  loaded_ = false;
   tare();
 }
 
 void ExternalWrench::tare() {
   waits_ = true;
   sum_.setZero();
-  time_at_rest_ = 0.0;
+  time_taring_ = 0.0;
 }
 
 ExternalWrench::Vector6d ExternalWrench::estimate() const { return turned(heading_, slow_); }
+
+ExternalWrench::Vector6d ExternalWrench::now() const { return turned(heading_, now_); }
 
 // What the estimate is late by after the end of a pull is not counted on.
 ExternalWrench::Vector6d ExternalWrench::steady() const {
@@ -86,9 +96,9 @@ ExternalWrench::Vector6d ExternalWrench::steady() const {
 }
 
 void ExternalWrench::observe(double dt, const GaitdRobotState& robot) {
-  kinematics_.update(view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
-                     view(robot.pelvis_twist), sdk::head(robot.joint_position, model_.joint_count),
-                     sdk::head(robot.joint_velocity, model_.joint_count));
+  if (!sdk::same(robot.loads, known_)) observer_.change_masses();
+  known_ = robot.loads;
+  kinematics_.update(robot);
   Vector6d ground = Vector6d::Zero();
   for (const GaitdFootState& foot : robot.feet) {
     const Eigen::Quaterniond turn = sdk::quaternion(foot.orientation);
@@ -99,23 +109,34 @@ void ExternalWrench::observe(double dt, const GaitdRobotState& robot) {
   observer_.update(kinematics_, model_.gravity, ground, kObserver, dt);
 }
 
-void ExternalWrench::update_tare(double dt, bool controlled, const GaitdGaitState& gait,
-                                 const GaitdRobotState& robot) {
-  if (!waits_) return;
+void ExternalWrench::update_rest(double dt, bool stands, const GaitdRobotState& robot) {
   double load = 0.0;
   for (const GaitdFootState& foot : robot.feet) load += foot.normal_force;
-  const bool rests = controlled && gait.phase == GAITD_PHASE_STAND && load > kLoaded * weight_ &&
-                     view(robot.com_velocity).norm() < kRest * scale_.speed;
-  if (!rests) return tare();
-  time_at_rest_ += dt;
-  if (time_at_rest_ < kSettle) return;
+  const bool rests =
+      stands && load > kLoaded * weight_ && view(robot.com_velocity).norm() < kRest * scale_.speed;
+  time_at_rest_ = rests ? time_at_rest_ + dt : 0.0;
+}
+
+void ExternalWrench::update_tare(double dt) {
+  if (!waits_) return;
+  if (time_at_rest_ <= 0.0) return tare();
+  time_taring_ += dt;
+  if (time_taring_ < kSettle) return;
   sum_ += dt * turned(-heading_, observer_.wrench());
-  if (time_at_rest_ < kSettle + kTareTime) return;
+  if (time_taring_ < kSettle + kTareTime) return;
   tare_ = sum_ / kTareTime;
   tared_ = true;
   waits_ = false;
   slow_.setZero();
   recent_.setZero();
+}
+
+// As soon as it shows: a robot that levels itself by its balance takes a load for a tilt.
+void ExternalWrench::update_unknown_load(double dt, bool stands) {
+  const double force = std::abs(now_[5]);
+  if (force > kUnknownLoad * weight_) time_unloaded_ = 0.0;
+  time_unloaded_ += dt;
+  loaded_ = stands && time_unloaded_ < kSettle;
 }
 
 void ExternalWrench::update_belief(double dt, bool pulls) {
@@ -132,12 +153,15 @@ void ExternalWrench::update(double dt, bool controlled, const GaitdGaitState& ga
   if (!sensed_) return;
   heading_ = sdk::yaw_of(sdk::quaternion(robot.pelvis_orientation));
   observe(dt, robot);
-  update_tare(dt, controlled, gait, robot);
+  const bool stands = controlled && gait.phase == GAITD_PHASE_STAND;
+  update_rest(dt, stands, robot);
+  update_tare(dt);
   if (!tared_) return;
-  const Vector6d now = turned(-heading_, observer_.wrench()) - tare_;
-  if (now.tail<3>().norm() > kLargest * weight_) return update_belief(dt, false);
-  slow_ += low_pass(kEstimate / scale_.time, dt) * (now - slow_);
-  recent_ += low_pass(kRecent / scale_.time, dt) * (now.segment<2>(3) - recent_);
+  now_ = turned(-heading_, observer_.wrench()) - tare_;
+  update_unknown_load(dt, stands);
+  if (now_.tail<3>().norm() > kLargest * weight_) return update_belief(dt, false);
+  slow_ += low_pass(kEstimate / scale_.time, dt) * (now_ - slow_);
+  recent_ += low_pass(kRecent / scale_.time, dt) * (now_.segment<2>(3) - recent_);
   const double change = (recent_ - slow_.segment<2>(3)).squaredNorm();
   if (share_ <= 0.0) usual_ += dt / kMemory * (change - usual_);
   // The offset of a sensor turns with its foot: less than that says nothing.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
 
@@ -100,7 +101,8 @@ void IcpFeedback::update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& 
   view(out.cmp) = cmp;
   view(out.ecmp) = ecmp;
   const double omega = in.gait->omega;
-  view(out.linear_momentum_rate) = model_.total_mass * omega * omega * (com - ecmp);
+  const double mass = sdk::total_mass(model_, in.robot->loads);
+  view(out.linear_momentum_rate) = mass * omega * omega * (com - ecmp);
 }
 
 }  // namespace gaitd::walking

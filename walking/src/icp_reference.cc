@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/external_wrench.h"
 
@@ -31,8 +32,8 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
   const double omega = gait.omega;
   // The first reference is where the robot rests: the CoM, which is far less noisy than the ICP.
   const Eigen::Vector2d at_rest =
-      view(robot.com).head<2>() +
-      lean(view(robot.external_wrench), model_.total_mass, model_.gravity, omega);
+      view(robot.com).head<2>() + lean(view(robot.external_wrench),
+                                       sdk::total_mass(model_, robot.loads), model_.gravity, omega);
 
   trajectory_.build(model_, gait, offsets);
   const bool from_standing = gait.phase == GAITD_PHASE_TRANSFER && gait.trailing_side == GAITD_BOTH;

@@ -191,10 +191,7 @@ Refusal Motions::check_arm(const JointChain& arm, const GaitdMotion& motion,
 // A hand is not refused for being out of reach: it goes as near as it can.
 Refusal Motions::check_hand(const JointChain& arm, const GaitdMotion& motion,
                             const GaitdRobotState& robot, const GaitdTaskReferences& references) {
-  kinematics_.update(sdk::view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
-                     sdk::view(robot.pelvis_twist),
-                     sdk::head(robot.joint_position, model_.joint_count),
-                     sdk::head(robot.joint_velocity, model_.joint_count));
+  kinematics_.update(robot);
   const Eigen::Isometry3d chest = kinematics_.X_WB(model_.chest_body);
   const Eigen::Isometry3d frame =
       motion.frame == GAITD_RELATIVE_TO_WORLD

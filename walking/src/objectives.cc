@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/external_wrench.h"
 #include "gaitd/walking/hip_descent.h"
@@ -116,9 +117,7 @@ void ObjectiveBuilder::reset(const GaitdRobotState& robot, const GaitdGaitState&
 void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                               const GaitdPose& lift_off, const GaitdStepAdjustment& adjustment,
                               const GaitdToeOff& toe_off, GaitdObjectives& out) {
-  kinematics_.update(view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
-                     view(robot.pelvis_twist), sdk::head(robot.joint_position, model_.joint_count),
-                     sdk::head(robot.joint_velocity, model_.joint_count));
+  kinematics_.update(robot);
   out.size = sizeof(out);
   out.task_count = 0;
   out.contact_count = 0;
@@ -148,7 +147,7 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
                                        const GaitdGaitState& gait,
                                        const GaitdStepAdjustment& adjustment,
                                        GaitdObjectives& out) {
-  const double mass = model_.total_mass;
+  const double mass = sdk::total_mass(model_, robot.loads);
   // No higher than on straight legs.
   const LegGeometry& leg = legs_[GAITD_LEFT].geometry();
   const double highest =

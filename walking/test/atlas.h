@@ -28,10 +28,7 @@ inline const GaitdModel& atlas() {
 // What depends on the posture: soles with their twists, centre of mass, ICP for `omega` (1/s).
 inline void fill_kinematics(const GaitdModel& model, double omega, GaitdRobotState& robot) {
   dynamics::Kinematics kinematics(model);
-  kinematics.update(sdk::view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
-                    sdk::view(robot.pelvis_twist),
-                    sdk::head(robot.joint_position, model.joint_count),
-                    sdk::head(robot.joint_velocity, model.joint_count));
+  kinematics.update(robot);
   sdk::view(robot.com) = kinematics.com();
   sdk::view(robot.com_velocity) = kinematics.com_velocity();
   sdk::view(robot.icp) = kinematics.com().head<2>() + kinematics.com_velocity().head<2>() / omega;

@@ -25,7 +25,8 @@ inline constexpr double kTrustDelay = 0.02;
 // s, after which a trusted foot has come to rest, and holds the heading too.
 inline constexpr double kRestDelay = 0.1;
 
-// Somebody pulls at the robot: CoM and CoP do not tell where gravity points.
+// Somebody pulls at the robot, or has put something on it: CoM and CoP do not tell where gravity
+// points.
 inline bool pulled(const GaitdStateEstimatorInput& in) {
   return !sdk::view(in.external_wrench).tail<3>().isZero(0.0);
 }

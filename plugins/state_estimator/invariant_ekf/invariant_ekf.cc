@@ -316,6 +316,8 @@ void InvariantEkf::write(const GaitdStateEstimatorInput& in, GaitdRobotState& ou
 
 GaitdStatus InvariantEkf::process(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
   if (in.sensors->joint_count != model_.joint_count) return GAITD_INVALID_ARGUMENT;
+  kinematics_.carry(*in.loads);
+  if (ground_) ground_->carry(*in.loads);
   const bool complete = read_joints(in, out);
   const bool ready = complete && sdk::first_usable_imu(model_, *in.sensors) >= 0;
   if (!initialised_ && !ready) {

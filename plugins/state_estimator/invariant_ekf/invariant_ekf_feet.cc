@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/sensors.h"
 #include "invariant_ekf.h"
 
@@ -128,7 +129,7 @@ void InvariantEkf::observe_balance(const GaitdStateEstimatorInput& in,
   }
   if (load < kBalancedLoad * weight_) return;
   const Eigen::Vector3d line = (kinematics_.com() - loaded / load).normalized();
-  const Eigen::Vector3d balanced = line.dot(force) / model_.total_mass * line;
+  const Eigen::Vector3d balanced = line.dot(force) / sdk::total_mass(model_, *in.loads) * line;
   // A push is in it too.
   const Eigen::Vector3d error = specific_force_ - balanced - filter_.accelerometer_bias;
   const bool standing = in.gait->phase == GAITD_PHASE_STAND;

@@ -334,6 +334,8 @@ void KinematicInertial::write(const GaitdStateEstimatorInput& in, GaitdRobotStat
 
 GaitdStatus KinematicInertial::process(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
   if (in.sensors->joint_count != model_.joint_count) return GAITD_INVALID_ARGUMENT;
+  kinematics_.carry(*in.loads);
+  if (ground_) ground_->carry(*in.loads);
   const double dt = in.time.period;
   if (!initialised_ && !complete(*in.sensors)) {
     out.valid = 0;  // nothing to begin with

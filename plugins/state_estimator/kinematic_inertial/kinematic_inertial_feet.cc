@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/sensors.h"
 #include "kinematic_inertial.h"
 
@@ -97,7 +98,8 @@ void KinematicInertial::observe_bias(const GaitdStateEstimatorInput& in,
   }
   if (total < kBalancedShare * weight_) return;  // in flight, or hanging
   const Eigen::Vector3d arm = kinematics_.com() - cop / total;
-  const Eigen::Vector3d balanced = force.dot(arm) / arm.squaredNorm() / model_.total_mass * arm;
+  const double mass = sdk::total_mass(model_, *in.loads);
+  const Eigen::Vector3d balanced = force.dot(arm) / arm.squaredNorm() / mass * arm;
   // The difference of a noisy rate over one tick would be cut off below, and no longer average out.
   const Eigen::Vector3d turning = kShakingPole * (about_ - about_slow_);
   Eigen::Vector3d error = specific_force_ - orientation_.conjugate() * (balanced + turning);

@@ -48,10 +48,7 @@ GaitdStatus TrajectoryPlayer::process(const GaitdTaskSourceInput& in, GaitdTaskR
                   [](const GaitdMotion& motion) { return motion.kind == GAITD_MOTION_HAND; });
   if (hands) {
     const GaitdRobotState& robot = *in.robot;
-    kinematics_.update(view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
-                       view(robot.pelvis_twist),
-                       sdk::head(robot.joint_position, model_.joint_count),
-                       sdk::head(robot.joint_velocity, model_.joint_count));
+    kinematics_.update(robot);
   }
   for (int part = 0; part < GAITD_PART_COUNT; ++part) {
     advance(part, in.motions->parts[part], in.time.period);

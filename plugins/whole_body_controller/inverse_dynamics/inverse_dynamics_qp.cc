@@ -82,9 +82,7 @@ bool InverseDynamicsQp::stands(const GaitdObjectives& objectives, int side) {
 
 void InverseDynamicsQp::begin(const GaitdRobotState& robot, const GaitdObjectives& objectives,
                               std::uint32_t mask, const Limits& limits) {
-  dynamics_.update(view(robot.pelvis_position), sdk::quaternion(robot.pelvis_orientation),
-                   view(robot.pelvis_twist), sdk::head(robot.joint_position, joints_),
-                   sdk::head(robot.joint_velocity, joints_));
+  dynamics_.update(robot);
   momentum_mask_ = mask;
   limits_ = limits;
   for (int i = 0; i < joints_; ++i) {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
+#include "gaitd/sdk/loads.h"
 #include "gaitd/sim/model_error.h"
 #include "gaitd/sim/start_state.h"
 #include "gaitd/sim/terrain.h"
@@ -29,7 +31,8 @@ constexpr double kDeepestStart = 0.02;  // m
 
 Plant::Plant(const GaitdModel& model, const Config& config, double period,
              const PhysicsFactory& make)
-    : model_(simulated_model(model, config)),
+    : own_(simulated_model(model, config)),
+      model_(own_),
       config_(config),
       period_(period),
       steps_per_period_(static_cast<int>(std::lround(period / config.time_step))),
@@ -56,6 +59,9 @@ void Plant::place(const State& state) {
   tick_ = 0;
   diverged_ = false;
   pushes_.clear();
+  loads_changed_ = loads_.count > 0;
+  loads_ = {};
+  take_loads();
   drives_->reset();
   truth_.reset();
   physics_->place(state);
@@ -72,6 +78,7 @@ double Plant::time() const { return static_cast<double>(tick_) * period_; }
 
 bool Plant::advance(const GaitdJointCommands& commands) {
   if (diverged_) return false;
+  take_loads();
   drives_->command(commands, step_);
   if (hoist_) hoist_->command(commands, period_);
   for (int i = 0; i < steps_per_period_; ++i) {
@@ -133,6 +140,26 @@ bool Plant::disturb(const GaitdDisturbance& disturbance) {
                       Eigen::Vector3d(disturbance.force), 1},
                      disturbance.duration});
   return true;
+}
+
+bool Plant::valid(const GaitdLoad& load, int body_count) {
+  bool good =
+      load.body >= 0 && load.body < body_count && std::isfinite(load.mass) && load.mass >= 0;
+  for (const double x : load.com) good = good && std::isfinite(x);
+  return good;
+}
+
+bool Plant::carry(const GaitdLoad& load) {
+  if (!valid(load, model_.body_count) || !sdk::put_load(load, loads_)) return false;
+  loads_changed_ = true;
+  return true;
+}
+
+void Plant::take_loads() {
+  if (!std::exchange(loads_changed_, false)) return;
+  model_ = sdk::loaded(own_, loads_);
+  truth_.change_masses(model_);
+  physics_->change_masses(model_);
 }
 
 void Plant::read(GaitdSensors* sensors) const { sensors_.read(tick_, time(), sensors); }

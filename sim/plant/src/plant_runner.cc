@@ -12,7 +12,8 @@ PlantRunner::PlantRunner(std::unique_ptr<Plant> plant, const std::vector<SensorF
       clock_(clock),
       host_(host),
       joint_count_(plant_->model().joint_count),
-      body_count_(plant_->model().body_count) {
+      body_count_(plant_->model().body_count),
+      can_carry_(plant_->can_carry()) {
   sem_init(&wake_, 0, 0);
   last_command_.size = sizeof(last_command_);
   last_command_.joint_count = joint_count_;
@@ -46,6 +47,9 @@ void PlantRunner::reset() {
   while (commands_.pop(&command_)) {
   }
   while (pushes_.pop(&push)) {
+  }
+  GaitdLoad load;
+  while (loads_.pop(&load)) {
   }
   last_command_ = GaitdJointCommands{};
   last_command_.size = sizeof(last_command_);
@@ -111,6 +115,13 @@ GaitdStatus PlantRunner::disturb(const GaitdDisturbance& disturbance) {
   return pushes_.push(disturbance) ? GAITD_OK : GAITD_NOT_READY;
 }
 
+GaitdStatus PlantRunner::carry(const GaitdLoad& load) {
+  if (!can_carry_) return GAITD_NOT_SUPPORTED;
+  if (lockstep()) return plant_->carry(load) ? GAITD_OK : GAITD_INVALID_ARGUMENT;
+  if (!Plant::valid(load, body_count_)) return GAITD_INVALID_ARGUMENT;
+  return loads_.push(load) ? GAITD_OK : GAITD_NOT_READY;
+}
+
 void PlantRunner::run() {
   for (;;) {
     while (sem_wait(&wake_) != 0) {
@@ -123,6 +134,8 @@ void PlantRunner::run() {
 void PlantRunner::run_one_period() {
   GaitdDisturbance push;
   while (pushes_.pop(&push)) plant_->disturb(push);
+  GaitdLoad load;
+  while (loads_.pop(&load)) plant_->carry(load);
   if (plant_->advance(command_)) {
     publish();
     return;

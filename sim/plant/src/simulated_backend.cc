@@ -46,6 +46,8 @@ GaitdStatus SimulatedBackend::disturb(const GaitdDisturbance& disturbance) {
   return runner_->disturb(disturbance);
 }
 
+GaitdStatus SimulatedBackend::carry(const GaitdLoad& load) { return runner_->carry(load); }
+
 GaitdStatus SimulatedBackend::reset() {
   runner_->reset();
   return GAITD_OK;

@@ -15,6 +15,8 @@ const kLines = [
   ['ICP error', (s) => typeof s.icp_error === 'number' ? `${number(1000 * s.icp_error, 1)} mm` : '–'],
   ['pull', (s) => !s.external ? 'unknown: no tare yet, or feet without force sensors' :
       `${s.external.force.map((f) => number(f, 0)).join(', ')} N${s.external.pulled ? ', counted on' : ''}`],
+  ['carries', (s) => !s.payload?.loads?.length ? 'nothing' :
+      s.payload.loads.map((l) => `${number(l.mass, 1)} kg on ${l.link}`).join(', ')],
   ['tick', (s) => `${number(s.tick_us, 0)} µs, longest ${number(s.tick_longest_us, 0)} µs`],
   ['overruns', (s) => `${s.overruns ?? '–'}${s.late ? `, last: ${s.late.what}, ${number(s.late.time_us, 0)} µs` : ''}`],
   ['clock', (s) => `${s.clock ?? '–'}, ${number(s.time, 1)} s`],

@@ -35,6 +35,9 @@ class Dynamics {
   // Throws std::invalid_argument like Kinematics.
   explicit Dynamics(const GaitdModel& model);
 
+  // What it carries beside its own masses, from the next update() on.
+  void carry(const GaitdLoads& loads) { kinematics_.carry(loads); }
+
   int joint_count() const { return kinematics_.joint_count(); }
   int body_count() const { return kinematics_.body_count(); }
   int velocity_size() const { return kinematics_.velocity_size(); }  // nv
@@ -43,6 +46,8 @@ class Dynamics {
   void update(const Eigen::Vector3d& p_WP, const Eigen::Quaterniond& R_WP, const Vector6d& V_P,
               const Eigen::Ref<const Eigen::VectorXd>& q,
               const Eigen::Ref<const Eigen::VectorXd>& qd);
+
+  void update(const GaitdRobotState& robot);
 
   const Kinematics& kinematics() const { return kinematics_; }
 
@@ -101,6 +106,7 @@ class Dynamics {
     Eigen::Vector3d moment, force;
   };
 
+  void update_entries();
   void update_bodies();
   void update_base_entries();
   void update_joint_entries(int joint);

@@ -33,9 +33,6 @@ namespace gaitd::dynamics {
 // Joints above the legs count as standing still: the play of a waist looks like a jolt of the
 // trunk, and how the trunk really moves against the pelvis is slow.
 //
-// Joints above the legs count as standing still: the play of a waist looks like a jolt of the
-// trunk, and how the trunk really moves against the pelvis is slow.
-//
 // A foot cannot pull: where that comes out, the other one carries all.
 class FootWrenches {
  public:
@@ -49,6 +46,9 @@ class FootWrenches {
 
   // Throws like Kinematics.
   explicit FootWrenches(const GaitdModel& model);
+
+  // What it carries beside its own masses.
+  void carry(const GaitdLoads& loads);
 
   // Takes positions and torques of the joints from `sensors`; of a joint that says nothing the last
   // ones. `bandwidth`: Hz, of the two first-order low-passes of the residuals. dt: s.
@@ -78,7 +78,10 @@ class FootWrenches {
   void gather_joint(int row, int joint);
   void solve();
 
-  const GaitdModel model_;
+  const std::vector<GaitdBody> own_;
+  GaitdModel model_;  // its bodies with the loads
+  GaitdLoads loads_{};
+  bool loaded_anew_ = false;  // since the last update
   Kinematics kinematics_;
   std::vector<bool> in_leg_;  // by joint
   std::vector<int> rows_;     // joint of each row behind those of the base

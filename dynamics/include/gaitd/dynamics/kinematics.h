@@ -26,6 +26,9 @@ class Kinematics {
   // model is none.
   explicit Kinematics(const GaitdModel& model);
 
+  // What it carries beside its own masses, from the next update() on.
+  void carry(const GaitdLoads& loads);
+
   int joint_count() const { return static_cast<int>(joints_.size()); }
   int body_count() const { return static_cast<int>(bodies_.size()); }
   int velocity_size() const { return kBaseSize + joint_count(); }  // nv
@@ -35,6 +38,9 @@ class Kinematics {
   void update(const Eigen::Vector3d& p_WP, const Eigen::Quaterniond& R_WP, const Vector6d& V_P,
               const Eigen::Ref<const Eigen::VectorXd>& q,
               const Eigen::Ref<const Eigen::VectorXd>& qd);
+
+  // As estimated, with what it carries.
+  void update(const GaitdRobotState& robot);
 
   // ---- Bodies. Body 0 is the pelvis.
   const Eigen::Matrix3d& R_WB(int body) const { return bodies_[body].R; }
@@ -96,6 +102,8 @@ class Kinematics {
   };
 
   struct MassProperties {
+    MassProperties() = default;
+    explicit MassProperties(const GaitdBody& body);
     double mass = 0;
     Eigen::Vector3d com_B;
     Eigen::Matrix3d inertia_B;  // about the centre of mass
@@ -105,7 +113,9 @@ class Kinematics {
   void update_body(int joint, double q, double qd);
 
   std::vector<Joint> joints_;
-  std::vector<MassProperties> masses_;
+  std::vector<GaitdBody> own_;
+  GaitdLoads loads_{};
+  std::vector<MassProperties> masses_;  // with the loads
   std::vector<std::uint64_t> support_masks_;
   std::vector<Body> bodies_;
   std::vector<Axis> axes_;

@@ -19,6 +19,8 @@ class MomentumObserver {
   // of W, N m and N. gravity: m/s^2. bandwidth: Hz, of the first-order low-pass. dt: s.
   void update(const Kinematics& robot, double gravity, const Vector6d& ground, double bandwidth,
               double dt);
+  // The masses of the robot have changed: the momentum jumps, and no force did it.
+  void change_masses() { masses_changed_ = true; }
   // Begins anew, from no wrench.
   void reset() { begun_ = false; }
 
@@ -27,6 +29,7 @@ class MomentumObserver {
 
  private:
   bool begun_ = false;
+  bool masses_changed_ = false;
   Vector6d last_momentum_ = Vector6d::Zero();
   Vector6d wrench_ = Vector6d::Zero();
 };

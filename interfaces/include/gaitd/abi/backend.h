@@ -69,6 +69,9 @@ typedef struct GaitdBackendVtable {
   void (*destroy)(void* self);     /* [main] */
   /* May be null: always healthy. [any, rt included] */
   GaitdStatus (*health)(void* self, GaitdHealth* health);
+  /* May be null. Simulation: what a body carries from the next period on, in place of what it
+   * carried; mass 0: nothing. It moves with the body at once, as if it had done so before. [rt] */
+  GaitdStatus (*carry)(void* self, const GaitdLoad* load);
 } GaitdBackendVtable;
 
 typedef struct GaitdBackendInstance {

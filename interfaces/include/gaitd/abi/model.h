@@ -26,6 +26,7 @@ enum {
   GAITD_MAX_HANDS = 2,
   GAITD_MAX_CAPSULES = 32,
   GAITD_MAX_SEPARATIONS = 24,
+  GAITD_MAX_LOADS = 4,
   GAITD_MAX_MOTION_AXES = 12,
   GAITD_MAX_MOTION_POINTS = 16,
   GAITD_NAME_SIZE = 48
@@ -109,6 +110,21 @@ typedef struct GaitdCapsule {
   double radius;     /* m, > 0 */
   double reserve[2]; /* 0 */
 } GaitdCapsule;
+
+/* What the robot carries and is not in its model: a point mass that moves with a body. */
+typedef struct GaitdLoad {
+  int32_t body;
+  int32_t reserved;
+  double mass;   /* kg, > 0 */
+  double com[3]; /* m, body frame */
+} GaitdLoad;
+
+/* At most one on each body. */
+typedef struct GaitdLoads {
+  int32_t count;
+  int32_t reserved;
+  GaitdLoad loads[GAITD_MAX_LOADS];
+} GaitdLoads;
 
 typedef struct GaitdModel {
   uint32_t size;

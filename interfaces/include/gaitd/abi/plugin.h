@@ -130,7 +130,11 @@ typedef struct GaitdStateEstimatorInput {
   const GaitdSensors* sensors;
   const GaitdGaitState* gait;
   const GaitdJointCommands* commands;
-  double external_wrench[6]; /* of the last tick, steady: GaitdRobotState */
+  /* Of the last tick: that of GaitdRobotState, and the vertical force of a load on a standing robot
+   * that is not in `loads` yet. Where it is not 0, the balance does not tell where gravity points.
+   */
+  double external_wrench[6];
+  const GaitdLoads* loads; /* what the robot carries */
 } GaitdStateEstimatorInput;
 
 typedef struct GaitdIcpPlannerInput {

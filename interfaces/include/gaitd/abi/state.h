@@ -93,6 +93,8 @@ typedef struct GaitdRobotState {
   /* Moment first, about the CoM, W: what pulls at the robot steadily. By the host, who finds it
    * from the rest of this state; 0 while nothing pulls. */
   double external_wrench[6];
+  /* By the host: com, com_velocity and icp are those of the robot with them. */
+  GaitdLoads loads;
 } GaitdRobotState;
 
 typedef struct GaitdFootTruth {

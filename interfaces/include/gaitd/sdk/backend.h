@@ -17,6 +17,7 @@
 //   GaitdStatus health(GaitdHealth& health);       // any thread; without it always healthy
 //   GaitdStatus truth(GaitdTruth& truth);          // real-time, as the next; simulations
 //   GaitdStatus disturb(const GaitdDisturbance&);
+//   GaitdStatus carry(const GaitdLoad&);
 //   GaitdStatus reset();
 // See gaitd/abi/backend.h for what each must do, and docs/backend.md.
 #pragma once
@@ -158,6 +159,15 @@ class BackendAdapter {
     }
   }
 
+  static GaitdStatus carry(void* self, const GaitdLoad* load) {
+    if (load == nullptr) return GAITD_INVALID_ARGUMENT;
+    if constexpr (requires(Backend & b) { b.carry(*load); }) {
+      return with(self, [&](Backend& b) { return b.carry(*load); });
+    } else {
+      return GAITD_NOT_SUPPORTED;
+    }
+  }
+
   static constexpr bool kHasHealth = requires(Backend & b, GaitdHealth& health) {
     b.health(health);
   };
@@ -173,7 +183,8 @@ class BackendAdapter {
                                                  &reset,
                                                  &stop,
                                                  &destroy,
-                                                 kHasHealth ? &health : nullptr};
+                                                 kHasHealth ? &health : nullptr,
+                                                 &carry};
 
   GaitdHost host_;
   std::unique_ptr<Backend> backend_;

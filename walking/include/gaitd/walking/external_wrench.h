@@ -41,22 +41,34 @@ class ExternalWrench {
   void reset();
   // Nobody holds the robot or pulls at it: the tare is the mean of the next second at rest.
   void tare();
-  // robot: as the state estimator gives it. controlled: it stands or walks by itself. dt: s.
+  // robot: as the state estimator gives it, with what it is known to carry. controlled: it stands
+  // or walks by itself. dt: s.
   void update(double dt, bool controlled, const GaitdGaitState& gait, const GaitdRobotState& robot);
 
+  // The feet have force sensors: without them nothing is estimated.
+  bool sensed() const { return sensed_; }
   bool tared() const { return tared_; }
   // A pull is believed in.
   bool pulled() const { return share_ > 0.0; }
   // Moment first, about the CoM, W axes; N m and N. Zero before the tare; pushes are not in it.
   Vector6d estimate() const;
+  // The same of this moment, pushes included.
+  Vector6d now() const;
+  // N, upwards: on a standing robot that has been loaded with something, or relieved of it, and
+  // does not know of it yet. 0: nothing.
+  double unknown_load() const { return loaded_ ? now_[5] : 0.0; }
+  // s, for which a standing robot has hardly moved, its weight on its feet.
+  double time_at_rest() const { return time_at_rest_; }
+  const dynamics::Kinematics& kinematics() const { return kinematics_; }
   // What the controller counts on: across only, as what hangs on a robot moves with it; zero while
   // no pull is believed in.
   Vector6d steady() const;
 
  private:
   void observe(double dt, const GaitdRobotState& robot);
-  void update_tare(double dt, bool controlled, const GaitdGaitState& gait,
-                   const GaitdRobotState& robot);
+  void update_rest(double dt, bool stands, const GaitdRobotState& robot);
+  void update_tare(double dt);
+  void update_unknown_load(double dt, bool stands);
   void update_belief(double dt, bool pulls);
 
   const GaitdModel model_;
@@ -68,10 +80,15 @@ class ExternalWrench {
   double heading_ = 0.0;  // rad, of the pelvis
   bool tared_ = false;
   bool waits_ = true;          // for a tare
+  double time_taring_ = 0.0;   // s
   double time_at_rest_ = 0.0;  // s
+  bool loaded_ = false;
+  double time_unloaded_ = 0.0;  // s
+  GaitdLoads known_{};
   // In the axes of the heading, as sensors and masses turn with the robot.
   Vector6d sum_ = Vector6d::Zero();   // of the tare being taken, N m s and N s
   Vector6d tare_ = Vector6d::Zero();  // N m and N
+  Vector6d now_ = Vector6d::Zero();   // without the tare
   Vector6d slow_ = Vector6d::Zero();
   Eigen::Vector2d recent_ = Eigen::Vector2d::Zero();  // N, the same force across, sooner
   double usual_ = 0.0;        // N^2, of what comes and goes in it while no pull is believed in

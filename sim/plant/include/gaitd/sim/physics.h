@@ -51,6 +51,11 @@ class Physics {
   // as it was: the result is not finite.
   virtual bool step(std::span<const BodyForce> forces, Drives* drives) = 0;
 
+  // The bodies have the masses of `model` from now on, and nothing else changes: they move on as
+  // they do. Only asked for where can_change_masses().
+  virtual bool can_change_masses() const { return false; }
+  virtual void change_masses(const GaitdModel& /*model*/) {}
+
   virtual const State& state() const = 0;
   virtual Bodies bodies() const = 0;                   // in state()
   virtual std::span<const Touch> touches() const = 0;  // of the last step or place()

@@ -27,7 +27,7 @@ class Plant {
   // cannot be simulated.
   Plant(const GaitdModel& model, const Config& config, double period, const PhysicsFactory& make);
 
-  // Back to the start state, time 0 and the first random number. Disturbances end.
+  // Back to the start state, time 0 and the first random number. Disturbances end, loads are gone.
   void reset();
 
   // One control period under `commands`. False: the simulation diverged; only reset() helps.
@@ -39,10 +39,16 @@ class Plant {
   // Is there such a body, are the figures finite and the duration positive?
   static bool valid(const GaitdDisturbance& disturbance, int body_count);
 
+  // What a body carries from the next period on, in place of what it carried; mass 0: nothing.
+  // False: it is not valid(), or too many bodies carry something. Only where can_carry().
+  bool can_carry() const { return physics_->can_change_masses(); }
+  bool carry(const GaitdLoad& load);
+  static bool valid(const GaitdLoad& load, int body_count);
+
   int64_t tick() const { return tick_; }
   double time() const;  // s since the start
   const State& state() const { return physics_->state(); }
-  const GaitdModel& model() const { return model_; }  // as simulated
+  const GaitdModel& model() const { return model_; }  // as simulated, with what it carries
   const Physics& physics() const { return *physics_; }
 
   void read(GaitdSensors* sensors) const;
@@ -60,8 +66,12 @@ class Plant {
 
   bool step();
   void update_forces();
+  void take_loads();
 
-  GaitdModel model_;
+  GaitdModel own_;    // as simulated
+  GaitdModel model_;  // with loads_
+  GaitdLoads loads_{};
+  bool loads_changed_ = false;
   Config config_;
   double period_;
   int steps_per_period_;

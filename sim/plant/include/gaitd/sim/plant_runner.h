@@ -17,9 +17,9 @@
 namespace gaitd::sim {
 
 // In realtime every written command is queued and the plant advances exactly one period for each,
-// so plant time counts control ticks and a late plant loses no command. read(), write(), truth()
-// and disturb() are for the control thread: wait-free, no allocation in realtime. The others are
-// for any one thread while the control thread is in none of those.
+// so plant time counts control ticks and a late plant loses no command. read(), write(), truth(),
+// disturb() and carry() are for the control thread: wait-free, no allocation in realtime. The
+// others are for any one thread while the control thread is in none of those.
 class PlantRunner {
  public:
   // `clock`: GAITD_CLOCK_REALTIME or GAITD_CLOCK_LOCKSTEP. `host` may be null; it hears about a
@@ -46,10 +46,12 @@ class PlantRunner {
   // As of the last read in realtime, of now in lockstep.
   GaitdStatus truth(GaitdTruth* truth);
   GaitdStatus disturb(const GaitdDisturbance& disturbance);
+  GaitdStatus carry(const GaitdLoad& load);
 
  private:
   static constexpr size_t kQueue = 256;
   static constexpr size_t kPushes = 64;
+  static constexpr size_t kLoads = 16;
 
   struct Output {
     GaitdSensors sensors;
@@ -68,6 +70,7 @@ class PlantRunner {
   const GaitdHost* host_;
   int joint_count_;
   int body_count_;
+  bool can_carry_;
   GaitdJointCommands last_command_{};  // lockstep
   bool unread_ = false;                // control thread: front() was not read yet
   std::atomic<bool> diverged_{false};
@@ -75,6 +78,7 @@ class PlantRunner {
 
   SpscRing<GaitdJointCommands, kQueue> commands_;
   SpscRing<GaitdDisturbance, kPushes> pushes_;
+  SpscRing<GaitdLoad, kLoads> loads_;
   GaitdJointCommands command_{};  // plant thread
   sem_t wake_;                    // one post for each command, and one to stop
   std::atomic<bool> stopping_{false};

@@ -32,6 +32,7 @@ class SimulatedBackend {
   GaitdStatus advance();
   GaitdStatus truth(GaitdTruth& truth);
   GaitdStatus disturb(const GaitdDisturbance& disturbance);
+  GaitdStatus carry(const GaitdLoad& load);
   GaitdStatus reset();
   void stop();
 

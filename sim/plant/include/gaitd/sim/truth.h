@@ -24,6 +24,9 @@ class Truth {
 
   void reset();
 
+  // As simulated from now on.
+  void change_masses(const GaitdModel& model) { model_ = model; }
+
   // After a plant step.
   void update(std::span<const Touch> touches);
 
