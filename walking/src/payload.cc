@@ -21,11 +21,11 @@ constexpr double kLeast = 0.003;    // less is an error of the sensors
 constexpr double kMost = 0.3;       // all loads together
 constexpr double kPulled = 0.02;    // weights, across: somebody holds the load, or the robot
 constexpr double kMostShift = 0.1;  // heights of the CoM, by which it may move across
-// Of the place of a load (m): what an estimate tells across, and what is known before, around the
-// centre of mass of the body.
-constexpr double kPlaceError = 0.01;
-constexpr double kPriorError = 0.3;
-constexpr double kSameMass = 0.1;  // share by which two estimates of one load may differ
+// Of an estimate, in weights times the height of the CoM: drives that stick and bend move the CoM
+// against the feet by 3 mm that nobody sees.
+constexpr double kMomentError = 0.003;
+constexpr double kPriorError = 0.3;  // m, of the place around the centre of mass of its body
+constexpr double kSameMass = 0.1;    // share by which two estimates of one load may differ
 
 }  // namespace
 
@@ -164,7 +164,9 @@ Payload::Outcome Payload::conclude(const ExternalWrench& external) {
   const Eigen::Vector2d across = Eigen::Vector2d(moment.y(), -moment.x()) / (load.mass * gravity) +
                                  (robot.com() - robot.p_WB(body_)).head<2>();
   const Eigen::Matrix<double, 2, 3> rows = R_WB.topRows<2>();
-  const double sure = 1.0 / (kPlaceError * kPlaceError);
+  const double error =
+      kMomentError * model_.total_mass * model_.nominal_com_height / load.mass;  // m
+  const double sure = 1.0 / (error * error);
   information_ += sure * rows.transpose() * rows;
   weighted_ += sure * rows.transpose() * across;
   view(load.com) = information_.llt().solve(weighted_);
