@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "cli/param_view.h"
+#include "cli/status_view.h"
 #include "cli/table.h"
 
 namespace gaitd::cli {
@@ -131,8 +132,14 @@ std::string result_text(const std::string& command, const std::string& method, c
            (socket.is_string() ? " by " + socket.get<std::string>() : "") +
            (note.is_string() ? "; " + note.get<std::string>() : "") + "\n";
   }
-  return object_text(result, {"state", "mode", "phase", "support", "step_index", "time", "faults",
-                              "robot", "backend", "clock", "log"});
+  json shown = result;
+  if (shown.contains("payload")) {
+    json& payload = shown["payload"];
+    const bool weighs = payload.is_object() && payload.value("estimating", json()) == true;
+    payload = payload_text(payload) + (weighs ? ", being weighed" : "");
+  }
+  return object_text(shown, {"state", "mode", "phase", "support", "step_index", "time", "faults",
+                             "robot", "backend", "clock", "log"});
 }
 
 std::string json_text(const json& value) {

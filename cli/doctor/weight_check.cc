@@ -46,12 +46,13 @@ Findings check_weight(const LogCase& log) {
   const double mass = model->total_mass + known / static_cast<double>(count);
   const double error = measured / mass - 1.0;
   if (!(std::abs(error) > kNoticed)) return {};
-  Finding finding = log_finding(
-      log, "weight", first,
-      format("the feet carry %.1f kg where the model weighs %.1f kg, %.0f %% %s", measured,
-             mass, 100.0 * std::abs(error), error > 0.0 ? "more" : "less"),
-      "masses in the URDF, a load that it does not know of (gaitctl payload estimate), or the calibration of the foot force "
-      "sensors");
+  Finding finding =
+      log_finding(log, "weight", first,
+                  format("the feet carry %.1f kg where the model weighs %.1f kg, %.0f %% %s",
+                         measured, mass, 100.0 * std::abs(error), error > 0.0 ? "more" : "less"),
+                  "masses in the URDF, a load that it does not know of (gaitctl payload estimate), "
+                  "or the calibration of the foot force "
+                  "sensors");
   if (std::abs(error) < kWrong) finding.severity = Severity::kWarning;
   return {finding};
 }

@@ -39,14 +39,15 @@ Refusal Payload::check(const GaitdLoad& load, const dynamics::Kinematics& robot)
   GaitdLoads loads = loads_;
   if (!sdk::put_load(load, loads)) {
     return refuse(
-        "payload: expected loads on at most %d links, got one more; `gaitctl payload "
+        "payload.set: expected loads on at most %d links, got one more; `gaitctl payload "
         "clear` what is not carried any more",
         GAITD_MAX_LOADS);
   }
   const double most = kMost * model_.total_mass;
   if (sdk::mass_of(loads) > most) {
-    return refuse("payload: expected at most %.1f kg in all, %.2g of the robot's mass, got %.1f kg",
-                  most, kMost, sdk::mass_of(loads));
+    return refuse(
+        "payload.set: expected at most %.1f kg in all, %.2g of the robot's mass, got %.1f kg", most,
+        kMost, sdk::mass_of(loads));
   }
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // from the CoM with what is carried now
   for (int i = 0; i < loads.count; ++i) {
@@ -61,7 +62,7 @@ Refusal Payload::check(const GaitdLoad& load, const dynamics::Kinematics& robot)
   const double far = shift.head<2>().norm();
   if (far > kMostShift * model_.nominal_com_height) {
     return refuse(
-        "payload: expected a load that moves the centre of mass by at most %.2f m across, "
+        "payload.set: expected a load that moves the centre of mass by at most %.2f m across, "
         "got %.2f m; bring it nearer to the robot, or carry less",
         kMostShift * model_.nominal_com_height, far);
   }
@@ -84,15 +85,16 @@ Refusal Payload::set(const GaitdLoad& load, const GaitdRobotState& robot) {
 Refusal Payload::estimate(int body, const ExternalWrench& external, bool stands) {
   if (!external.sensed()) {
     return refuse(
-        "payload: a load is weighed by the force sensors of the feet, and this robot has "
+        "payload.estimate: a load is weighed by the force sensors of the feet, and this robot has "
         "none; say what it carries: `gaitctl payload set`");
   }
   if (!stands) {
-    return refuse("payload: a load is weighed while the robot stands; `gaitctl stop`, then again");
+    return refuse(
+        "payload.estimate: a load is weighed while the robot stands; `gaitctl stop`, then again");
   }
   if (!external.tared()) {
     return refuse(
-        "payload: expected a tare of the robot without its load, got none yet; put the "
+        "payload.estimate: expected a tare of the robot without its load, got none yet; put the "
         "load down, and `gaitctl tare`");
   }
   body_ = body;
