@@ -65,6 +65,7 @@ std::string object_table(const json& list) {
   std::vector<std::vector<std::string>> rows;
   for (const json& row : list) {
     std::vector<std::string> cells;
+    cells.reserve(header.size());
     for (const std::string& key : header) {
       cells.push_back(row.contains(key) ? plain(row[key]) : "");
     }
@@ -123,7 +124,7 @@ std::string plugin_list_text(const json& result) {
 
 std::string result_text(const std::string& command, const std::string& method, const json& result) {
   if (!result.is_object()) return plain(result) + "\n";
-  if (const std::string text = param_text(method, result); !text.empty()) return text;
+  if (std::string text = param_text(method, result); !text.empty()) return text;
   if (method == "plugin.list") return plugin_list_text(result);
   if (result.value("accepted", json()) == true && result.contains("tick")) {
     const json note = result.value("note", json());

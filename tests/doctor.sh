@@ -25,6 +25,7 @@ fall() {
 fall torque 'torque limits, most of all [lr]_leg'
 fall slip 'slid on the ground'
 fall push 'towards -y for 0\.[12]'
+fall load '[23][0-9]\.[0-9] kg were put on'
 fall pull 'towards +y for [1-9]'
 fall cop 'the CoP stood on the edge of the feet'
 fall weight '% more'

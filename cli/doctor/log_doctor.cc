@@ -43,8 +43,8 @@ LogDiagnosis diagnose_log(const daemon::LogReader& log) {
   const LogCase the_case(log);
   LogDiagnosis diagnosis{.ending = the_case.ending(), .findings = {}};
   for (const auto check :
-       {check_faults, check_weight, check_pull, check_timing, check_estimate, check_footsteps,
-        check_solver, check_slip, check_torques, check_joints, check_support}) {
+       {check_faults, check_weight, check_load, check_pull, check_timing, check_estimate,
+        check_footsteps, check_solver, check_slip, check_torques, check_joints, check_support}) {
     for (Finding& finding : check(the_case)) diagnosis.findings.push_back(std::move(finding));
   }
   std::stable_sort(diagnosis.findings.begin(), diagnosis.findings.end(),

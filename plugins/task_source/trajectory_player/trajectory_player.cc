@@ -170,6 +170,10 @@ void TrajectoryPlayer::play_arm(int hand, const GaitdTaskSourceInput& in,
     position_[hand] = p.joints_now.value.head(arm.size());
     velocity_[hand] = p.joints_now.velocity.head(arm.size());
     acceleration_[hand] = p.joints_now.acceleration.head(arm.size());
+  } else if (position_[hand] != arm.nominal()) {  // another variant moved it
+    velocity_[hand] = kPull * (arm.nominal() - position_[hand]);
+    acceleration_[hand].setZero();
+    position_[hand] += in.time.period * velocity_[hand];
   }
   for (int i = 0; i < arm.size(); ++i) {
     const int joint = arm.joint(i);

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "cli/doctor/log_checks.h"
+
+namespace gaitd::doctor {
+namespace {
+
+constexpr double kLeast = 0.8;  // s
+constexpr double kNext = 0.2;   // s: the force is judged once it has settled
+
+}  // namespace
+
+Findings check_load(const LogCase& log) {
+  const daemon::Column* load = log.find("external/load");
+  const GaitdModel* model = log.model();
+  if (load == nullptr || model == nullptr) return {};
+  std::vector<bool> wrong(load->size());
+  for (std::size_t i = 0; i < wrong.size(); ++i) {
+    wrong[i] = log.controlled(i) && (*load)[i] != 0.0;
+  }
+  const auto episode = last_episode(log, wrong, kLeast);
+  if (!episode) return {};
+  double sum = 0.0;
+  std::size_t count = 0;
+  const auto settled = episode->begin + static_cast<std::size_t>(kNext / log.period());
+  for (std::size_t i = settled; i < episode->end; ++i, ++count) sum += (*load)[i];
+  const double mass = -sum / static_cast<double>(count) / model->gravity;
+  Finding finding = log_finding(
+      log, "load", episode->begin,
+      format("%.1f kg were %s the standing robot, which did not know of them for %.1f s",
+             std::abs(mass), mass > 0.0 ? "put on" : "taken off",
+             static_cast<double>(episode->end - episode->begin) * log.period()),
+      "`gaitctl payload estimate` while it stands, or `payload set` and `payload clear`; if "
+      "nothing "
+      "was: `gaitctl tare`");
+  if (std::abs(mass) < 0.1 * model->total_mass) finding.severity = Severity::kWarning;
+  return {finding};
+}
+
+}  // namespace gaitd::doctor
