@@ -19,7 +19,7 @@ constexpr double kTwoSteps = 1.7;  // s
 daemon::Expectations wanted_signals() {
   daemon::Expectations wanted;
   for (const char* glob : {"com/*", "cop/*", "external/*", "foot/*", "footstep/*", "joint/*",
-                           "safety/*", "truth/estimate_error/*", "truth/com/*"}) {
+                           "payload/mass", "safety/*", "truth/estimate_error/*", "truth/com/*"}) {
     wanted.checks.emplace_back().signal = glob;
   }
   return wanted;

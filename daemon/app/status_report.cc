@@ -131,8 +131,8 @@ void add_times(const TickWatch::Report& report, const RealtimeReport& realtime, 
   (*status)["realtime"] = {{"got", realtime.got}, {"degraded", realtime.degraded}};
 }
 
-// What the robot carries, by the names of its links.
-json payload_of(const Telemetry& telemetry, const GaitdModel& model) {
+// What the robot carries.
+json payload_of(const Telemetry& telemetry) {
   std::vector<double> values;
   if (!telemetry.latest(values)) values.clear();
   const auto get = [&](const std::string& name) {
@@ -150,13 +150,13 @@ json payload_of(const Telemetry& telemetry, const GaitdModel& model) {
                   {"loads", json::array()}};
   for (int i = 0; i < GAITD_MAX_LOADS; ++i) {
     const std::string slot = std::to_string(i);
-    const json body = get(slot + "/body");
-    if (!body.is_number() || body < 0 || body >= model.body_count) continue;
+    const json link = get(slot + "/link");
+    if (!link.is_string() || link == "none") continue;
     payload["loads"].push_back(
-        {{"link", model.bodies[body.get<int>()].name},
+        {{"link", link},
          {"mass", get(slot + "/mass")},
          {"com", vector(slot + "/com")},
-         {"uncertainty", body == get("weighed") ? vector("uncertainty") : json()}});
+         {"uncertainty", link == get("weighed") ? vector("uncertainty") : json()}});
   }
   return payload;
 }
@@ -182,7 +182,7 @@ void StatusReport::set_realtime(const RealtimeReport& realtime) {
 
 json StatusReport::status() const {
   json s = status_of(*sources_.telemetry);
-  s["payload"] = payload_of(*sources_.telemetry, *sources_.model);
+  s["payload"] = payload_of(*sources_.telemetry);
   show_estop(*sources_.estop, &s);
   s.update(sources_.constants);
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {

@@ -41,6 +41,14 @@ class Describe {
   void word(int, Words words, Parts... parts) {
     add(Kind::kEnumeration, "", words, parts...);
   }
+  // Of the model; -1: none.
+  template <class... Parts>
+  void link(int, const GaitdModel& model, Parts... parts) {
+    add(Kind::kEnumeration, "", {"none"}, parts...);
+    for (int i = 0; i < model.body_count; ++i) {
+      table_->back().words.emplace_back(model.bodies[i].name);
+    }
+  }
 
  private:
   template <class... Parts>
@@ -68,6 +76,10 @@ class Record {
   template <class... Parts>
   void word(int value, Words, Parts...) {
     put(value);
+  }
+  template <class... Parts>
+  void link(int body, const GaitdModel&, Parts...) {
+    put(body + 1);
   }
 
  private:
@@ -115,7 +127,7 @@ void visit_gait(V& v, const TickData& d) {
 }
 
 template <class V>
-void visit_balance(V& v, const TickData& d) {
+void visit_balance(V& v, const GaitdModel& model, const TickData& d) {
   axes(v, d.robot.com, 3, "m", "com/");
   axes(v, d.robot.com_velocity, 3, "m/s", "com/velocity/");
   v.real(d.objectives.height_target, "m", "com/height_target");
@@ -138,12 +150,12 @@ void visit_balance(V& v, const TickData& d) {
   v.boolean(d.payload.estimating, "payload/estimating");
   v.word(static_cast<int>(d.payload.outcome),
          {"none", "found", "nothing", "moved", "pulled", "too much"}, "payload/outcome");
-  v.integer(d.payload.found.mass > 0.0 ? d.payload.found.body : -1, "payload/weighed");
+  v.link(d.payload.found.mass > 0.0 ? d.payload.found.body : -1, model, "payload/weighed");
   axes(v, d.payload.uncertainty, 3, "m", "payload/uncertainty/");
   for (int i = 0; i < GAITD_MAX_LOADS; ++i) {
     const GaitdLoad& load = d.loads.loads[i];
     const bool is = i < d.loads.count;
-    v.integer(is ? load.body : -1, "payload/", kSlots[i], "/body");
+    v.link(is ? load.body : -1, model, "payload/", kSlots[i], "/link");
     v.real(is ? load.mass : 0.0, "kg", "payload/", kSlots[i], "/mass");
     axes(v, load.com, 3, "m", "payload/", kSlots[i], "/com/");
   }
@@ -294,7 +306,7 @@ void visit_truth(V& v, const GaitdTruth& t) {
 template <class V>
 void visit(V&& v, const GaitdModel& model, const TickData& d, bool truth) {
   visit_gait(v, d);
-  visit_balance(v, d);
+  visit_balance(v, model, d);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) visit_foot(v, d, side);
   visit_layers(v, d);
   visit_tasks(v, model, d);

@@ -49,6 +49,11 @@ export class Robot {
     for (const {joint, signal} of this.joints) joint.setJointValue(log.value(signal, row));
   }
 
+  // The orientation of a link in the world, likewise.
+  turn(link) {
+    return (this.links?.[link] ?? this.pelvis).getWorldQuaternion(new THREE.Quaternion());
+  }
+
   // A point of a link in the world; of the pelvis if there is no such link.
   place(link, point) {
     this.pelvis.updateMatrixWorld(true);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
+import {Loads, PullArrow} from './forces.js';
 import {hull} from './hull.js';
 import {PushArrow} from './push_arrow.js';
 import {chooseRenderer} from './renderer.js';
@@ -112,7 +113,8 @@ export class Scene {
     this.robots = this.log.all.map((log, i) => new Robot(log, i === 0 ? 1 : kGhost));
     this.arrows = this.robots.map((robot) => new PushArrow(robot));
     for (const {pelvis} of this.robots) this.scene.add(pelvis);
-    for (const {group} of this.arrows) this.scene.add(group);
+    this.forces = this.robots.flatMap((robot) => [new Loads(robot), new PullArrow(robot)]);
+    for (const {group} of [...this.arrows, ...this.forces]) this.scene.add(group);
     [{pelvis: this.pelvis, joints: this.joints}] = this.robots;
   }
 
@@ -191,6 +193,7 @@ export class Scene {
     const {log} = this, row = log.row(time);
     for (const robot of this.robots) robot.show(robot.log.row(time));
     for (const arrow of this.arrows) arrow.show(time);
+    for (const force of this.forces) force.show(force.robot.log.row(time));
     const loaded = [];
     for (const side of ['left', 'right']) {
       setPoints(this.footsteps[side].geometry, this.outline(side, 'footstep', row));

@@ -23,3 +23,6 @@ export function lineColor(i, log = 0) {
 
 // Of pushes, everywhere.
 export const kPushColor = dark.matches ? '#ff6fa5' : '#c2185b';
+// Of loads, and of what pulls.
+export const kLoadColor = dark.matches ? '#c9a06a' : '#8d6e3f';
+export const kPullColor = dark.matches ? '#7fd1c7' : '#00796b';

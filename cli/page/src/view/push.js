@@ -109,7 +109,7 @@ export class Push {
     reported.group.visible = false;
     arrow.group.visible = size >= kWeakest;
     if (arrow.group.visible) {
-      arrow.place({push: this.grabbed.link.urdfName, point: this.grabbed.point.toArray(), force});
+      arrow.point({push: this.grabbed.link.urdfName, point: this.grabbed.point.toArray(), force});
     }
     this.label.hidden = false;
     say(this.label, `${this.grabbed.link.urdfName}: ${size.toFixed(0)} N`);
