@@ -85,7 +85,7 @@ TEST(Payload, IsWeighed) {
   EXPECT_NEAR(b.external.unknown_load(), -17.5 * atlas().gravity, 1.0);
   ASSERT_EQ(b.weigh(atlas().chest_body), Payload::Outcome::kFound);
   EXPECT_NEAR(b.payload.found().mass, 17.5, 0.02);
-  EXPECT_LT((view(b.payload.found().com) - place).norm(), 2e-3);
+  EXPECT_LT((view(b.payload.found().com) - place).norm(), 3e-3);
   EXPECT_EQ(b.payload.loads().count, 1);
   b.run_for(1.0);
   EXPECT_EQ(b.external.unknown_load(), 0.0) << "it is known now";
@@ -96,14 +96,14 @@ TEST(Payload, ItsHeightShowsWhenTheTrunkIsTilted) {
   Bench b;
   b.run_for(2.0);
   const Vector3d place(0.2, -0.04, 0.1);
-  sdk::put_load(load_of(10.0, place), b.real);
+  sdk::put_load(load_of(20.0, place), b.real);
   ASSERT_EQ(b.weigh(atlas().chest_body), Payload::Outcome::kFound);
-  EXPECT_GT(b.payload.uncertainty().z(), 0.1);
+  EXPECT_GT(b.payload.uncertainty().z(), 0.25);
   EXPECT_LT((view(b.payload.found().com) - place).head<2>().norm(), 0.02);
   b.pitch(0.3);
   ASSERT_EQ(b.weigh(atlas().chest_body), Payload::Outcome::kFound);
-  EXPECT_LT(b.payload.uncertainty().z(), 0.05);
-  EXPECT_LT((view(b.payload.found().com) - place).norm(), 0.03);
+  EXPECT_LT(b.payload.uncertainty().z(), 0.12);
+  EXPECT_LT((view(b.payload.found().com) - place).norm(), 0.05);
 }
 
 TEST(Payload, WhatWasKnownOfALinkIsReplacedAndOtherLinksKeepTheirs) {
