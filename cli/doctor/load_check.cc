@@ -31,9 +31,8 @@ Findings check_load(const LogCase& log) {
       format("%.1f kg were %s the standing robot, which did not know of them for %.1f s",
              std::abs(mass), mass > 0.0 ? "put on" : "taken off",
              static_cast<double>(episode->end - episode->begin) * log.period()),
-      "`gaitctl payload estimate` while it stands, or `payload set` and `payload clear`; if "
-      "nothing "
-      "was: `gaitctl tare`");
+      "`gaitctl payload estimate` while it stands, or `payload set` and `payload clear`; "
+      "if nothing was: `gaitctl tare`");
   if (std::abs(mass) < 0.1 * model->total_mass) finding.severity = Severity::kWarning;
   return {finding};
 }

@@ -51,8 +51,7 @@ Findings check_weight(const LogCase& log) {
                   format("the feet carry %.1f kg where the model weighs %.1f kg, %.0f %% %s",
                          measured, mass, 100.0 * std::abs(error), error > 0.0 ? "more" : "less"),
                   "masses in the URDF, a load that it does not know of (gaitctl payload estimate), "
-                  "or the calibration of the foot force "
-                  "sensors");
+                  "or the calibration of the foot force sensors");
   if (std::abs(error) < kWrong) finding.severity = Severity::kWarning;
   return {finding};
 }

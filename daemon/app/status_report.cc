@@ -40,6 +40,34 @@ json signal_value(const SignalTable& table, const std::vector<double>& values,
   return nullptr;
 }
 
+// What the robot carries.
+json payload_of(const SignalTable& table, const std::vector<double>& values) {
+  const auto get = [&](const std::string& name) {
+    return signal_value(table, values, "payload/" + name);
+  };
+  const auto vector = [&](const std::string& of) {
+    return json::array({get(of + "/x"), get(of + "/y"), get(of + "/z")});
+  };
+  const int outcome = find_signal(table, "payload/outcome");
+  const bool known = outcome >= 0 && static_cast<std::size_t>(outcome) < values.size();
+  json payload = {{"mass", get("mass")},
+                  {"estimating", get("estimating")},
+                  {"outcome", get("outcome")},
+                  {"what", known ? json(outcome_text(static_cast<int>(values[outcome]))) : json()},
+                  {"loads", json::array()}};
+  for (int i = 0; i < GAITD_MAX_LOADS; ++i) {
+    const std::string slot = std::to_string(i);
+    const json link = get(slot + "/link");
+    if (!link.is_string() || link == "none") continue;
+    payload["loads"].push_back(
+        {{"link", link},
+         {"mass", get(slot + "/mass")},
+         {"com", vector(slot + "/com")},
+         {"uncertainty", link == get("weighed") ? vector("uncertainty") : json()}});
+  }
+  return payload;
+}
+
 // Of the newest tick that telemetry has seen.
 json status_of(const Telemetry& telemetry) {
   std::vector<double> values;
@@ -92,6 +120,7 @@ json status_of(const Telemetry& telemetry) {
                                                             {"moment", vector("external/moment")},
                                                             {"pulled", get("external/pulled")}}
                                                      : json();
+  status["payload"] = payload_of(telemetry.table(), values);
   // Of the last tick, and the longest within a second or two.
   const std::vector<double> longest = telemetry.recent_maxima();
   const auto get_longest = [&](const std::string& name) {
@@ -131,36 +160,6 @@ void add_times(const TickWatch::Report& report, const RealtimeReport& realtime, 
   (*status)["realtime"] = {{"got", realtime.got}, {"degraded", realtime.degraded}};
 }
 
-// What the robot carries.
-json payload_of(const Telemetry& telemetry) {
-  std::vector<double> values;
-  if (!telemetry.latest(values)) values.clear();
-  const auto get = [&](const std::string& name) {
-    return signal_value(telemetry.table(), values, "payload/" + name);
-  };
-  const auto vector = [&](const std::string& of) {
-    return json::array({get(of + "/x"), get(of + "/y"), get(of + "/z")});
-  };
-  const int outcome = find_signal(telemetry.table(), "payload/outcome");
-  const bool known = outcome >= 0 && static_cast<std::size_t>(outcome) < values.size();
-  json payload = {{"mass", get("mass")},
-                  {"estimating", get("estimating")},
-                  {"outcome", get("outcome")},
-                  {"what", known ? json(outcome_text(static_cast<int>(values[outcome]))) : json()},
-                  {"loads", json::array()}};
-  for (int i = 0; i < GAITD_MAX_LOADS; ++i) {
-    const std::string slot = std::to_string(i);
-    const json link = get(slot + "/link");
-    if (!link.is_string() || link == "none") continue;
-    payload["loads"].push_back(
-        {{"link", link},
-         {"mass", get(slot + "/mass")},
-         {"com", vector(slot + "/com")},
-         {"uncertainty", link == get("weighed") ? vector("uncertainty") : json()}});
-  }
-  return payload;
-}
-
 }  // namespace
 
 void show_estop(const EstopFlag& estop, json* status) {
@@ -182,7 +181,6 @@ void StatusReport::set_realtime(const RealtimeReport& realtime) {
 
 json StatusReport::status() const {
   json s = status_of(*sources_.telemetry);
-  s["payload"] = payload_of(*sources_.telemetry);
   show_estop(*sources_.estop, &s);
   s.update(sources_.constants);
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {

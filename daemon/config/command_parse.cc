@@ -24,11 +24,21 @@ constexpr Bounds kDuration = {0.05, 20.0, "s"};
 constexpr Bounds kSolePosition = {-1.0, 1.0, "m"};
 constexpr double kLeastLoad = 0.001;  // kg
 
-struct PlainMethod {
+template <class Meaning>
+struct Method {
   std::string_view name;
-  CommandType type;
+  Meaning means;
 };
-constexpr std::array<PlainMethod, 10> kPlainMethods = {{
+// nullptr: it is none of these.
+template <class Meaning, std::size_t kSize>
+const Meaning* find_method(const std::array<Method<Meaning>, kSize>& methods,
+                           std::string_view name) {
+  const auto found = std::find_if(methods.begin(), methods.end(),
+                                  [&](const Method<Meaning>& m) { return m.name == name; });
+  return found == methods.end() ? nullptr : &found->means;
+}
+
+constexpr std::array<Method<CommandType>, 10> kPlainMethods = {{
     {"arm", CommandType::kArm},
     {"disarm", CommandType::kDisarm},
     {"estop", CommandType::kEstop},
@@ -41,11 +51,7 @@ constexpr std::array<PlainMethod, 10> kPlainMethods = {{
     {"sim.reset", CommandType::kSimReset},
 }};
 
-struct PayloadMethod {
-  std::string_view name;
-  PayloadAction action;
-};
-constexpr std::array<PayloadMethod, 3> kPayloadMethods = {{
+constexpr std::array<Method<PayloadAction>, 3> kPayloadMethods = {{
     {"payload.set", PayloadAction::kSet},
     {"payload.clear", PayloadAction::kClear},
     {"payload.estimate", PayloadAction::kEstimate},
@@ -264,8 +270,8 @@ const std::vector<std::string>& command_methods() {
     std::vector<std::string> names = {"mode",     "walk",      "drive",     "velocity",
                                       "goto",     "footsteps", "replace",   "pose",
                                       "sim.push", "sim.load",  "joint.test"};
-    for (const PayloadMethod& payload : kPayloadMethods) names.emplace_back(payload.name);
-    for (const PlainMethod& plain : kPlainMethods) names.emplace_back(plain.name);
+    for (const auto& payload : kPayloadMethods) names.emplace_back(payload.name);
+    for (const auto& plain : kPlainMethods) names.emplace_back(plain.name);
     std::sort(names.begin(), names.end());
     return names;
   }();
@@ -275,16 +281,13 @@ const std::vector<std::string>& command_methods() {
 std::optional<Command> parse_command(std::string_view method, const NodePtr& params,
                                      const GaitdModel* model, const std::string& path,
                                      Issues* issues) {
-  const auto plain = std::find_if(kPlainMethods.begin(), kPlainMethods.end(),
-                                  [&](const PlainMethod& m) { return m.name == method; });
-  const bool is_plain = plain != kPlainMethods.end();
-  const auto payload = std::find_if(kPayloadMethods.begin(), kPayloadMethods.end(),
-                                    [&](const PayloadMethod& m) { return m.name == method; });
+  const CommandType* plain = find_method(kPlainMethods, method);
+  const PayloadAction* payload = find_method(kPayloadMethods, method);
   Issues found;
-  MapReader map(expanded(method, params, is_plain, path, &found), path, &found);
+  MapReader map(expanded(method, params, plain != nullptr, path, &found), path, &found);
   Command command{};
-  if (is_plain) {
-    command.type = plain->type;
+  if (plain != nullptr) {
+    command.type = *plain;
   } else if (method == "mode") {
     command.type = CommandType::kMode;
     map.require({"mode"});
@@ -307,9 +310,9 @@ std::optional<Command> parse_command(std::string_view method, const NodePtr& par
   } else if (method == "sim.load") {
     command.type = CommandType::kSimLoad;
     read_load(&map, model, 0.0, &command.load);
-  } else if (payload != kPayloadMethods.end()) {
+  } else if (payload != nullptr) {
     command.type = CommandType::kPayload;
-    read_payload(&map, model, payload->action, &command.payload);
+    read_payload(&map, model, *payload, &command.payload);
   } else if (method == "pose") {
     command.type = CommandType::kPose;
     read_pose(&map, model, &command.pose);

@@ -27,6 +27,16 @@ constexpr double kMomentError = 0.003;
 constexpr double kPriorError = 0.3;  // m, of the place around the centre of mass of its body
 constexpr double kSameMass = 0.1;    // share by which two estimates of one load may differ
 
+// kg m, about the CoM of the robot.
+Eigen::Vector3d moment_of(const GaitdLoads& loads, const dynamics::Kinematics& robot) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < loads.count; ++i) {
+    const GaitdLoad& load = loads.loads[i];
+    sum += load.mass * (robot.frame_position(load.body, view(load.com)) - robot.com());
+  }
+  return sum;
+}
+
 }  // namespace
 
 void Payload::reset() {
@@ -49,16 +59,8 @@ Refusal Payload::check(const GaitdLoad& load, const dynamics::Kinematics& robot)
         "payload.set: expected at most %.1f kg in all, %.2g of the robot's mass, got %.1f kg", most,
         kMost, sdk::mass_of(loads));
   }
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // from the CoM with what is carried now
-  for (int i = 0; i < loads.count; ++i) {
-    const GaitdLoad& l = loads.loads[i];
-    shift += l.mass * (robot.frame_position(l.body, view(l.com)) - robot.com());
-  }
-  for (int i = 0; i < loads_.count; ++i) {
-    const GaitdLoad& l = loads_.loads[i];
-    shift -= l.mass * (robot.frame_position(l.body, view(l.com)) - robot.com());
-  }
-  shift /= sdk::total_mass(model_, loads);
+  const Eigen::Vector3d shift =
+      (moment_of(loads, robot) - moment_of(loads_, robot)) / sdk::total_mass(model_, loads);
   const double far = shift.head<2>().norm();
   if (far > kMostShift * model_.nominal_com_height) {
     return refuse(

@@ -16,10 +16,9 @@ constexpr double kFilter = 8.0;     // Hz, of the momentum: arms do not follow t
 constexpr double kRateShare = 0.4;  // of the velocity limits
 constexpr double kMargin = 0.1;     // rad, to the position limits
 constexpr double kLargest = 0.7;    // rad, from the posture
+constexpr double kReturn = 2.0;     // 1/s, with which the arms come back to their posture
 constexpr double kResponse = 30.0;  // 1/s, with which the rates of the arms follow
-// Of the square of the moment of inertia of the arms about the vertical, by which joints of which
-// little would come stay at rest.
-constexpr double kDamping = 0.05;
+constexpr double kLess = 1.05;      // by which the arms take less than their share
 
 }  // namespace
 
@@ -70,13 +69,12 @@ GaitdStatus ArmSwing::process(const GaitdTaskSourceInput& in, GaitdTaskReference
     const double lever = row[dynamics::kBaseSize + swings_[i].joint];
     if (in.motions->parts[swings_[i].part].kind == GAITD_MOTION_NONE) inertia += lever * lever;
   }
-  const double scale =
-      inertia > 0.0 ? p_[P::kShare] * momentum_ / ((1.0 + kDamping) * inertia) : 0.0;
+  const double scale = inertia > 0.0 ? p_[P::kShare] * momentum_ / (kLess * inertia) : 0.0;
   for (int i = 0; i < count_; ++i) {
     Swing& s = swings_[i];
     const bool free = in.motions->parts[s.part].kind == GAITD_MOTION_NONE;
     const double lever = row[dynamics::kBaseSize + s.joint];
-    const double pull = -p_[P::kReturn] * s.offset;
+    const double pull = -kReturn * s.offset;
     const double wanted = std::clamp((free ? -scale * lever : 0.0) + pull, -s.fastest, s.fastest);
     const double before = s.rate;
     s.rate += -std::expm1(-kResponse * dt) * (wanted - s.rate);

@@ -15,15 +15,12 @@ namespace gaitd::plugins {
 // momentum matrix, and the arms come back to their posture meanwhile.
 class ArmSwing {
  public:
-  enum class P { kShare, kReturn, kCount };
+  enum class P { kShare, kCount };
   static constexpr std::array<GaitdParameter, static_cast<int>(P::kCount)> kParameters = {
       sdk::real_parameter(
           "share", "", 0, 1, 0.5,
           "of the yaw momentum of legs and trunk that the arms take; low: the stance "
-          "foot holds it, high: arms swing far"),
-      sdk::real_parameter("return_rate", "1/s", 0.1, 20, 2,
-                          "with which the arms come back to their posture; low: they drift off it, "
-                          "high: they hardly swing")};
+          "foot holds it, high: arms swing far")};
 
   explicit ArmSwing(const GaitdModel& model);
   void set_parameter(int index, double value) { p_.set(index, value); }
