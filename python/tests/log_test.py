@@ -185,12 +185,13 @@ class Columns(unittest.TestCase):
         expected = {name: run.log[name] for name in ("com/x", "gait/phase", "joint/l_leg_kny/torque")}
         generator = np.random.default_rng(1)
         places = [0, 5, len(sound) - 1, len(sound) - 20, *generator.integers(0, len(sound), 40)]
+        cut = range(0, len(places), 3)
         refused = renewed = 0
-        for place in places:
+        for index, place in enumerate(places):
             damaged = bytearray(sound)
             damaged[place] ^= 1 << int(generator.integers(8))
             with open(path + ".columns", "wb") as file:
-                file.write(damaged if place % 3 else damaged[:place])
+                file.write(damaged[:place] if index in cut else damaged)
             log = gaitd.Log(path)
             renewed += log._native.read_anew
             for name, values in expected.items():
@@ -199,7 +200,7 @@ class Columns(unittest.TestCase):
                 except gaitd.LogError as error:
                     self.assertIn("delete them and open the log again", str(error))
                     refused += 1
-        self.assertGreater(renewed, 10)
+        self.assertGreaterEqual(renewed, len(cut))
         # A place among 284 signals is seldom in one that is read: flip all blocks.
         damaged = bytearray(sound)
         for place in range(100, len(sound) * 9 // 10, 64):
