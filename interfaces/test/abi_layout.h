@@ -23,7 +23,8 @@
   X(GaitdFootForceSensor, 88) \
   X(GaitdSensors, 4880) \
   X(GaitdFootState, 240) \
-  X(GaitdRobotState, 1992) \
+  X(GaitdHandhold, 144) \
+  X(GaitdRobotState, 2280) \
   X(GaitdFootTruth, 136) \
   X(GaitdTruth, 1976) \
   X(GaitdPose, 56) \
@@ -44,7 +45,7 @@
   X(GaitdObjectives, 15560) \
   X(GaitdJointCommand, 72) \
   X(GaitdJointCommands, 4656) \
-  X(GaitdWbcInfo, 688) \
+  X(GaitdWbcInfo, 736) \
   X(GaitdParameter, 216) \
   X(GaitdPluginDescriptor, 20928) \
   X(GaitdHost, 24) \
@@ -55,7 +56,7 @@
   X(GaitdStepAdjusterInput, 64) \
   X(GaitdToeOffInput, 64) \
   X(GaitdWholeBodyControllerInput, 64) \
-  X(GaitdWholeBodyControllerOutput, 5352) \
+  X(GaitdWholeBodyControllerOutput, 5400) \
   X(GaitdTaskSourceInput, 56) \
   X(GaitdStateEstimatorState, 208) \
   X(GaitdIcpPlannerState, 64) \
@@ -191,6 +192,16 @@
   X(GaitdFootState, cop, 168) \
   X(GaitdFootState, cop_world, 184) \
   X(GaitdFootState, reserve, 208) \
+  X(GaitdHandhold, state, 0) \
+  X(GaitdHandhold, reserved, 4) \
+  X(GaitdHandhold, position, 8) \
+  X(GaitdHandhold, anchor, 32) \
+  X(GaitdHandhold, normal, 56) \
+  X(GaitdHandhold, friction, 80) \
+  X(GaitdHandhold, force_min, 88) \
+  X(GaitdHandhold, force_max, 96) \
+  X(GaitdHandhold, force, 104) \
+  X(GaitdHandhold, reserve, 128) \
   X(GaitdRobotState, size, 0) \
   X(GaitdRobotState, joint_count, 4) \
   X(GaitdRobotState, valid, 8) \
@@ -208,6 +219,7 @@
   X(GaitdRobotState, pelvis_velocity_covariance, 1704) \
   X(GaitdRobotState, external_wrench, 1776) \
   X(GaitdRobotState, loads, 1824) \
+  X(GaitdRobotState, handholds, 1992) \
   X(GaitdFootTruth, force, 0) \
   X(GaitdFootTruth, slip, 24) \
   X(GaitdFootTruth, penetration, 32) \
@@ -340,7 +352,8 @@
   X(GaitdContactPoint, friction, 80) \
   X(GaitdContactPoint, rho_min, 88) \
   X(GaitdContactPoint, rho_max, 96) \
-  X(GaitdContactPoint, reserve, 104) \
+  X(GaitdContactPoint, weight, 104) \
+  X(GaitdContactPoint, reserve, 112) \
   X(GaitdTask, type, 0) \
   X(GaitdTask, index, 4) \
   X(GaitdTask, row_mask, 8) \
@@ -400,6 +413,7 @@
   X(GaitdWbcInfo, pelvis_acceleration, 32) \
   X(GaitdWbcInfo, joint_acceleration, 80) \
   X(GaitdWbcInfo, foot_wrench, 592) \
+  X(GaitdWbcInfo, hand_force, 688) \
   X(GaitdParameter, name, 0) \
   X(GaitdParameter, unit, 48) \
   X(GaitdParameter, description, 64) \

@@ -108,6 +108,14 @@ class Recomputed {
                                        sdk::view(b.out->info.foot_wrench[side]), applied);
       force -= applied;
     }
+    for (int hand : {GAITD_LEFT, GAITD_RIGHT}) {
+      const GaitdFrame& frame = atlas().hands[hand];
+      VectorXd applied = VectorXd::Zero(6 + n);
+      dynamics::Vector6d wrench = dynamics::Vector6d::Zero();
+      wrench.tail<3>() = sdk::view(b.out->info.hand_force[hand]);
+      dynamics.kinematics().add_wrench(frame.body, sdk::view(frame.origin), wrench, applied);
+      force -= applied;
+    }
     momentum_rate =
         dynamics.centroidal_momentum_matrix() * acceleration + dynamics.centroidal_bias();
   }
@@ -192,6 +200,72 @@ TEST(ComHeightQp, SolutionsArePhysicalInStirredStates) {
     expect_physical(b);
     expect_sound_contacts(b);
   }
+}
+
+// Both hands at walls beside the robot.
+void hold_on(Bench& b, double force) {
+  dynamics::Kinematics kinematics(atlas());
+  kinematics.update(b.walk.robot);
+  for (int hand : {GAITD_LEFT, GAITD_RIGHT}) {
+    GaitdHandhold& handhold = b.walk.robot.handholds[hand];
+    const GaitdFrame& frame = atlas().hands[hand];
+    handhold.state = GAITD_HANDHOLD_HELD;
+    sdk::view(handhold.position) = kinematics.frame_position(frame.body, sdk::view(frame.origin));
+    sdk::view(handhold.anchor) = sdk::view(handhold.position);
+    handhold.normal[1] = hand == GAITD_LEFT ? -1.0 : 1.0;
+    handhold.friction = 0.5;
+    handhold.force_min = 20.0;
+    handhold.force_max = force;
+  }
+  b.make_objectives();
+}
+
+TEST(ComHeightQp, HandsCarryWhatFeetCannot) {
+  // To the left, more than feet can push a robot that keeps upright.
+  double missed[2];
+  for (int held : {0, 1}) {
+    Bench b;
+    ComHeightQp layer(atlas());
+    b.adjustment.linear_momentum_rate[1] = 0.25 * weight();
+    b.make_objectives();
+    if (held != 0) hold_on(b, 400.0);
+    ASSERT_EQ(b.process(layer), GAITD_OK);
+    ASSERT_EQ(b.out->info.status, GAITD_WBC_SOLVED);
+    expect_physical(b);
+    expect_sound_contacts(b);
+    const Recomputed r(b);
+    // What is missed of the momentum, and how fast the trunk would have to turn for the rest.
+    missed[held] = b.out->info.momentum_residual + std::abs(r.momentum_rate[0]);
+    const Vector3d right = sdk::view(b.out->info.hand_force[GAITD_RIGHT]);
+    const Vector3d left = sdk::view(b.out->info.hand_force[GAITD_LEFT]);
+    if (held == 0) {
+      EXPECT_EQ(right.norm() + left.norm(), 0.0);
+      continue;
+    }
+    EXPECT_GT(right.y(), 100.0);       // pushes off the wall on the right
+    EXPECT_LT(left.y(), -19.0 * 0.8);  // presses still
+    EXPECT_GT(left.y(), -100.0);
+    for (const Vector3d& force : {right, left}) {
+      EXPECT_LE(std::abs(force.x()) + std::abs(force.z()), 0.5 * std::abs(force.y()) + 1e-6);
+      EXPECT_LE(std::abs(force.y()), 400.0 + 1e-6);
+    }
+  }
+  EXPECT_LT(missed[1], 0.7 * missed[0]);
+}
+
+TEST(ComHeightQp, AHandThatHoldsStaysWhereItIs) {
+  Bench b;
+  ComHeightQp layer(atlas());
+  hold_on(b, 200.0);
+  ASSERT_EQ(b.process(layer), GAITD_OK);
+  Recomputed r(b);
+  const GaitdFrame& frame = atlas().hands[GAITD_RIGHT];
+  dynamics::Matrix6X jacobian(6, 6 + atlas().joint_count);
+  r.dynamics.frame_jacobian(frame.body, sdk::view(frame.origin), jacobian);
+  const Vector3d acceleration =
+      (jacobian * r.acceleration).tail<3>() +
+      r.dynamics.frame_bias_acceleration(frame.body, sdk::view(frame.origin)).tail<3>();
+  EXPECT_LT(acceleration.norm(), 0.2);
 }
 
 TEST(ComHeightQp, TheMomentumObjectiveIsMetInAllThreeDirections) {

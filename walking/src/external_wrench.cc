@@ -106,6 +106,10 @@ void ExternalWrench::observe(double dt, const GaitdRobotState& robot) {
     ground.tail<3>() += force;
     ground.head<3>() += turn * view(foot.wrench).head<3>() + view(foot.position).cross(force);
   }
+  for (const GaitdHandhold& handhold : robot.handholds) {
+    ground.tail<3>() += view(handhold.force);
+    ground.head<3>() += view(handhold.position).cross(view(handhold.force));
+  }
   observer_.update(kinematics_, model_.gravity, ground, kObserver, dt);
 }
 

@@ -75,7 +75,7 @@ GaitdFootstep GaitMachine::recovery_step(const GaitdRobotState& robot, int side)
 
 bool GaitMachine::recover(double dt, const GaitdRobotState& robot) {
   const double load = robot.feet[GAITD_LEFT].normal_force + robot.feet[GAITD_RIGHT].normal_force;
-  const ConvexPolygon feet = support_polygon(model_, state_);
+  const ConvexPolygon feet = support_region(model_, state_, robot);
   const Eigen::Vector2d icp = sdk::view(robot.icp);
   const bool held = feet.inside_distance(icp) >= -kPastEdge * scale_.length;
   if (held || load < kLoaded * model_.total_mass * model_.gravity) {

@@ -74,15 +74,17 @@ Eigen::Vector2d IcpFeedback::feedback(const GaitdStepAdjusterInput& in) {
          (1.0 + p_[Feedback::kGainOrthogonal] / omega) * across + integral;
 }
 
-ConvexPolygon IcpFeedback::cmp_region(const GaitdGaitState& gait) const {
-  return support_polygon(model_, gait).inset(p_[Feedback::kMargin]);
+ConvexPolygon IcpFeedback::cmp_region(const GaitdGaitState& gait,
+                                      const GaitdRobotState& robot) const {
+  const ConvexPolygon feet = support_polygon(model_, gait).inset(p_[Feedback::kMargin]);
+  return with_handholds(model_, robot, gait.omega, feet);
 }
 
 void IcpFeedback::update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out) {
   update_kappa(in);
   const Eigen::Vector2d com = view(in.robot->com).head<2>();
   Eigen::Vector2d cmp = cmp_of(view(in.plan->ecmp) + feedback(in), com, state_.kappa);
-  const ConvexPolygon region = cmp_region(*in.gait);
+  const ConvexPolygon region = cmp_region(*in.gait, *in.robot);
   if (!region.empty()) {
     const Eigen::Vector2d inside = region.closest_point(cmp);
     const Eigen::Vector2d beyond = cmp - inside;

@@ -26,10 +26,9 @@ constexpr double kLevelRate = 1.0;    // 1/s, with which a walk levels the pelvi
 constexpr double kLandingKnee = 0.5;  // of the knee of walk-bent
 constexpr double kShortestLeg = 0.3;  // of its length
 constexpr double kShortStep = 0.2;    // leg lengths: a longer one ahead has toe-off
-// Of the tasks: the height and the pelvis come to rest without an overshoot, light limbs may swing.
+// Of the tasks: the height and the pelvis come to rest without an overshoot.
 constexpr double kHeightDamping = 1.0;
 constexpr double kTrunkDamping = 0.8;
-constexpr double kPostureDamping = 0.6;
 constexpr double kHeightAcceleration = 0.5;  // g, that the height may ask for: feet keep their grip
 constexpr double kAccelerationWeight = 0.05;  // what no task decides stays where it is
 // While a touchdown is overdue the pelvis may turn so far towards the foot, rad.
@@ -104,6 +103,7 @@ void ObjectiveBuilder::reset(const GaitdRobotState& robot, const GaitdGaitState&
     time_in_toe_off_[side] = 0.0;
   }
   swing_step_ = -1;
+  held_arm_offset_.fill(0.0);
   pelvis_share_ = 1.0;
   mode_ = gait.mode;
   height_.reset(robot.com[2], robot.com_velocity[2]);
@@ -136,8 +136,11 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
   update_rests(dt, robot, gait, toe_off);
   update_contacts(dt, gait, toe_off, out);
   update_momentum(dt, robot, gait, adjustment, out);
-  update_upper_body(dt, robot, gait, out);
+  update_held_arms(dt, robot);
+  update_upper_body(dt, gait, out);
+  update_posture(robot, out);
   update_feet(robot, gait, toe_off, out);
+  add_hands(robot, out);
   update_privileged(dt, robot, gait, out);
   update_impedance(gait, out);
   self_collision_.update(kinematics_, out);
@@ -237,8 +240,8 @@ double ObjectiveBuilder::pelvis_weight(double dt, const GaitdGaitState& gait,
   return full * pelvis_share_;
 }
 
-void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot,
-                                         const GaitdGaitState& gait, GaitdObjectives& out) {
+void ObjectiveBuilder::update_upper_body(double dt, const GaitdGaitState& gait,
+                                         GaitdObjectives& out) {
   // Unwrapped, so that the filter never turns the long way round.
   const double target = heading_target(gait);
   yaw_.update(dt, yaw_.value() + std::remainder(target - yaw_.value(), 2.0 * M_PI), kYawRate);
@@ -260,14 +263,6 @@ void ObjectiveBuilder::update_upper_body(double dt, const GaitdRobotState& robot
                          rate + facing * view(r.chest_turn_rate),
                          parameters_[Objective::kChestStiffness], kTrunkDamping,
                          parameters_[Objective::kChestWeight], out);
-  }
-  const double stiffness = parameters_[Objective::kPostureStiffness];
-  const double rate_gain = damping(stiffness, kPostureDamping);
-  for (int i = 0; i < model_.joint_count; ++i) {
-    out.posture_weight[i] = posture_joint_[i] ? parameters_[Objective::kPostureWeight] : 0.0;
-    out.posture_acceleration[i] = stiffness * (r.joint_position[i] - robot.joint_position[i]) -
-                                  rate_gain * robot.joint_velocity[i];
-    out.posture_acceleration[i] += r.joint_acceleration[i] + rate_gain * r.joint_velocity[i];
   }
 }
 

@@ -107,6 +107,39 @@ ConvexPolygon ConvexPolygon::inset(double margin) const {
   return result;
 }
 
+ConvexPolygon ConvexPolygon::moved(const Eigen::Vector2d& way) const {
+  ConvexPolygon result = *this;
+  for (int i = 0; i < size_; ++i) result.vertices_[i] += way;
+  return result;
+}
+
+ConvexPolygon ConvexPolygon::swept(const Eigen::Vector2d& way) const {
+  ConvexPolygon result;
+  if (size_ < 3) {
+    for (int i = 0; i < size_; ++i) {
+      result.add(vertices_[i]);
+      result.add(vertices_[i] + way);
+    }
+    result.make_hull();
+    return result;
+  }
+  // An edge that looks along the way moves with it; a vertex between one that does and one that
+  // does not is there twice.
+  const auto moves = [&](int edge) {
+    const Eigen::Vector2d& a = vertices_[edge];
+    return cross(way, vertices_[(edge + 1) % size_] - a) > 0.0;
+  };
+  bool before = moves(size_ - 1);
+  for (int i = 0; i < size_; ++i) {
+    const bool after = moves(i);
+    const Eigen::Vector2d& p = vertices_[i];
+    result.add(before ? Eigen::Vector2d(p + way) : p);
+    if (before != after) result.add(after ? Eigen::Vector2d(p + way) : p);
+    before = after;
+  }
+  return result;
+}
+
 Eigen::Vector2d ConvexPolygon::centre() const {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (int i = 0; i < size_; ++i) sum += vertices_[i];

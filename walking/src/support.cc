@@ -3,7 +3,11 @@
 
 #include <algorithm>
 
+#include "gaitd/sdk/contacts.h"
+#include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/external_wrench.h"
+#include "gaitd/walking/handholds.h"
 
 namespace gaitd::walking {
 namespace {
@@ -33,6 +37,31 @@ ConvexPolygon support_polygon(const GaitdModel& model, const GaitdGaitState& gai
   }
   polygon.make_hull();
   return polygon;
+}
+
+ConvexPolygon with_handholds(const GaitdModel& model, const GaitdRobotState& robot, double omega,
+                             const ConvexPolygon& feet) {
+  ConvexPolygon region = feet;
+  for (int hand = 0; hand < GAITD_MAX_HANDS; ++hand) {
+    const GaitdHandhold& handhold = robot.handholds[hand];
+    if (handhold.force_max <= 0.0 || region.empty()) continue;
+    const GaitdContactPoint contact = hand_contact(model, hand, handhold);
+    const Eigen::Vector3d arm = sdk::view(handhold.position) - sdk::view(robot.com);
+    for (int k = 0; k < sdk::kFrictionEdges; ++k) {
+      const Eigen::Vector3d edge = sdk::friction_edge(contact, k);
+      dynamics::Vector6d wrench;
+      wrench << arm.cross(edge), edge;
+      const double mass = sdk::total_mass(model, robot.loads);
+      const Eigen::Vector2d by = -lean(wrench, mass, model.gravity, omega);
+      region = region.moved(contact.rho_min * by).swept((contact.rho_max - contact.rho_min) * by);
+    }
+  }
+  return region;
+}
+
+ConvexPolygon support_region(const GaitdModel& model, const GaitdGaitState& gait,
+                             const GaitdRobotState& robot) {
+  return with_handholds(model, robot, gait.omega, support_polygon(model, gait));
 }
 
 GaitdFoothold whole_sole(const GaitdModel& model, int side, const GaitdPose& pose) {

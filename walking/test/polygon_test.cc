@@ -157,5 +157,35 @@ TEST(ConvexPolygon, PointsOnALineAreASegment) {
   EXPECT_EQ(p.inset(0.1).size(), 2);
 }
 
+TEST(ConvexPolygon, SweptIsTheHullOfBothEnds) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int round = 0; round < 300; ++round) {
+    std::vector<Vector2d> points;
+    for (int i = 0; i < 1 + round % 9; ++i) points.emplace_back(uniform(random), uniform(random));
+    const ConvexPolygon polygon = hull_of(points);
+    const Vector2d way(uniform(random), uniform(random));
+    std::vector<Vector2d> both;
+    for (int i = 0; i < polygon.size(); ++i) {
+      both.push_back(polygon.vertex(i));
+      both.push_back(polygon.vertex(i) + way);
+    }
+    const ConvexPolygon expected = hull_of(both);
+    const ConvexPolygon swept = polygon.swept(way);
+    ASSERT_EQ(swept.size(), expected.size()) << round;
+    for (int i = 0; i < expected.size(); ++i) {
+      EXPECT_LT((swept.closest_point(expected.vertex(i)) - expected.vertex(i)).norm(), 1e-12);
+      EXPECT_GE(expected.inside_distance(swept.vertex(i)), -1e-12);
+    }
+  }
+}
+
+TEST(ConvexPolygon, SweptByNothingIsItself) {
+  const ConvexPolygon p = rectangle(2.0, 1.0);
+  const ConvexPolygon swept = p.swept(Vector2d::Zero());
+  ASSERT_EQ(swept.size(), p.size());
+  for (int i = 0; i < p.size(); ++i) EXPECT_EQ(swept.vertex(i), p.vertex(i));
+}
+
 }  // namespace
 }  // namespace gaitd::walking

@@ -226,7 +226,7 @@ StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
   const Eigen::Vector2d ecmp = growth > 1.0 + 1e-6
                                    ? walking::planned_cmp(planned, view(in.plan->icp_end), growth)
                                    : Eigen::Vector2d(view(in.plan->ecmp));
-  c.cmp_region = feedback_.cmp_region(gait);
+  c.cmp_region = feedback_.cmp_region(gait, *in.robot);
   c.cmp = c.cmp_region.closest_point(walking::cmp_of(ecmp, c.com, c.kappa));
   c.commanded = view(step.pose.position).head<2>();
   c.foot = view(in.robot->feet[gait.next_side].position).head<2>();

@@ -111,10 +111,16 @@ void InverseDynamicsQp::write_figures(const GaitdObjectives& objectives, GaitdWb
   }
   info.momentum_residual = std::sqrt(residual);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) view(info.foot_wrench[side]).setZero();
+  for (auto& force : info.hand_force) view(force).setZero();
   for (int i = 0; i < rho_count_; ++i) {
     const GaitdContactPoint& c = objectives.contacts[i / kEdges];
-    const GaitdFoot& foot = model_.feet[c.side];
     const Eigen::Vector3d force = edges_.col(i) * rho_[i];
+    if (c.side == GAITD_BOTH) {
+      const int hand = c.body == model_.hands[GAITD_LEFT].body ? GAITD_LEFT : GAITD_RIGHT;
+      view(info.hand_force[hand]) += force;
+      continue;
+    }
+    const GaitdFoot& foot = model_.feet[c.side];
     const Eigen::Vector3d arm = dynamics_.frame_position(c.body, view(c.point)) -
                                 dynamics_.frame_position(foot.body, view(foot.sole.origin));
     view(info.foot_wrench[c.side]).head<3>() += arm.cross(force);

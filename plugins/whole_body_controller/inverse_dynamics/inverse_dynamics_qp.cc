@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "gaitd/sdk/contacts.h"
 #include "gaitd/sdk/views.h"
 
 namespace gaitd::plugins {
@@ -103,15 +104,11 @@ void InverseDynamicsQp::add_contacts(const GaitdObjectives& objectives) {
   rho_count_ = kEdges * std::min<int>(objectives.contact_count, GAITD_MAX_CONTACTS);
   for (int i = 0; i < rho_count_ / kEdges; ++i) {
     const GaitdContactPoint& c = objectives.contacts[i];
-    const Eigen::Vector3d normal = view(c.normal);
-    const Eigen::Vector3d tangent = view(c.tangent);
-    const Eigen::Vector3d side = normal.cross(tangent);
     const Eigen::Vector3d arm = dynamics_.frame_position(c.body, view(c.point)) - dynamics_.com();
     dynamics_.frame_jacobian(c.body, view(c.point), jacobian_);
     for (int k = 0; k < kEdges; ++k) {
       const int j = kEdges * i + k;
-      const Eigen::Vector3d across = k % 2 == 0 ? tangent : side;
-      edges_.col(j) = (normal + (k < 2 ? c.friction : -c.friction) * across).normalized();
+      edges_.col(j) = sdk::friction_edge(c, k);
       wrench_.col(j) << arm.cross(edges_.col(j).head<3>()), edges_.col(j);
     }
     contact_.middleCols(kEdges * i, kEdges).noalias() =
@@ -188,9 +185,11 @@ void InverseDynamicsQp::add_costs(const GaitdObjectives& objectives) {
   }
   const double rate = state_.contact_count > 0 ? objectives.rho_rate_weight : 0.0;
   for (int i = 0; i < rho_count_ / kEdges; ++i) {
+    const double weight = objectives.contacts[i].weight;
+    const double of_force = weight > 0.0 ? weight * objectives.rho_weight : objectives.rho_weight;
     for (int k = 0; k < kEdges; ++k) {
       const int j = nv_ + kEdges * i + k;
-      H(j, j) += objectives.rho_weight + rate;
+      H(j, j) += of_force + rate;
       g[j] -= rate * previous_rho(objectives, i, k);
     }
   }

@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 typedef struct GaitdContactPoint {
-  int32_t side;
+  int32_t side; /* of a foot; GAITD_BOTH: it belongs to a hand */
   int32_t body;
   double point[3];   /* m, body frame */
   double normal[3];  /* unit, W */
@@ -20,7 +20,8 @@ typedef struct GaitdContactPoint {
   double friction;
   double rho_min;    /* N, of each basis vector */
   double rho_max;    /* N, of each basis vector; may be 0 while a point is being loaded */
-  double reserve[4]; /* 0 */
+  double weight;     /* of its rho, over rho_weight of the objectives; 0: 1 */
+  double reserve[3]; /* 0 */
 } GaitdContactPoint;
 
 enum { GAITD_TASK_FRAME = 0, GAITD_TASK_JOINT = 1 };
@@ -118,6 +119,7 @@ typedef struct GaitdWbcInfo {
   double pelvis_acceleration[6]; /* pelvis frame, angular first */
   double joint_acceleration[GAITD_MAX_JOINTS];
   double foot_wrench[GAITD_MAX_FEET][6]; /* ground on foot, moment first, about the sole, W axes */
+  double hand_force[GAITD_MAX_HANDS][3]; /* on a hand that holds on to something, W */
 } GaitdWbcInfo;
 
 #ifdef __cplusplus

@@ -74,6 +74,27 @@ typedef struct GaitdFootState {
   double reserve[4];     /* 0 */
 } GaitdFootState;
 
+enum {
+  GAITD_HANDHOLD_NONE = 0,
+  GAITD_HANDHOLD_SOUGHT = 1, /* the hand moves against the normal until something stops it */
+  GAITD_HANDHOLD_HELD = 2,   /* it carries load */
+  GAITD_HANDHOLD_LET_GO = 3  /* it is being unloaded */
+};
+
+/* A hand at something that does not move: a point contact with friction. */
+typedef struct GaitdHandhold {
+  int32_t state;
+  int32_t reserved;
+  double position[3]; /* m, W: of the hand now */
+  double anchor[3];   /* m, W: where it is to be */
+  double normal[3];   /* unit, W: of the surface, towards the robot */
+  double friction;
+  double force_min;  /* N, along the normal */
+  double force_max;  /* N, along the normal, with nothing across */
+  double force[3];   /* N, W, on the hand: as the controller planned in the tick before */
+  double reserve[2]; /* 0 */
+} GaitdHandhold;
+
 typedef struct GaitdRobotState {
   uint32_t size;
   int32_t joint_count;
@@ -95,6 +116,7 @@ typedef struct GaitdRobotState {
   double external_wrench[6];
   /* By the host: com, com_velocity and icp are those of the robot with them. */
   GaitdLoads loads;
+  GaitdHandhold handholds[GAITD_MAX_HANDS]; /* by the host */
 } GaitdRobotState;
 
 typedef struct GaitdFootTruth {

@@ -44,6 +44,15 @@ struct MotionCommand {
   GaitdMotion motion{};
 };
 
+// A hand is to hold on to a surface, or to let go of it.
+struct HandholdCommand {
+  int hand = GAITD_BOTH;  // GAITD_LEFT or GAITD_RIGHT; to let go, also both
+  bool release = false;
+  double normal[3] = {};  // of the surface, towards the robot, axes of its heading; not zero
+  double friction = 0.0;
+  double force = 0.0;  // N, along the normal, that the surface and the arm may be loaded with
+};
+
 // That are made for a velocity at a time.
 inline constexpr int kFootstepsOfDrive = 4;
 

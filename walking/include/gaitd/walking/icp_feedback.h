@@ -78,8 +78,9 @@ class IcpFeedback {
   void update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out);
 
   double kappa() const { return state_.kappa; }
-  // Where the CMP may be without angular momentum: the support polygon less the margin (W, m).
-  ConvexPolygon cmp_region(const GaitdGaitState& gait) const;
+  // Where the CMP may be without angular momentum: the support polygon less the margin, and what
+  // handholds add (W, m).
+  ConvexPolygon cmp_region(const GaitdGaitState& gait, const GaitdRobotState& robot) const;
 
  private:
   void update_kappa(const GaitdStepAdjusterInput& in);

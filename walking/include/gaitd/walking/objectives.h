@@ -66,10 +66,13 @@ class ObjectiveBuilder {
  private:
   void update_contacts(double dt, const GaitdGaitState& gait, const GaitdToeOff& toe_off,
                        GaitdObjectives& out) const;
+  // Contacts and tasks of the hands that hold on.
+  void update_posture(const GaitdRobotState& robot, GaitdObjectives& out) const;
+  void update_held_arms(double dt, const GaitdRobotState& robot);
+  void add_hands(const GaitdRobotState& robot, GaitdObjectives& out) const;
   void update_momentum(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                        const GaitdStepAdjustment& adjustment, GaitdObjectives& out);
-  void update_upper_body(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
-                         GaitdObjectives& out);
+  void update_upper_body(double dt, const GaitdGaitState& gait, GaitdObjectives& out);
   void update_feet(const GaitdRobotState& robot, const GaitdGaitState& gait,
                    const GaitdToeOff& toe_off, GaitdObjectives& out);
   void update_rests(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
@@ -140,6 +143,7 @@ class ObjectiveBuilder {
   bool impedance_given_ = false;
   std::array<PerJoint, static_cast<int>(Impedance::kCount)> stiffness_{};
   std::array<PerJoint, static_cast<int>(Impedance::kCount)> damping_{};
+  PerJoint held_arm_offset_{};  // rad, of the posture, of arms whose hands hold on
 };
 
 }  // namespace gaitd::walking

@@ -30,6 +30,11 @@ class ConvexPolygon {
   Eigen::Vector2d closest_point(const Eigen::Vector2d& p) const;
   // The polygon with every edge moved inwards by `margin` (m); its centre when nothing is left.
   ConvexPolygon inset(double margin) const;
+  // All places that the polygon covers on its way along `way` (m): its sum with a segment. Of a
+  // polygon with at most kCapacity - 2 vertices.
+  ConvexPolygon swept(const Eigen::Vector2d& way) const;
+  // Moved by `way` (m).
+  ConvexPolygon moved(const Eigen::Vector2d& way) const;
   // Mean of the vertices.
   Eigen::Vector2d centre() const;
 

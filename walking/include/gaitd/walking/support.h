@@ -14,6 +14,15 @@ void add_foothold(const GaitdFoothold& foothold, const double (&toe_point)[3],
 // Support polygon of the commanded contacts of `gait` (W, m).
 ConvexPolygon support_polygon(const GaitdModel& model, const GaitdGaitState& gait);
 
+// Where the CMP may be: `feet`, which the CoP keeps inside, and what the hands that hold on add.
+// With a hand that pushes by f at p, and no change of angular momentum, the CMP is the CoP less
+// lean() of f (external_wrench.h). W, m.
+ConvexPolygon with_handholds(const GaitdModel& model, const GaitdRobotState& robot, double omega,
+                             const ConvexPolygon& feet);
+// The support polygon with the handholds of `robot`.
+ConvexPolygon support_region(const GaitdModel& model, const GaitdGaitState& gait,
+                             const GaitdRobotState& robot);
+
 // The foothold that a footstep becomes: its own polygon or the whole sole of the model.
 GaitdFoothold foothold_of(const GaitdModel& model, const GaitdFootstep& footstep);
 // A foothold at `pose` with the whole sole.
