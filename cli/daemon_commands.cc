@@ -8,6 +8,7 @@
 
 #include "cli/ask.h"
 #include "cli/failure.h"
+#include "cli/handhold_command.h"
 #include "cli/payload_command.h"
 #include "cli/pose_command.h"
 #include "cli/sim_commands.h"
@@ -105,6 +106,7 @@ void add_daemon_commands(CLI::App* app, Context* context) {
   add_walk(app, context);
   add_steps(app, context);
   add_pose_command(app, context);
+  add_handhold_command(app, context);
   add_payload_command(app, context);
   add_plain(app, context, "pause", "pause", "Pause after the present step; footsteps are kept");
   add_plain(app, context, "resume", "resume", "Go on after a pause");

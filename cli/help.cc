@@ -25,9 +25,9 @@ struct Group {
 
 const std::vector<Group>& groups() {
   static const std::vector<Group> kGroups = {
-      {"Command the robot", {"status",  "watch", "view",   "arm",   "disarm", "estop",  "reset",
-                             "mode",    "walk",  "steps",  "drive", "goto",   "teleop", "pose",
-                             "payload", "pause", "resume", "stop",  "abort",  "tare"}},
+      {"Command the robot", {"status",   "watch",   "view",  "arm",    "disarm", "estop",  "reset",
+                             "mode",     "walk",    "steps", "drive",  "goto",   "teleop", "pose",
+                             "handhold", "payload", "pause", "resume", "stop",   "abort",  "tare"}},
       {"Play scenarios", {"run", "campaign", "compare", "sim"}},
       {"Read logs", {"report", "log", "doctor"}},
       {"Set up", {"robot", "param", "plugin", "joint", "calibrate", "completion"}}};
@@ -54,6 +54,8 @@ const std::map<std::string, const char*>& examples() {
       {"pose chest", "gaitctl pose chest --yaw 0.3 --duration 2"},
       {"pose arm", "gaitctl pose arm left --joint l_arm_elx=1.2 --joint l_arm_shz=0.3"},
       {"pose hand", "gaitctl pose hand left --frame pelvis --x 0.5 --y 0.3 --z 0.2 --duration 2"},
+      {"handhold take", "gaitctl handhold take right --normal 0,1,0 --force 150"},
+      {"handhold release", "gaitctl handhold release right"},
       {"payload estimate", "gaitctl payload estimate --link l_hand"},
       {"payload set", "gaitctl payload set --link utorso --mass 10 --com 0.35,0,0.2"},
       {"payload clear", "gaitctl payload clear"},

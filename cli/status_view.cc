@@ -107,6 +107,17 @@ std::string pull(const json& external) {
 
 }  // namespace
 
+std::string handholds_text(const json& handholds) {
+  std::string words;
+  for (const auto& [hand, handhold] : handholds.items()) {
+    const json state = at(handhold, "state");
+    if (state == "none") continue;
+    words += (words.empty() ? "" : "; ") + hand + " hand, " + text(state) + ", up to " +
+             number(at(handhold, "force_max"), 0) + " N";
+  }
+  return words.empty() ? "nothing" : words;
+}
+
 std::string payload_text(const json& payload) {
   const json loads = at(payload, "loads");
   if (!loads.is_array() || loads.empty()) return "nothing";
@@ -136,6 +147,7 @@ std::vector<std::string> status_screen(const json& status) {
       "pull       " + pull(at(status, "external")),
       "carries    " + payload_text(at(status, "payload")) +
           (at(at(status, "payload"), "estimating") == true ? ", being weighed" : ""),
+      "holds on   " + handholds_text(at(status, "handholds")),
       "pelvis     " + pose(at(status, "pelvis")),
       "log        " + log(at(status, "log")),
       ""};

@@ -116,6 +116,14 @@ json status_of(const Telemetry& telemetry) {
   const auto vector = [&](const std::string& of) {
     return json::array({get(of + "/x"), get(of + "/y"), get(of + "/z")});
   };
+  status["handholds"] = json::object();
+  for (const std::string hand : {"left", "right"}) {
+    const std::string of = "handhold/" + hand;
+    if (get(of + "/state").is_null()) continue;
+    status["handholds"][hand] = {{"state", get(of + "/state")},
+                                 {"force", vector(of + "/force_desired")},
+                                 {"force_max", get(of + "/force_max")}};
+  }
   status["external"] = get("external/tared") == true ? json{{"force", vector("external/force")},
                                                             {"moment", vector("external/moment")},
                                                             {"pulled", get("external/pulled")}}

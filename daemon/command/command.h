@@ -35,6 +35,7 @@ enum class CommandType : std::uint8_t {
   kTare,       // what pulls at the robot now is nothing
   kPayload,    // what the robot carries
   kSimLoad,    // simulation only
+  kHandhold,   // a hand holds on to something, or lets go
 };
 
 enum class PayloadAction : std::uint8_t { kSet, kClear, kEstimate };
@@ -73,6 +74,7 @@ struct Command {
   JointTest joint_test;
   walking::MotionCommand pose;
   PayloadCommand payload;
+  walking::HandholdCommand handhold;
   GaitdLoad load{};  // of the simulation
   GotoTarget target;
   int parameter_index = -1;  // into the rows of LiveParameters

@@ -22,7 +22,8 @@ constexpr int kMaxSteps = 1000;
 constexpr std::int64_t kMaxSession = std::int64_t{1} << 53;  // whole as a double
 constexpr Bounds kDuration = {0.05, 20.0, "s"};
 constexpr Bounds kSolePosition = {-1.0, 1.0, "m"};
-constexpr double kLeastLoad = 0.001;  // kg
+constexpr double kLeastLoad = 0.001;    // kg
+constexpr double kUsualFriction = 0.5;  // of a hand on a surface
 
 template <class Meaning>
 struct Method {
@@ -240,6 +241,20 @@ void read_payload(MapReader* map, const GaitdModel* model, PayloadAction action,
   if (needs_link && model != nullptr && !map->has("link")) payload->load.body = model->chest_body;
 }
 
+void read_handhold(MapReader* map, bool release, walking::HandholdCommand* handhold) {
+  handhold->release = release;
+  handhold->hand = map->choice("hand", kSideNames).value_or(GAITD_BOTH);
+  if (release) return;
+  map->require({"hand", "normal", "force"});
+  const bool told = map->numbers("normal", handhold->normal, {-1.0, 1.0, ""});
+  constexpr double kShortest = 0.1;
+  if (told && Eigen::Map<Eigen::Vector3d>(handhold->normal).norm() < kShortest) {
+    map->fail("normal", "a direction: from the surface towards the robot", "nearly none", "");
+  }
+  handhold->friction = map->number("friction", {0.05, 2.0, ""}).value_or(kUsualFriction);
+  handhold->force = map->number("force", {1.0, 1e5, "N"}).value_or(0.0);
+}
+
 void read_push(MapReader* map, const GaitdModel* model, GaitdDisturbance* push) {
   map->require({"link", "force", "duration"});
   push->body = read_link(map, model);
@@ -267,9 +282,9 @@ void read_joint_test(MapReader* map, const GaitdModel* model, JointTest* test) {
 
 const std::vector<std::string>& command_methods() {
   static const std::vector<std::string> kMethods = [] {
-    std::vector<std::string> names = {"mode",     "walk",      "drive",     "velocity",
-                                      "goto",     "footsteps", "replace",   "pose",
-                                      "sim.push", "sim.load",  "joint.test"};
+    std::vector<std::string> names = {
+        "mode", "walk",     "drive",    "velocity",   "goto",          "footsteps",       "replace",
+        "pose", "sim.push", "sim.load", "joint.test", "handhold.take", "handhold.release"};
     for (const auto& payload : kPayloadMethods) names.emplace_back(payload.name);
     for (const auto& plain : kPlainMethods) names.emplace_back(plain.name);
     std::sort(names.begin(), names.end());
@@ -313,6 +328,9 @@ std::optional<Command> parse_command(std::string_view method, const NodePtr& par
   } else if (payload != nullptr) {
     command.type = CommandType::kPayload;
     read_payload(&map, model, *payload, &command.payload);
+  } else if (method == "handhold.take" || method == "handhold.release") {
+    command.type = CommandType::kHandhold;
+    read_handhold(&map, method == "handhold.release", &command.handhold);
   } else if (method == "pose") {
     command.type = CommandType::kPose;
     read_pose(&map, model, &command.pose);

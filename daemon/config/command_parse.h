@@ -26,6 +26,7 @@ const std::vector<std::string>& command_methods();
 //   sim.push   {link, force: [x, y, z], duration, point: [x, y, z]}
 //   sim.load   {link, mass, com: [x, y, z]}
 //   payload.set {link, mass, com: [x, y, z]}, payload.clear {link}, payload.estimate {link}
+//   handhold.take {hand, normal: [x, y, z], friction, force}, handhold.release {hand}
 //   joint.test {joint, amplitude, duration}
 //   pose       {pelvis: {x, y, z, roll, pitch, yaw}, duration}
 // Everything that is wrong goes to `issues`; then nothing is returned. Without a model the names of

@@ -75,6 +75,7 @@ class Story {
       case CommandType::kPose:
       case CommandType::kTare:
       case CommandType::kPayload:
+      case CommandType::kHandhold:
         check_armed();
         break;
       case CommandType::kStop:

@@ -12,7 +12,7 @@ using P = SafetyParameter;
 
 bool CaptureCheck::lost(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                         const sdk::Parameters<SafetyParameter>& p) {
-  const walking::ConvexPolygon feet = walking::support_polygon(model_, gait);
+  const walking::ConvexPolygon feet = walking::support_region(model_, gait, robot);
   const double reach = p[P::kCaptureReach] * model_.nominal_com_height;
   if (feet.empty() || gait.omega <= 0.0) {
     reset();

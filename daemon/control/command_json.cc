@@ -51,6 +51,15 @@ void visit_load(Load& load, Field&& field) {
   field("com", load.com);
 }
 
+template <class Handhold, class Field>
+void visit_handhold(Handhold& handhold, Field&& field) {
+  field("hand", handhold.hand);
+  field("release", handhold.release);
+  field("normal", handhold.normal);
+  field("friction", handhold.friction);
+  field("force", handhold.force);
+}
+
 template <class Walk, class Field>
 void visit_walk(Walk& walk, Field&& field) {
   field("steps", walk.steps);
@@ -129,6 +138,9 @@ std::string input_text(const Command& c, int parameter_owner, int parameter_plac
       out["action"] = static_cast<int>(c.payload.action);
       visit_load(c.payload.load, Write{&out});
       break;
+    case CommandType::kHandhold:
+      visit_handhold(c.handhold, Write{&out});
+      break;
     case CommandType::kJointTest:
       visit_joint_test(c.joint_test, Write{&out});
       break;
@@ -165,6 +177,7 @@ bool read_input(const json& in, Command* c, int* parameter_owner, int* parameter
     if (c->type == CommandType::kWalk) visit_walk(c->walk, Read{&in});
     if (c->type == CommandType::kJointTest) visit_joint_test(c->joint_test, Read{&in});
     if (c->type == CommandType::kSimLoad) visit_load(c->load, Read{&in});
+    if (c->type == CommandType::kHandhold) visit_handhold(c->handhold, Read{&in});
     if (c->type == CommandType::kPayload) {
       c->payload.action = static_cast<PayloadAction>(in.at("action").get<int>());
       visit_load(c->payload.load, Read{&in});

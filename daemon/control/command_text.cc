@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kNames[] = {
     "arm",    "disarm", "estop", "reset",     "mode",     "walk",      "footsteps",   "pause",
     "resume", "stop",   "abort", "param.set", "sim.push", "sim.reset", "plugin.swap", "joint.test",
-    "pose",   "drive",  "goto",  "tare",      "payload",  "sim.load"};
+    "pose",   "drive",  "goto",  "tare",      "payload",  "sim.load",  "handhold"};
 
 class Writer {
  public:
@@ -98,6 +98,15 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
     constexpr const char* kActions[] = {"set", "clear", "estimate"};
     w.add(R"(,"action":"%s")", kActions[static_cast<int>(c.payload.action)]);
     add_load(w, c.payload.load);
+  }
+  if (c.type == CommandType::kHandhold) {
+    constexpr const char* kHands[] = {"left", "right", "both"};
+    const walking::HandholdCommand& h = c.handhold;
+    w.add(R"(,"action":"%s","hand":"%s")", h.release ? "release" : "take", kHands[h.hand]);
+    if (!h.release) {
+      w.add(R"(,"normal":[%.17g,%.17g,%.17g],"friction":%.17g,"force":%.17g)", h.normal[0],
+            h.normal[1], h.normal[2], h.friction, h.force);
+    }
   }
   if (c.type == CommandType::kSwap) {
     w.add(R"(,"layer":"%s","to":)", sdk::kLayerNames[c.swap_layer].data());

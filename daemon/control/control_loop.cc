@@ -311,18 +311,22 @@ void ControlLoop::report_changes() {
                          d.time.tick, d.time.time, state_text(*pipeline_, text, sizeof(text)));
 }
 
-// A motion is over, and its hand is not where it should be.
+// A hand holds on or lets go; or a motion is over, and its hand is not where it should be.
 void ControlLoop::report_hands() {
   constexpr double kFar = 0.01;     // m
   constexpr double kTurned = 0.03;  // rad
   const TickData& d = pipeline_->data();
   for (int hand = 0; hand < GAITD_MAX_HANDS; ++hand) {
+    char text[kMaxEventText];
+    if (d.handhold_changes[hand] != walking::Handholds::Change::kNone) {
+      telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
+                             handhold_text(hand, d.handhold_changes[hand], text, sizeof(text)));
+    }
     const GaitdHandReference& reference = d.references.hands[hand];
     const bool moves = reference.active != 0 && reference.on_its_way != 0;
     const bool moved = std::exchange(hand_moved_[hand], moves);
     if (!moved || moves || reference.active == 0) continue;
     if (reference.position_error < kFar && reference.turn_error < kTurned) continue;
-    char text[kMaxEventText];
     telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
                            hand_text(hand, reference, text, sizeof(text)));
   }

@@ -24,6 +24,7 @@ bool replaces_goto(const Command& command) {
     case CommandType::kPose:
     case CommandType::kTare:
     case CommandType::kPayload:
+    case CommandType::kHandhold:
     case CommandType::kSimLoad:
       return false;
     case CommandType::kMode:

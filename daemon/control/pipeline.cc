@@ -41,6 +41,7 @@ Pipeline::Pipeline(const GaitdModel& model, const Calibration& calibration,
       gait_(model),
       external_(model),
       payload_(model),
+      handholds_(model),
       objectives_(model),
       motions_(model),
       safety_(model),
@@ -177,6 +178,7 @@ void Pipeline::reset(bool arm) {
   compensation_.reset();
   external_.reset();
   payload_.reset();
+  handholds_.reset();
   const auto variants = data_.variants;
   data_ = TickData{};
   data_.variants = variants;
@@ -200,6 +202,7 @@ void Pipeline::run(std::int64_t tick) {
   compensation_.sensors(period_, d);
   const bool estimated = layers_.estimate(start_, d);
   d.robot.loads = d.loads;
+  update_handholds(period_);
   if (estimated && d.robot.valid != 0) observe_external(period_);
   update_payload(period_);
   safety_.check(d, estimated);
@@ -220,7 +223,8 @@ bool Pipeline::control(double dt) {
   gait_.update(dt, d.robot, d.plan, d.toe_off, d.adjustment);
   d.gait = gait_.state();
   const walking::VelocityWalk& drive = gait_.velocity_walk();
-  d.icp_margin = walking::support_polygon(model_, d.gait).inside_distance(sdk::view(d.robot.icp));
+  d.icp_margin =
+      walking::support_region(model_, d.gait, d.robot).inside_distance(sdk::view(d.robot.icp));
   d.drive = drive.active() ? Drive{true, drive.target(), drive.step().velocity} : Drive{};
   d.motions = motions_.state();
   const bool moved = layers_.source_tasks(d);
@@ -242,6 +246,11 @@ bool Pipeline::control(double dt) {
 }
 
 CommandReply Pipeline::move(const Command& command) {
+  const int hand = command.pose.part - GAITD_PART_LEFT_ARM;
+  if (hand >= 0 && handholds_.busy(hand)) {
+    return refused(command, data_.time.tick,
+                   "pose: this hand holds on to something; `gaitctl handhold release` first");
+  }
   const walking::Refusal refusal =
       motions_.command(command.pose, data_.robot, gait_.state(), data_.references);
   if (refusal.refused()) return refused(command, data_.time.tick, refusal.message);
@@ -267,9 +276,19 @@ CommandReply Pipeline::execute(const Command& command) {
       command.type == CommandType::kWalk || command.type == CommandType::kFootsteps ||
       command.type == CommandType::kPause || command.type == CommandType::kResume ||
       command.type == CommandType::kPose || command.type == CommandType::kGoto ||
+      command.type == CommandType::kHandhold ||
       (command.type == CommandType::kDrive && !command.drive.ends);
   const char* why = needs_control ? safety_.refusal(kRequestWalk, data_) : nullptr;
   if (why != nullptr) return refused(command, data_.time.tick, why);
+  const bool steps = command.type == CommandType::kWalk ||
+                     command.type == CommandType::kFootsteps ||
+                     command.type == CommandType::kGoto ||
+                     (command.type == CommandType::kDrive && !command.drive.ends);
+  if (steps && handholds_.busy()) {
+    return refused(command, data_.time.tick,
+                   "a hand holds on to something, the robot could not leave it; `gaitctl handhold "
+                   "release`, then walk");
+  }
   const char* note = command_note(command, safety_.state(), gait_.state());
   switch (command.type) {
     case CommandType::kArm:
@@ -329,6 +348,8 @@ CommandReply Pipeline::execute(const Command& command) {
         note = "weighed for four seconds at rest; `gaitctl status` shows the load";
       }
       break;
+    case CommandType::kHandhold:
+      return handhold(command);
     case CommandType::kPause:
       refusal = gait_.pause();
       break;

@@ -10,6 +10,7 @@
 #include "daemon/parameters/live_parameters.h"
 #include "gaitd/walking/external_wrench.h"
 #include "gaitd/walking/gait_machine.h"
+#include "gaitd/walking/handholds.h"
 #include "gaitd/walking/motions.h"
 #include "gaitd/walking/objectives.h"
 #include "gaitd/walking/payload.h"
@@ -60,6 +61,8 @@ class Pipeline {
   void update_payload(double dt);
   bool stands() const;
   walking::Refusal payload(const PayloadCommand& command);
+  void update_handholds(double dt);
+  CommandReply handhold(const Command& command);
   bool control(double dt);
 
   const GaitdModel model_;
@@ -70,6 +73,7 @@ class Pipeline {
   walking::GaitMachine gait_;
   walking::ExternalWrench external_;
   walking::Payload payload_;
+  walking::Handholds handholds_;
   walking::ObjectiveBuilder objectives_;
   walking::Motions motions_;
   Safety safety_;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of the pipeline that knows what pulls at the robot and what it carries.
+#include <cstdio>
+
 #include "daemon/control/pipeline.h"
 #include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/views.h"
@@ -10,7 +12,48 @@ bool Pipeline::stands() const {
   return safety_.state() == SafetyState::kStanding && !gait_.walking();
 }
 
+// Before anything is made of the forces: those of the hands are not of a pull.
+void Pipeline::update_handholds(double dt) {
+  handholds_.update(dt, safety_.controlled(), data_.gait, data_.wbc.info, data_.robot);
+  for (int side = 0; side < GAITD_MAX_HANDS; ++side) {
+    data_.handhold_changes[side] = handholds_.change(side);
+  }
+}
+
+CommandReply Pipeline::handhold(const Command& command) {
+  const walking::HandholdCommand& c = command.handhold;
+  walking::Refusal refusal;
+  if (c.release) {
+    refusal = handholds_.release(c.hand);
+  } else if (!stands()) {
+    refusal = walking::refuse(
+        "handhold.take: a hand holds on while the robot stands; `gaitctl stop`, then again");
+  } else if (!external_.sensed()) {
+    refusal = walking::refuse(
+        "handhold.take: the feet of this robot have no force sensors: the forces on a hand would "
+        "be taken for forces on the feet");
+  } else {
+    refusal = handholds_.take(c, data_.robot);
+  }
+  CommandReply reply;
+  reply.request = command.request;
+  reply.tick = data_.time.tick;
+  reply.accepted = !refusal.refused();
+  if (refusal.refused()) {
+    std::snprintf(reply.message.data(), reply.message.size(), "%s", refusal.message);
+  } else if (!c.release && handholds_.allowed() < c.force) {
+    std::snprintf(reply.message.data(), reply.message.size(),
+                  "counted on for %.0f N: the arm bears no more in this posture",
+                  handholds_.allowed());
+  }
+  return reply;
+}
+
 const char* Pipeline::tare() {
+  if (handholds_.busy()) {
+    return "the tare is taken of a robot that touches the ground only; `gaitctl handhold release`, "
+           "then try again";
+  }
   if (!stands()) {
     return "the tare is taken of a robot that stands; `gaitctl stop`, then try again";
   }
@@ -46,6 +89,11 @@ void Pipeline::update_payload(double dt) {
 walking::Refusal Pipeline::payload(const PayloadCommand& command) {
   switch (command.action) {
     case PayloadAction::kEstimate:
+      if (handholds_.busy()) {
+        return walking::refuse(
+            "payload.estimate: a hand holds on to something, which would be weighed too; `gaitctl "
+            "handhold release`, then again");
+      }
       return payload_.estimate(command.load.body, external_, stands());
     case PayloadAction::kClear:
       if (command.load.body < 0) {

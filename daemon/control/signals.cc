@@ -253,6 +253,11 @@ void visit_tasks(V& v, const GaitdModel& model, const TickData& d) {
     v.real(rest * hand.turn_error, "rad", "hand/", name, "/rest_turn_error");
     v.real(hand.reach_error[0], "m", "hand/", name, "/reach_error");
     v.real(hand.reach_error[1], "rad", "hand/", name, "/reach_turn_error");
+    const GaitdHandhold& handhold = d.robot.handholds[side];
+    v.word(handhold.state, {"none", "sought", "held", "let go"}, "handhold/", name, "/state");
+    axes(v, handhold.position, 3, "m", "handhold/", name, "/");
+    axes(v, d.wbc.info.hand_force[side], 3, "N", "handhold/", name, "/force_desired/");
+    v.real(handhold.force_max, "N", "handhold/", name, "/force_max");
   }
 }
 

@@ -104,6 +104,21 @@ std::string_view payload_text(const PayloadData& payload, const char* link, char
   return text.view();
 }
 
+std::string_view handhold_text(int hand, walking::Handholds::Change change, char* buffer,
+                               std::size_t size) {
+  constexpr const char* kTexts[] = {"",
+                                    "holds on",
+                                    "lets go: it found nothing to hold on to",
+                                    "lets go: it was torn off its place",
+                                    "lets go: the robot steps",
+                                    "lets go"};
+  static_assert(std::size(kTexts) == static_cast<int>(walking::Handholds::Change::kReleased) + 1);
+  Text text(buffer, size);
+  text.add(R"({"handhold":"%s","what":"%s"})", hand == GAITD_LEFT ? "left" : "right",
+           kTexts[static_cast<int>(change)]);
+  return text.view();
+}
+
 std::string_view hand_text(int hand, const GaitdHandReference& reference, char* buffer,
                            std::size_t size) {
   Text text(buffer, size);

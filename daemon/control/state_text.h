@@ -22,6 +22,10 @@ const char* outcome_text(int outcome);
 std::string_view payload_text(const PayloadData& payload, const char* link, char* text,
                               std::size_t size);
 
+// What became of a handhold.
+std::string_view handhold_text(int hand, walking::Handholds::Change change, char* text,
+                               std::size_t size);
+
 // How far a hand is from where its motion should have brought it.
 std::string_view hand_text(int hand, const GaitdHandReference& reference, char* text,
                            std::size_t size);

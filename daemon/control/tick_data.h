@@ -8,6 +8,7 @@
 #include "daemon/control/balance_joints.h"
 #include "gaitd/abi/plugin.h"
 #include "gaitd/walking/commands.h"
+#include "gaitd/walking/handholds.h"
 #include "gaitd/walking/leg_configuration.h"
 #include "gaitd/walking/payload.h"
 
@@ -89,6 +90,7 @@ struct TickData {
   GaitdLoads loads{};  // that the layers count on
   PayloadData payload{};
   External external{};
+  std::array<walking::Handholds::Change, GAITD_MAX_HANDS> handhold_changes{};  // in this tick
   GaitdGaitState gait{};
   GaitdMotions motions{};
   Drive drive{};

@@ -129,6 +129,9 @@ const char* output_error(const GaitdWholeBodyControllerOutput& w, int joint_coun
     default:
       return "info.status: is none of GAITD_WBC_*";
   }
+  for (const auto& force : w.info.hand_force) {
+    if (!finite(force)) return "info.hand_force: is not finite";
+  }
   if (w.commands.joint_count != joint_count) {
     return "commands.joint_count: is not that of the model";
   }

@@ -178,6 +178,8 @@ void add_command_methods(Methods* methods, CommandBridge* bridge, CommandParser 
                            "payload.set",
                            "payload.clear",
                            "payload.estimate",
+                           "handhold.take",
+                           "handhold.release",
                            "sim.push",
                            "sim.load",
                            "sim.reset",

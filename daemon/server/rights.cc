@@ -14,6 +14,8 @@ constexpr MethodRight kRights[] = {
     {"estop", Role::kObserve},
     {"footsteps", Role::kCommand},
     {"goto", Role::kCommand},
+    {"handhold.release", Role::kCommand},
+    {"handhold.take", Role::kCommand},
     {"joint.list", Role::kObserve},
     {"joint.test", Role::kAdminister},
     {"mode", Role::kCommand},

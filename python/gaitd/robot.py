@@ -239,6 +239,21 @@ class Robot:
         """Says that nothing is carried any more, by ``link`` or by all of them."""
         return dict(self.call("payload.clear", **({} if link is None else {"link": link})))
 
+    def handhold_take(
+        self, hand: str, normal: Sequence[float], force: float, friction: Optional[float] = None
+    ) -> Dict[str, Any]:
+        """Presses a hand, ``"left"`` or ``"right"``, on a surface, and counts on it once something stops it.
+
+        normal: from the surface towards the robot: ahead, to the left, up. force: N along it, at most. friction: of
+        the hand on the surface, 0.5 if left out.
+        """
+        rest = {} if friction is None else {"friction": friction}
+        return dict(self.call("handhold.take", hand=hand, normal=list(normal), force=force, **rest))
+
+    def handhold_release(self, hand: Optional[str] = None) -> Dict[str, Any]:
+        """Lets go with a hand, or with both."""
+        return dict(self.call("handhold.release", **({} if hand is None else {"hand": hand})))
+
     def tare(self) -> Dict[str, Any]:
         """Takes what seems to pull at the standing robot for nothing: nobody touches it now."""
         return dict(self.call("tare"))
