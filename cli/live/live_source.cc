@@ -47,6 +47,7 @@ const std::vector<std::string>& LiveSource::shown_signals() {
                                                   "external/force/?",
                                                   "external/pulled",
                                                   "payload/?/*",
+                                                  "handhold/*",
                                                   "leg/*",
                                                   "joint/*/position",
                                                   "joint/*/torque_desired",

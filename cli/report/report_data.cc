@@ -32,7 +32,7 @@ constexpr std::size_t kMostRows = 12000;
 // What the page shows.
 constexpr char kShown[] =
     "time,com/?,com/height_target,truth/com/z,icp/*,cmp/desired/*,cop/*,pelvis/*,foot/*,footstep/*,"
-    "external/force/?,external/pulled,payload/?/*,leg/*,joint/*/position,joint/*/"
+    "external/force/?,external/pulled,payload/?/*,handhold/*,leg/*,joint/*/position,joint/*/"
     "torque_desired,step_adjust/*,tick/*_us,gait/phase,"
     "toe_off/active";
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a robot carries, as boxes, and what pulls at it, as an arrow.
+// What a robot carries, as boxes, and what pulls at it and pushes its hands, as arrows.
 import * as THREE from 'three';
 import {Arrow} from './arrow.js';
 import {material} from './robot.js';
@@ -47,5 +47,23 @@ export class PullArrow extends Arrow {
     if (!this.group.visible) return;
     const [x, y] = log.point('external/force', row);
     this.place(new THREE.Vector3(...log.point('com', row)), new THREE.Vector3(x, y, 0), kStrong);
+  }
+}
+
+// Of a hand that holds on: what it is pushed with, as the controller plans it.
+export class HandArrow extends Arrow {
+  constructor(robot, side) {
+    super(kPullColor);
+    this.robot = robot;
+    this.prefix = `handhold/${side}`;
+    this.known = robot.log.has(`${this.prefix}/force_max`);
+  }
+
+  show(row) {
+    const {log} = this.robot;
+    this.group.visible = this.known && log.value(`${this.prefix}/force_max`, row) > 0;
+    if (!this.group.visible) return;
+    const force = new THREE.Vector3(...log.point(`${this.prefix}/force_desired`, row));
+    this.place(new THREE.Vector3(...log.point(this.prefix, row)), force, kStrong);
   }
 }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
-import {Loads, PullArrow} from './forces.js';
+import {HandArrow, Loads, PullArrow} from './forces.js';
 import {hull} from './hull.js';
 import {PushArrow} from './push_arrow.js';
 import {chooseRenderer} from './renderer.js';
 import {material, Robot} from './robot.js';
 import {theme} from './theme.js';
 
-export const kMarkers = [
+export const kHands = ['left', 'right'];
+const kMarkers = [
   {name: 'ICP', prefix: 'icp', color: '#d62728'},
   {name: 'planned ICP', prefix: 'icp/desired', color: '#ff9896'},
   {name: 'CMP', prefix: 'cmp/desired', color: '#9467bd'},
@@ -113,7 +114,8 @@ export class Scene {
     this.robots = this.log.all.map((log, i) => new Robot(log, i === 0 ? 1 : kGhost));
     this.arrows = this.robots.map((robot) => new PushArrow(robot));
     for (const {pelvis} of this.robots) this.scene.add(pelvis);
-    this.forces = this.robots.flatMap((robot) => [new Loads(robot), new PullArrow(robot)]);
+    this.forces = this.robots.flatMap((robot) => [new Loads(robot), new PullArrow(robot),
+      ...kHands.map((side) => new HandArrow(robot, side))]);
     for (const {group} of [...this.arrows, ...this.forces]) this.scene.add(group);
     [{pelvis: this.pelvis, joints: this.joints}] = this.robots;
   }

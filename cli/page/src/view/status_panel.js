@@ -17,6 +17,8 @@ const kLines = [
       `${s.external.force.map((f) => number(f, 0)).join(', ')} N${s.external.pulled ? ', counted on' : ''}`],
   ['carries', (s) => !s.payload?.loads?.length ? 'nothing' :
       s.payload.loads.map((l) => `${number(l.mass, 1)} kg on ${l.link}`).join(', ')],
+  ['holds on', (s) => Object.entries(s.handholds ?? {}).filter(([, h]) => h.state !== 'none')
+      .map(([hand, h]) => `${hand} hand, ${h.state}, up to ${number(h.force_max, 0)} N`).join('; ') || 'nothing'],
   ['tick', (s) => `${number(s.tick_us, 0)} µs, longest ${number(s.tick_longest_us, 0)} µs`],
   ['overruns', (s) => `${s.overruns ?? '–'}${s.late ? `, last: ${s.late.what}, ${number(s.late.time_us, 0)} µs` : ''}`],
   ['clock', (s) => `${s.clock ?? '–'}, ${number(s.time, 1)} s`],
