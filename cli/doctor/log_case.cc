@@ -18,8 +18,9 @@ constexpr double kTwoSteps = 1.7;  // s
 // Which columns the checks need beyond those of a verdict.
 daemon::Expectations wanted_signals() {
   daemon::Expectations wanted;
-  for (const char* glob : {"com/*", "cop/*", "external/*", "foot/*", "footstep/*", "joint/*",
-                           "payload/mass", "safety/*", "truth/estimate_error/*", "truth/com/*"}) {
+  for (const char* glob :
+       {"com/*", "cop/*", "external/*", "foot/*", "footstep/*", "handhold/*", "joint/*",
+        "payload/mass", "safety/*", "truth/estimate_error/*", "truth/com/*"}) {
     wanted.checks.emplace_back().signal = glob;
   }
   return wanted;

@@ -21,6 +21,7 @@ Findings check_estimate(const LogCase& log);   // IMU against legs, gravity and 
 Findings check_footsteps(const LogCase& log);  // footsteps out of reach
 Findings check_weight(const LogCase& log);     // mass of the model against measured forces
 Findings check_load(const LogCase& log);       // loads that a standing robot did not know of
+Findings check_handholds(const LogCase& log);  // hands that were torn off what they held on to
 Findings check_pull(const LogCase& log);       // steady forces that the robot leaned against
 
 // "+x", "-y", "+x-y": the world axes that a horizontal vector is nearest to.

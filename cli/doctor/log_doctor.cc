@@ -42,9 +42,9 @@ Finding log_finding(const LogCase& log, const char* check, std::size_t tick, std
 LogDiagnosis diagnose_log(const daemon::LogReader& log) {
   const LogCase the_case(log);
   LogDiagnosis diagnosis{.ending = the_case.ending(), .findings = {}};
-  for (const auto check :
-       {check_faults, check_weight, check_load, check_pull, check_timing, check_estimate,
-        check_footsteps, check_solver, check_slip, check_torques, check_joints, check_support}) {
+  for (const auto check : {check_faults, check_weight, check_load, check_handholds, check_pull,
+                           check_timing, check_estimate, check_footsteps, check_solver, check_slip,
+                           check_torques, check_joints, check_support}) {
     for (Finding& finding : check(the_case)) diagnosis.findings.push_back(std::move(finding));
   }
   std::stable_sort(diagnosis.findings.begin(), diagnosis.findings.end(),
