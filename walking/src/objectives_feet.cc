@@ -97,6 +97,7 @@ void ObjectiveBuilder::update_contacts(double dt, const GaitdGaitState& gait,
     const Eigen::Vector2d middle = sole_middle(foothold);
     for (int i = 0; i < points && out.contact_count < GAITD_MAX_CONTACTS; ++i) {
       GaitdContactPoint& c = out.contacts[out.contact_count++];
+      c = {};  // it may have been that of a hand
       c.side = side;
       c.body = foot.body;
       Eigen::Vector3d in_sole = view(toe_off.toe_point);

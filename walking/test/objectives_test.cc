@@ -447,5 +447,15 @@ TEST(ObjectiveBuilder, NeverAllocates) {
   EXPECT_GE(testing::allocation_count(), before + 2);  // the counter counts
 }
 
+TEST(Objectives, FeetTakeNothingFromHandsThatHeldOnBefore) {
+  WalkWithObjectives w;
+  for (GaitdContactPoint& contact : w.objectives->contacts) contact.weight = 5.0;
+  w.update();
+  ASSERT_GT(w.objectives->contact_count, 0);
+  for (int i = 0; i < w.objectives->contact_count; ++i) {
+    EXPECT_EQ(w.objectives->contacts[i].weight, 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace gaitd::walking

@@ -8,8 +8,8 @@ import {chooseRenderer} from './renderer.js';
 import {material, Robot} from './robot.js';
 import {theme} from './theme.js';
 
-export const kHands = ['left', 'right'];
-const kMarkers = [
+const kHands = ['left', 'right'];
+export const kMarkers = [
   {name: 'ICP', prefix: 'icp', color: '#d62728'},
   {name: 'planned ICP', prefix: 'icp/desired', color: '#ff9896'},
   {name: 'CMP', prefix: 'cmp/desired', color: '#9467bd'},

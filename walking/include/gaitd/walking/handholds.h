@@ -10,7 +10,6 @@
 #include "gaitd/dynamics/kinematics.h"
 #include "gaitd/walking/commands.h"
 #include "gaitd/walking/joint_chain.h"
-#include "gaitd/walking/polygon.h"
 #include "gaitd/walking/refusal.h"
 
 namespace gaitd::walking {

@@ -66,9 +66,9 @@ class ObjectiveBuilder {
  private:
   void update_contacts(double dt, const GaitdGaitState& gait, const GaitdToeOff& toe_off,
                        GaitdObjectives& out) const;
-  // Contacts and tasks of the hands that hold on.
   void update_posture(const GaitdRobotState& robot, GaitdObjectives& out) const;
   void update_held_arms(double dt, const GaitdRobotState& robot);
+  // Contacts and tasks of the hands that hold on.
   void add_hands(const GaitdRobotState& robot, GaitdObjectives& out) const;
   void update_momentum(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                        const GaitdStepAdjustment& adjustment, GaitdObjectives& out);
