@@ -12,39 +12,37 @@ constexpr double kEstopInterval = 0.02;  // s
 
 }  // namespace
 
-void FakeRobot::answer_register(int bus, const can::Frame& frame) {
-  const auto request = can::decode_register_read(frame);
-  for (size_t i = 0; request && i < motors_.size(); ++i) {
-    const can::Motor& motor = wiring_.motors[i];
-    if (motor.bus != bus || motor.id != request->motor || motors_[i].silent) continue;
-    can::RegisterValue value = *request;
-    switch (value.address) {
-      case can::Register::kPositionRange:
-        value.raw = can::raw_of(static_cast<float>(motors_[i].range));
+void FakeRobot::answer_register(int index, uint16_t address) {
+  const can::Motor& motor = wiring_.motors[index];
+  const MotorState& state = motors_[index];
+  if (state.silent) return;
+  using Meaning = can::Register::Meaning;
+  can::RegisterValue value{motor.id, address, 0, false};
+  for (const can::Register& entry : motor.dialect->registers) {
+    if (entry.address != address) continue;
+    value.known = true;
+    switch (entry.meaning) {
+      case Meaning::kPositionRange:
+        value.raw = can::raw_of(static_cast<float>(state.range));
         break;
-      case can::Register::kVelocityRange:
+      case Meaning::kVelocityRange:
         value.raw = can::raw_of(static_cast<float>(motor.ranges.velocity));
         break;
-      case can::Register::kTorqueRange:
+      case Meaning::kTorqueRange:
+      case Meaning::kTorqueLimit:
         value.raw = can::raw_of(static_cast<float>(motor.ranges.torque));
         break;
-      case can::Register::kTimeout:
-        value.raw = static_cast<uint32_t>(motors_[i].timeout / can::kTimeoutUnit + 0.5);
+      case Meaning::kTimeout:
+        value.raw = static_cast<uint32_t>(state.timeout / can::kTimeoutUnit + 0.5);
         break;
-      case can::Register::kControlMode:
-        value.raw = can::kMitControlMode;
-        break;
-      case can::Register::kMasterId:
-        value.raw = motor.reply_id;
-        break;
-      case can::Register::kEscId:
-        value.raw = motor.id;
+      case Meaning::kSetting:
+        value.raw = entry.expected;
         break;
     }
-    const can::Frame answer = can::encode_register_answer(motor.reply_id, value);
-    bool down = false;
-    buses_[bus].bus->send(&answer, 1, &down);
   }
+  const can::Frame answer = motor.dialect->register_answer(motor.address(), value);
+  bool down = false;
+  buses_[motor.bus].bus->send(&answer, 1, &down);
 }
 
 void FakeRobot::answer() {
@@ -62,15 +60,13 @@ void FakeRobot::answer() {
     if (!state.commanded || state.silent || lost) continue;
     const GaitdJointSensor& joint = sensors.joints[motor.joint];
     can::MotorReply reply;
-    reply.motor = motor.id;
     reply.error = state.error != 0 ? state.error : (state.enabled ? 1 : 0);
     reply.position = motor.motor_position(joint.position);
     reply.velocity = motor.motor_velocity(joint.velocity);
     reply.torque = motor.motor_torque(joint.torque);
     reply.mosfet_temperature = 40;
     reply.rotor_temperature = 45;
-    const uint32_t id = motor.dialect == can::Dialect::kMiniCheetah ? 0 : motor.reply_id;
-    can::Frame frame = can::encode_reply(id, reply, motor.dialect, motor.ranges);
+    can::Frame frame = motor.dialect->reply(motor.address(), motor.ranges, reply);
     if (state.shortened) --frame.length;
     for (int k = 0; k < (state.duplicate ? 2 : 1); ++k) {
       buses_[motor.bus].frames.push_back(frame);

@@ -16,12 +16,15 @@ namespace gaitd::cli {
 
 bool FakeRobot::start(std::string* error) {
   for (size_t i = 0; i < buses_.size(); ++i) {
-    std::vector<uint32_t> ids = {can::kRegisterId};
+    std::vector<can::IdFilter> filters = {can::IdFilter::exactly(can::kDamiaoRegisterId)};
     for (const can::Motor& motor : wiring_.motors) {
-      if (motor.bus == static_cast<int>(i)) ids.push_back(motor.id);
+      if (motor.bus != static_cast<int>(i)) continue;
+      filters.push_back(motor.dialect->route == can::ReplyRoute::kMaster
+                            ? can::IdFilter{can::kExtended | motor.id, can::kExtended | 0xFF}
+                            : can::IdFilter::exactly(motor.id));
     }
     const can::Bus& bus = wiring_.buses[i];
-    buses_[i].bus = can::CanBus::open(bus.interface, bus.fd(), ids, error);
+    buses_[i].bus = can::CanBus::open(bus.interface, bus.fd(), filters, error);
     if (buses_[i].bus == nullptr) return false;
   }
   // Every fault needs a target that is there.

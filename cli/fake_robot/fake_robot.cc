@@ -67,13 +67,18 @@ void FakeRobot::serve(double seconds) {
 
 void FakeRobot::take(int bus, const can::Frame& frame) {
   if (buses_[bus].off) return;
-  if (frame.id == can::kRegisterId) {
-    forget_commands(bus);
-    answer_register(bus, frame);
-    return;
-  }
   for (size_t i = 0; i < motors_.size(); ++i) {
-    if (wiring_.motors[i].bus != bus || wiring_.motors[i].id != frame.id) continue;
+    const can::Motor& motor = wiring_.motors[i];
+    if (motor.bus != bus) continue;
+    if (!motor.dialect->registers.empty()) {
+      const auto request = motor.dialect->read_register_request(frame);
+      if (request && request->motor == motor.id) {
+        forget_commands(bus);
+        answer_register(static_cast<int>(i), request->address);
+        return;
+      }
+    }
+    if (!motor.dialect->is_for(frame, motor.address())) continue;
     if (motors_[i].commanded) end_cycle();  // the next cycle has begun
     buses_[bus].heard = true;
     take_command(static_cast<int>(i), frame);
@@ -84,10 +89,12 @@ void FakeRobot::take(int bus, const can::Frame& frame) {
 void FakeRobot::take_command(int index, const can::Frame& frame) {
   const can::Motor& motor = wiring_.motors[index];
   MotorState& state = motors_[index];
+  const auto special = motor.dialect->read_special(frame);
+  const auto command = motor.dialect->read_command(frame, motor.ranges);
+  if (!special && !command) return;
   state.commanded = true;
   if (cycle_start_ == 0) cycle_start_ = now_;
-  const auto special = can::decode_special(frame);
-  if (!special && !can::is_torque_free(frame)) {
+  if (!special && !motor.dialect->is_torque_free(frame)) {
     if (first_torque_cycle_ < 0) first_torque_cycle_ = cycle_;
     last_torque_cycle_ = cycle_;
   }
@@ -104,14 +111,14 @@ void FakeRobot::take_command(int index, const can::Frame& frame) {
     state.damping = true;
     return;
   }
-  const can::MotorCommand c = can::decode_command(frame, motor.ranges);
+  const can::MotorCommand& c = *command;
   const double gain = motor.gear * motor.gear;
   state.command.position = motor.joint_position(c.position);
   state.command.velocity = motor.joint_velocity(c.velocity);
   state.command.torque = motor.joint_torque(c.torque);
   state.command.stiffness = c.stiffness * gain;
   state.command.damping = c.damping * gain;
-  state.damping = can::is_torque_free(frame);
+  state.damping = motor.dialect->is_torque_free(frame);
 }
 
 bool FakeRobot::cycle_complete() const {

@@ -72,7 +72,7 @@ class FakeRobot {
   bool apply(const Fault& fault, std::string* error);
   void take(int bus, const can::Frame& frame);
   void take_command(int motor, const can::Frame& frame);
-  void answer_register(int bus, const can::Frame& frame);
+  void answer_register(int motor, uint16_t address);
   bool cycle_complete() const;
   void begin_cycle();
   void end_cycle();

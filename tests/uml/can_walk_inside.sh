@@ -8,7 +8,7 @@ step_clock() {
   done
 }
 
-# walk BUSES MTU ARGUMENTS...: stands and walks six steps over real CAN sockets.
+# walk BUSES MTU [WIRING PERIOD]: stands and walks six steps over real CAN sockets.
 walk() {
   local buses=$1 mtu=$2 start=$SECONDS
   shift 2
@@ -18,7 +18,7 @@ walk() {
     robot_options=(--can "$1" --period "$2")
     gaitd_options=(--set "can=$1" --set "period=$2")
   fi
-  start_robot "walk$buses" "${robot_options[@]}"
+  start_robot "walk$mtu" "${robot_options[@]}"
   start_gaitd "${gaitd_options[@]}"
   [[ $status == *'"state":"disarmed"'* ]] || fail "a robot comes up disarmed: $status"
   wait_healthy
@@ -38,7 +38,14 @@ walk() {
 }
 
 walk 5 72
-walk 3 16 can-classic.yaml 0.004
+
+# On classic buses with motors of two families: RobStride with 29 bits of identifier, and Damiao in the
+# right arm and in the neck.
+sed 's/, data_bitrate: 5e6//; s/dialect: damiao/dialect: robstride/
+  /bus: right_arm\|neck/s/bus: [a-z_]*,/& dialect: damiao,/
+  /dialect: damiao/!s/, reply_id: 0x[0-9A-F]*//' \
+  "$GAITD_SOURCE/robots/atlas/can-fd.yaml" >"$scratch/mixed.yaml"
+walk 5 16 "$scratch/mixed.yaml" 0.004
 
 # hang: in real time, where the age of a sensor comes from the wall clock's stamp of its frame. No step
 # of that clock makes one stale, or hides a silent one. Armed on the hoist, on the way to the standing

@@ -3,11 +3,11 @@
 
 namespace gaitd::can {
 
-double frame_time(const BitRates& rates, int length) {
+double frame_time(const BitRates& rates, int length, bool extended) {
   const int payload = 8 * length;
   if (rates.data <= 0) {
     // Start to CRC is stuffed: at worst one bit after the first five and then after every fourth.
-    const int stuffed = 34 + payload;
+    const int stuffed = (extended ? 54 : 34) + payload;
     const int rest = 13;  // CRC delimiter, acknowledge, end of frame, space
     return (stuffed + (stuffed - 1) / 4 + rest) / rates.nominal;
   }

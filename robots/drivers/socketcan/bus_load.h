@@ -9,8 +9,9 @@ struct BitRates {
   double data = 0;       // bit/s of the data phase of CAN FD; 0: classic CAN
 };
 
-// Time of one frame with a standard identifier and `length` (<= 8) bytes under the worst bit
-// stuffing, with the space between frames, in s.
-double frame_time(const BitRates& rates, int length);
+// Time of one frame with an identifier of 11 bits, or of 29 (`extended`, which is counted on a
+// classic bus only), and `length` (<= 8) bytes under the worst bit stuffing, with the space between
+// frames, in s.
+double frame_time(const BitRates& rates, int length, bool extended = false);
 
 }  // namespace gaitd::can

@@ -38,8 +38,14 @@ void read_error_frame(const canfd_frame& frame, BusEvents* events) {
 
 }  // namespace
 
+static_assert(kExtended == CAN_EFF_FLAG);
+
+IdFilter IdFilter::exactly(uint32_t id) {
+  return {id, CAN_EFF_FLAG | ((id & kExtended) != 0 ? CAN_EFF_MASK : CAN_SFF_MASK)};
+}
+
 std::unique_ptr<CanBus> CanBus::open(const std::string& interface, bool fd,
-                                     const std::vector<uint32_t>& ids, std::string* error,
+                                     const std::vector<IdFilter>& filters, std::string* error,
                                      const Clocks& clocks) {
   const auto fail = [&](const char* what, const char* advice) {
     *error = interface + ": " + what + ": " + std::strerror(errno) + "; " + advice;
@@ -66,14 +72,12 @@ std::unique_ptr<CanBus> CanBus::open(const std::string& interface, bool fd,
     return fail("no CAN FD", "configure the interface for FD, or remove data_bitrate");
   }
 
-  std::vector<can_filter> filters;
-  for (const uint32_t id : ids) {
-    filters.push_back({id, CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
-  }
+  std::vector<can_filter> wanted;
+  for (const IdFilter& filter : filters) wanted.push_back({filter.id, filter.mask | CAN_RTR_FLAG});
   const can_err_mask_t errors = CAN_ERR_MASK;
   const int stamping = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
-  const bool ready = setsockopt(socket, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
-                                static_cast<socklen_t>(filters.size() * sizeof(can_filter))) == 0 &&
+  const bool ready = setsockopt(socket, SOL_CAN_RAW, CAN_RAW_FILTER, wanted.data(),
+                                static_cast<socklen_t>(wanted.size() * sizeof(can_filter))) == 0 &&
                      set(socket, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors) &&
                      set(socket, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1) &&
                      set(socket, SOL_SOCKET, SO_TIMESTAMPING, stamping) &&
@@ -134,7 +138,9 @@ bool CanBus::receive_batch(BusEvents* events, int* count) {
       read_error_frame(in, events);
       continue;
     }
-    received.frame.id = in.can_id & CAN_SFF_MASK;
+    const bool extended = (in.can_id & CAN_EFF_FLAG) != 0;
+    received.frame.id =
+        extended ? in.can_id & (CAN_EFF_FLAG | CAN_EFF_MASK) : in.can_id & CAN_SFF_MASK;
     received.frame.length = in.len;
     received.frame.data = {};
     std::memcpy(received.frame.data.data(), in.data,

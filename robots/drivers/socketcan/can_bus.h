@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "arrival_times.h"
-#include "mit_codec.h"
+#include "frame.h"
 
 namespace gaitd::can {
 
@@ -25,6 +25,13 @@ struct BusEvents {
   bool active = false;  // again, after passive
   bool interface_down = false;
   uint32_t lost = 0;  // frames that the kernel dropped since the last call
+};
+
+// Frames whose identifier has the bits of `id` under `mask`.
+struct IdFilter {
+  uint32_t id = 0;
+  uint32_t mask = 0;
+  static IdFilter exactly(uint32_t id);
 };
 
 struct Received {
@@ -40,10 +47,10 @@ class CanBus {
   // leaves waits for the next call, and is lost when the socket is full.
   static constexpr int kMostFrames = 4 * kBatch;
 
-  // `ids`: of the frames wanted, nothing else is received but error frames. Null with `error`: no
-  // such interface, not up, no CAN FD where it is asked for, or no permission.
+  // `filters`: of the frames wanted, nothing else is received but error frames. Null with `error`:
+  // no such interface, not up, no CAN FD where it is asked for, or no permission.
   static std::unique_ptr<CanBus> open(const std::string& interface, bool fd,
-                                      const std::vector<uint32_t>& ids, std::string* error,
+                                      const std::vector<IdFilter>& filters, std::string* error,
                                       const Clocks& clocks = Clocks::system());
   ~CanBus();
   CanBus(const CanBus&) = delete;

@@ -49,10 +49,17 @@ CanRobot::CanRobot(Wiring wiring, const GaitdModel& model, const RobotOptions& o
   for (size_t i = 0; i < wiring_.motors.size(); ++i) {
     const Motor& motor = wiring_.motors[i];
     const auto route = static_cast<int16_t>(kMotor | i);
-    if (motor.dialect == Dialect::kMiniCheetah) {
-      buses_[motor.bus].cheetahs[motor.id & 0xFF] = route;
-    } else {
-      buses_[motor.bus].routes[motor.reply_id] = route;
+    BusState& bus = buses_[motor.bus];
+    switch (motor.dialect->route) {
+      case ReplyRoute::kOwnId:
+        bus.routes[motor.reply_id] = route;
+        break;
+      case ReplyRoute::kSharedZero:
+        bus.shared[motor.id & 0xFF] = route;
+        break;
+      case ReplyRoute::kMaster:
+        bus.extended[motor.id & 0xFF] = route;
+        break;
     }
   }
   const auto route_sensor = [this](const Sender& sender, int frames, int kind, size_t index) {
@@ -138,36 +145,42 @@ Frame CanRobot::command_frame(const Motor& motor, const GaitdJointCommand& c) co
       motor.motor_velocity(std::clamp(c.velocity, -motor.velocity_limit, motor.velocity_limit));
   command.stiffness = motor.motor_gain(c.stiffness);
   command.damping = motor.motor_gain(c.damping);
-  return encode_command(motor.id, motor.ranges, command);
+  return motor.dialect->command(motor.address(), motor.ranges, command);
 }
 
 Frame CanRobot::frame_for(int index, const GaitdJointCommand& command) {
   const Motor& motor = wiring_.motors[index];
   MotorState& state = motors_[index];
+  const auto special = [&motor](Special what) {
+    return motor.dialect->special(motor.address(), what);
+  };
   if (faulty(index)) {
     // The daemon latches the fault; the motor stays off, and forgets its error once it is over.
     state.enabled = false;
     const auto interval = static_cast<int64_t>(kClearInterval / options_.period);
-    const bool clear = state.error > static_cast<uint8_t>(MotorError::kOn) &&
-                       cycle_ % std::max<int64_t>(1, interval) == 0;
-    return encode_special(motor.id, clear ? Special::kClear : Special::kDisable);
+    const bool clear = fault_of(index) != 0 && cycle_ % std::max<int64_t>(1, interval) == 0;
+    if (clear) state.told = 0;
+    return special(clear ? Special::kClear : Special::kDisable);
   }
   const bool wanted = command.mode == GAITD_JOINT_MODE_TORQUE && !buses_[motor.bus].down;
   if (!state.enabled) {
     state.enabled = wanted;
     state.cycles_enabled = 0;
-    return encode_special(motor.id, wanted ? Special::kEnable : Special::kDisable);
+    return special(wanted ? Special::kEnable : Special::kDisable);
   }
   ++state.cycles_enabled;
   if (command.mode == GAITD_JOINT_MODE_OFF) {
     state.enabled = false;
-    return encode_special(motor.id, Special::kDisable);
+    return special(Special::kDisable);
   }
   if (command.mode == GAITD_JOINT_MODE_DAMPING || !finite(command)) {
     const double damping = std::isfinite(command.damping) ? command.damping : 0.0;
-    return encode_damping(motor.id, motor.ranges, motor.motor_gain(damping));
+    // Middle codes with no stiffness: an all-zero payload would command -torque.
+    MotorCommand damped;
+    damped.damping = motor.motor_gain(damping);
+    return motor.dialect->command(motor.address(), motor.ranges, damped);
   }
-  if (told_but_off(index)) return encode_special(motor.id, Special::kEnable);  // a frame was lost
+  if (told_but_off(index)) return special(Special::kEnable);  // a frame was lost
   return command_frame(motor, command);
 }
 

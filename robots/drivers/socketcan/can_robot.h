@@ -56,7 +56,8 @@ class CanRobot {
     bool enabled = false;
     bool awaiting = false;  // of this cycle
     bool valid = false;
-    uint8_t error = 0;
+    uint8_t error = 0;  // of the last reply
+    uint8_t told = 0;   // a fault that came by itself, until the motor is told to forget it
     int cycles_enabled = 0;
     uint32_t owed = 0;  // replies of earlier cycles that may still come
     uint32_t sequence = 0;
@@ -75,7 +76,8 @@ class CanRobot {
     int ends_owed = 0;        // lockstep: ends of earlier cycles that are still to come
     int unsent_in_row = 0;
     std::array<int16_t, 2048> routes{};   // by identifier: what sends it, see Route
-    std::array<int16_t, 256> cheetahs{};  // by motor id: mini-cheetah replies share identifier 0
+    std::array<int16_t, 256> shared{};    // by motor id: who replies with the identifier 0
+    std::array<int16_t, 256> extended{};  // by motor id: who replies with 29 bits
     std::vector<Frame> frames;            // to send
     std::vector<int> motors;              // whose they are
   };
@@ -84,7 +86,7 @@ class CanRobot {
   void check_motors(std::vector<std::string>* errors);
   std::string check_motor(const Motor& motor);
   void switch_off();
-  bool read_register(const Motor& motor, Register address, RegisterValue* value);
+  bool read_register(const Motor& motor, uint16_t address, RegisterValue* value);
   void wait_and_receive(double seconds);
   void receive();
   void receive(int bus);
@@ -99,6 +101,7 @@ class CanRobot {
   // Switched on, and it says that it is off.
   bool told_but_off(int motor) const;
   bool faulty(int motor) const;
+  uint8_t fault_of(int motor) const;  // MotorError, or 0
   bool complete() const;
   void find_conditions(int64_t now_ns);
   EstopLife estop_life(int64_t now_ns) const;

@@ -28,10 +28,15 @@ bool CanRobot::told_but_off(int index) const {
   return state.enabled && state.error == static_cast<uint8_t>(MotorError::kOff);
 }
 
-bool CanRobot::faulty(int index) const {
+uint8_t CanRobot::fault_of(int index) const {
   const MotorState& state = motors_[index];
-  if (state.error > static_cast<uint8_t>(MotorError::kOn)) return true;
-  return told_but_off(index) && state.cycles_enabled > kSwitchOnCycles;
+  if (state.error > static_cast<uint8_t>(MotorError::kOn)) return state.error;
+  return state.told;
+}
+
+bool CanRobot::faulty(int index) const {
+  return fault_of(index) != 0 ||
+         (told_but_off(index) && motors_[index].cycles_enabled > kSwitchOnCycles);
 }
 
 void CanRobot::switch_off_bus(int bus) {
@@ -57,7 +62,8 @@ void CanRobot::find_conditions(int64_t now_ns) {
     if (!faulty(static_cast<int>(i))) continue;
     if ((found & GAITD_HEALTH_MOTOR) == 0) {
       bad_motor_ = static_cast<int>(i);
-      bad_error_ = motors_[i].error;
+      const uint8_t fault = fault_of(static_cast<int>(i));
+      bad_error_ = fault != 0 ? fault : motors_[i].error;
     }
     found |= GAITD_HEALTH_MOTOR;
   }

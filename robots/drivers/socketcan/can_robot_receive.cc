@@ -47,6 +47,11 @@ void CanRobot::receive(int bus) {
 }
 
 void CanRobot::take(int bus, const Received& received) {
+  if ((received.frame.id & kExtended) != 0) {
+    const int16_t motor = buses_[bus].extended[received.frame.id >> 8 & 0xFF];
+    if (motor != kNobody) take_reply(motor & kIndex, received);
+    return;
+  }
   const int16_t route = buses_[bus].routes[received.frame.id & 0x7FF];
   const int index = route & kIndex;
   switch (route & kKind) {
@@ -79,18 +84,24 @@ void CanRobot::take(int bus, const Received& received) {
       break;
   }
   if (received.frame.id != 0) return;
-  const int16_t cheetah = buses_[bus].cheetahs[received.frame.data[0]];
-  if (cheetah != kNobody) take_reply(cheetah & kIndex, received);
+  const int16_t motor = buses_[bus].shared[received.frame.data[0]];
+  if (motor != kNobody) take_reply(motor & kIndex, received);
 }
 
 void CanRobot::take_reply(int index, const Received& received) {
   const Motor& motor = wiring_.motors[index];
   MotorState& state = motors_[index];
-  const auto reply = decode_reply(received.frame, motor.dialect, motor.ranges);
-  const bool damiao = motor.dialect == Dialect::kDamiao;
-  const bool answer = damiao && is_register_answer(received.frame, motor.id);
-  if (!reply || answer || reply->motor != (motor.id & (damiao ? 0xF : 0xFF))) {
-    ++counters_[index].stale;
+  const Dialect& dialect = *motor.dialect;
+  const auto reply = dialect.read_reply(received.frame, motor.address(), motor.ranges);
+  if (!reply) {
+    const auto fault = dialect.read_fault == nullptr
+                           ? std::nullopt
+                           : dialect.read_fault(received.frame, motor.address());
+    if (!fault) {
+      ++counters_[index].stale;
+    } else if (*fault != MotorError::kOn) {
+      state.told = static_cast<uint8_t>(*fault);
+    }
     return;
   }
   if (state.awaiting) {

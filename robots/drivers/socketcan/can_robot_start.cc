@@ -3,11 +3,10 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <iterator>
 
 #include "can_robot.h"
-#include "motor_check.h"
 
 namespace gaitd::can {
 namespace {
@@ -21,17 +20,19 @@ constexpr int64_t kStateTime = 3'000'000'000;  // ns for the first state of all
 bool CanRobot::open(std::vector<std::string>* errors) {
   for (size_t i = 0; i < buses_.size(); ++i) {
     const Bus& bus = wiring_.buses[i];
-    std::vector<uint32_t> ids;
-    bool cheetahs = false;
+    std::vector<IdFilter> filters;
+    bool zero = false;
     for (const Motor& motor : wiring_.motors) {
-      cheetahs =
-          cheetahs || (motor.bus == static_cast<int>(i) && motor.dialect == Dialect::kMiniCheetah);
+      if (motor.bus != static_cast<int>(i)) continue;
+      zero = zero || motor.dialect->route == ReplyRoute::kSharedZero;
+      if (motor.dialect->route != ReplyRoute::kMaster) continue;
+      filters.push_back({kExtended | motor.id << 8 | motor.reply_id, kExtended | 0xFFFF});
     }
     for (uint32_t id = 0; id < buses_[i].routes.size(); ++id) {
-      if (buses_[i].routes[id] != 0 || (id == 0 && cheetahs)) ids.push_back(id);
+      if (buses_[i].routes[id] != 0 || (id == 0 && zero)) filters.push_back(IdFilter::exactly(id));
     }
     std::string error;
-    buses_[i].bus = CanBus::open(bus.interface, bus.fd(), ids, &error, clocks_);
+    buses_[i].bus = CanBus::open(bus.interface, bus.fd(), filters, &error, clocks_);
     if (buses_[i].bus == nullptr) {
       errors->push_back("bus " + bus.name + ": " + error);
       continue;
@@ -48,10 +49,10 @@ bool CanRobot::open(std::vector<std::string>* errors) {
   return errors->empty();
 }
 
-bool CanRobot::read_register(const Motor& motor, Register address, RegisterValue* value) {
+bool CanRobot::read_register(const Motor& motor, uint16_t address, RegisterValue* value) {
   CanBus& bus = *buses_[motor.bus].bus;
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    const Frame request = encode_register_read(motor.id, address);
+    const Frame request = motor.dialect->register_request(motor.address(), address);
     bool down = false;
     bus.send(&request, 1, &down);
     const int64_t end = clocks_.monotonic_ns() + kAnswerTime;
@@ -61,9 +62,8 @@ bool CanRobot::read_register(const Motor& motor, Register address, RegisterValue
       bool answered = false;
       BusEvents events;
       bus.receive(&events, [&](const Received& received) {
-        if (received.frame.id != motor.reply_id) return;
-        const auto answer = decode_register_answer(received.frame);
-        if (!answer || answer->motor != motor.id || answer->address != address) return;
+        const auto answer = motor.dialect->read_register_answer(received.frame, motor.address());
+        if (!answer || answer->address != address) return;
         *value = *answer;
         answered = true;
       });
@@ -74,24 +74,21 @@ bool CanRobot::read_register(const Motor& motor, Register address, RegisterValue
 }
 
 std::string CanRobot::check_motor(const Motor& motor) {
-  constexpr Register kAddresses[] = {Register::kPositionRange, Register::kVelocityRange,
-                                     Register::kTorqueRange, Register::kTimeout,
-                                     Register::kControlMode};
-  RegisterValue values[std::size(kAddresses)];
-  for (size_t i = 0; i < std::size(kAddresses); ++i) {
-    if (!read_register(motor, kAddresses[i], &values[i])) {
-      return "no answer; check power, wiring, and the registers CAN_ID and MST_ID of the motor";
+  const Dialect& dialect = *motor.dialect;
+  std::vector<RegisterValue> values(dialect.registers.size());
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (!read_register(motor, dialect.registers[i].address, &values[i])) {
+      return "no answer; check power, wiring, and the identifiers that the motor is set to";
     }
   }
-  return check_registers(
-      {values[0].real(), values[1].real(), values[2].real(), values[3].raw, values[4].raw},
-      motor.ranges, wiring_.motor_timeout);
+  return check_registers(dialect, values, motor.ranges,
+                         {std::abs(motor.motor_torque(motor.torque_limit)), wiring_.motor_timeout});
 }
 
 void CanRobot::check_motors(std::vector<std::string>* errors) {
   int unchecked = 0;
   for (const Motor& motor : wiring_.motors) {
-    if (motor.dialect != Dialect::kDamiao) {
+    if (motor.dialect->registers.empty()) {
       ++unchecked;
       continue;
     }

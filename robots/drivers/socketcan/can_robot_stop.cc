@@ -16,7 +16,7 @@ void CanRobot::switch_off() {
   std::array<size_t, kMaxBuses> sent{};
   for (BusState& bus : buses_) bus.frames.clear();
   for (const Motor& motor : wiring_.motors) {
-    buses_[motor.bus].frames.push_back(encode_special(motor.id, Special::kDisable));
+    buses_[motor.bus].frames.push_back(motor.dialect->special(motor.address(), Special::kDisable));
   }
   const int64_t end = clocks_.monotonic_ns() + kStopPatience;
   for (;;) {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "mit_codec.h"
+#include "frame.h"
 #include "moment.h"
 
 namespace gaitd::can {

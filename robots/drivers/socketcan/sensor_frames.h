@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "mit_codec.h"
+#include "frame.h"
 
 namespace gaitd::can {
 

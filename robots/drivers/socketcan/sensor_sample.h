@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "mit_codec.h"
+#include "frame.h"
 #include "moment.h"
 
 namespace gaitd::can {

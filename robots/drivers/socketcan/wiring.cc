@@ -19,8 +19,9 @@ using sim::JsonReader;
 using sim::Range;
 using Errors = std::vector<std::string>;
 
-constexpr std::array<const char*, 3> kDialects = {"damiao", "mini_cheetah", "cubemars"};
 constexpr uint32_t kLastId = 0x7EF;  // above are register requests and the end of a cycle
+// Of a master on extended identifiers: beyond the motors, and 0xFE is for everybody.
+constexpr uint32_t kFirstMaster = 0x80, kLastMaster = 0xFD;
 
 std::string hex(uint32_t id) {
   char text[16];
@@ -38,7 +39,7 @@ void read_text(JsonReader* map, const char* key, std::string* value) {
 }
 
 // A number, or a text such as 0x14. All mini-cheetah motors reply with 0, so nobody else has it.
-void read_id(JsonReader* map, const char* key, uint32_t last, uint32_t* id) {
+void read_id(JsonReader* map, const char* key, uint32_t last, uint32_t* id, uint32_t first = 1) {
   if (!map->has(key)) return;
   const json& value = map->at(key);
   long long number = -1;
@@ -49,22 +50,21 @@ void read_id(JsonReader* map, const char* key, uint32_t last, uint32_t* id) {
     number = std::strtoll(text.c_str(), &end, 16);
     if (!text.starts_with("0x") || *end != '\0') number = -1;
   }
-  if (number >= 1 && number <= last) {
+  if (number >= first && number <= last) {
     *id = static_cast<uint32_t>(number);
   } else {
-    map->error(map->path(key), "an identifier 0x001.." + hex(last), value);
+    map->error(map->path(key), "an identifier " + hex(first) + ".." + hex(last), value);
   }
 }
 
 // The keys that motors share and that one of them may say otherwise.
 void read_motor_defaults(JsonReader* map, Motor* motor, Errors* errors) {
-  std::string dialect = kDialects[static_cast<int>(motor->dialect)];
-  read_text(map, "dialect", &dialect);
-  const auto found = std::find(kDialects.begin(), kDialects.end(), dialect);
-  if (found == kDialects.end()) {
-    map->error(map->path("dialect"), "damiao, mini_cheetah or cubemars", dialect);
+  std::string name = motor->dialect->name;
+  read_text(map, "dialect", &name);
+  if (const Dialect* dialect = find_dialect(name)) {
+    motor->dialect = dialect;
   } else {
-    motor->dialect = static_cast<Dialect>(found - kDialects.begin());
+    map->error(map->path("dialect"), "one of " + dialect_names(), name);
   }
   map->number("gear", {0, 1000, true}, &motor->gear);
   if (!map->has("ranges")) return;
@@ -149,8 +149,8 @@ class WiringReader {
   void claim(int bus, uint32_t id, const std::string& path) {
     const auto [place, first] = used_.try_emplace({bus, id}, path);
     if (first) return;
-    errors_->push_back(path + ": expected an identifier of its own on the bus, got " + hex(id) +
-                       ", which is " + place->second);
+    errors_->push_back(path + ": expected an identifier of its own on the bus, got " +
+                       hex(id & ~kExtended) + ", which is " + place->second);
   }
 
   void read_joints(JsonReader* root) {
@@ -182,25 +182,36 @@ class WiringReader {
     motor.joint = joint;
     read_motor_defaults(&map, &motor, errors_);
     motor.bus = bus_of(&map);
-    for (const char* key : {"id", "reply_id"}) {
-      const bool wanted = std::strcmp(key, "id") == 0 || motor.dialect != Dialect::kMiniCheetah;
-      if (wanted && !map.has(key)) map.error(map.path(key), "an identifier", nullptr);
-    }
-    read_id(&map, "id", kLastId, &motor.id);
-    read_id(&map, "reply_id", kLastId, &motor.reply_id);
-    claim(motor.bus, motor.id, map.path("id"));
-    if (motor.dialect != Dialect::kMiniCheetah) {
-      claim(motor.bus, motor.reply_id, map.path("reply_id"));
-    } else if (motor.id > 0xFF) {
-      map.error(map.path("id"), "an identifier up to 0xFF, as a mini_cheetah reply has no more",
-                hex(motor.id));
-    }
+    read_ids(&map, &motor);
     map.number("sign", {-1, 1}, &motor.sign);
     if (std::abs(motor.sign) != 1) map.error(map.path("sign"), "1 or -1", motor.sign);
     map.number("offset", {-100, 100}, &motor.offset);
     read_limits(&map, &motor);
     check_ranges(motor, path);
     return motor;
+  }
+
+  void read_ids(JsonReader* map, Motor* motor) {
+    const Dialect& dialect = *motor->dialect;
+    if (!map->has("id")) map->error(map->path("id"), "an identifier", nullptr);
+    read_id(map, "id", dialect.last_id, &motor->id);
+    const bool extended = dialect.route == ReplyRoute::kMaster;
+    claim(motor->bus, motor->id | (extended ? kExtended : 0), map->path("id"));
+    if (extended) {
+      motor->reply_id = kLastMaster;
+      read_id(map, "reply_id", kLastMaster, &motor->reply_id, kFirstMaster);
+      if (wiring_.buses[motor->bus].fd()) {
+        map->error(map->path("bus"),
+                   "a bus without data_bitrate, as " + std::string(dialect.name) +
+                       " motors do not know CAN FD and disturb it",
+                   wiring_.buses[motor->bus].name);
+      }
+      return;
+    }
+    if (dialect.route == ReplyRoute::kSharedZero) return;
+    if (!map->has("reply_id")) map->error(map->path("reply_id"), "an identifier", nullptr);
+    read_id(map, "reply_id", kLastId, &motor->reply_id);
+    claim(motor->bus, motor->reply_id, map->path("reply_id"));
   }
 
   void read_limits(JsonReader* map, Motor* motor) {
@@ -293,8 +304,9 @@ double bus_load(const Wiring& wiring, int bus, double period) {
   double busy = 0;
   for (const Motor& motor : wiring.motors) {
     if (motor.bus != bus) continue;
+    const bool extended = motor.dialect->route == ReplyRoute::kMaster;
     busy +=
-        frame_time(rates, 8) + frame_time(rates, motor.dialect == Dialect::kMiniCheetah ? 6 : 8);
+        frame_time(rates, 8, extended) + frame_time(rates, motor.dialect->reply_length, extended);
   }
   for (const Sender& imu : wiring.imus) {
     if (imu.bus == bus) busy += kImuFrames * frame_time(rates, 8);

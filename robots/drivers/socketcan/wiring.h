@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bus_load.h"
+#include "dialect.h"
 #include "gaitd/abi/types.h"
-#include "mit_codec.h"
 
 namespace gaitd::can {
 
@@ -30,7 +30,7 @@ struct Motor {
   int bus = 0;
   uint32_t id = 0;
   uint32_t reply_id = 0;
-  Dialect dialect = Dialect::kDamiao;
+  const Dialect* dialect = &kDamiao;
   Ranges ranges;
   double sign = 1;
   double gear = 1;    // turns of the motor's output per turn of the joint
@@ -41,6 +41,7 @@ struct Motor {
   double position_min = 0;    // rad
   double position_max = 0;
 
+  MotorId address() const { return {id, reply_id}; }
   double joint_position(double motor) const { return sign * motor / gear + offset; }
   double joint_velocity(double motor) const { return sign * motor / gear; }
   double joint_torque(double motor) const { return sign * motor * gear; }

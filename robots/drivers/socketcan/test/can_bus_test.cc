@@ -19,7 +19,9 @@ namespace {
 
 std::unique_ptr<CanBus> open_bus(const char* interface, bool fd, std::vector<uint32_t> ids) {
   std::string error;
-  auto bus = CanBus::open(interface, fd, ids, &error);
+  std::vector<IdFilter> filters;
+  for (const uint32_t id : ids) filters.push_back(IdFilter::exactly(id));
+  auto bus = CanBus::open(interface, fd, filters, &error);
   EXPECT_NE(nullptr, bus) << error;
   return bus;
 }

@@ -13,24 +13,54 @@ TEST(CanRobot, IsSwitchedOnByTorqueOnlyAndOffAtTheEnd) {
   EXPECT_EQ(0u, b.read());
   EXPECT_NEAR(-0.15, b.sensors.joints[0].position, 1e-3);
   EXPECT_EQ(1u, b.sensors.joints[0].info.valid);
-  EXPECT_EQ(Special::kDisable, decode_special(b.cycle(GAITD_JOINT_MODE_DAMPING)));
-  EXPECT_EQ(Special::kDisable, decode_special(b.cycle(GAITD_JOINT_MODE_OFF)));
-  EXPECT_EQ(Special::kEnable, decode_special(b.cycle(GAITD_JOINT_MODE_TORQUE, 4)));
-  const MotorCommand command = decode_command(b.cycle(GAITD_JOINT_MODE_TORQUE, 4), kRanges);
+  EXPECT_EQ(Special::kDisable, b.special_of(b.cycle(GAITD_JOINT_MODE_DAMPING)));
+  EXPECT_EQ(Special::kDisable, b.special_of(b.cycle(GAITD_JOINT_MODE_OFF)));
+  EXPECT_EQ(Special::kEnable, b.special_of(b.cycle(GAITD_JOINT_MODE_TORQUE, 4)));
+  const MotorCommand command =
+      b.dialect.read_command(b.cycle(GAITD_JOINT_MODE_TORQUE, 4), kRanges).value();
   EXPECT_NEAR(-2.0, command.torque, 0.01);
   EXPECT_NEAR(0.5, command.damping, 0.01);
   // Beyond the limit of the transmission.
-  EXPECT_NEAR(-3.0, decode_command(b.cycle(GAITD_JOINT_MODE_TORQUE, 400), kRanges).torque, 0.01);
+  EXPECT_NEAR(-3.0, b.dialect.read_command(b.cycle(GAITD_JOINT_MODE_TORQUE, 400), kRanges)->torque,
+              0.01);
   const Frame damped = b.cycle(GAITD_JOINT_MODE_DAMPING);
-  EXPECT_TRUE(is_torque_free(damped));
-  EXPECT_FALSE(decode_special(damped));
+  EXPECT_TRUE(b.dialect.is_torque_free(damped));
+  EXPECT_FALSE(b.special_of(damped));
   // Figures that are none never become torque.
   b.write(GAITD_JOINT_MODE_TORQUE, std::nan(""));
-  EXPECT_TRUE(is_torque_free(b.wire.take().at(0)));
+  EXPECT_TRUE(b.dialect.is_torque_free(b.wire.take().at(0)));
   b.robot->stop();
   const std::vector<Frame> last = b.wire.take();
   ASSERT_EQ(3u, last.size());
-  for (const Frame& frame : last) EXPECT_EQ(Special::kDisable, decode_special(frame));
+  for (const Frame& frame : last) EXPECT_EQ(Special::kDisable, b.special_of(frame));
+}
+
+TEST(CanRobot, SpeaksToRobStrideMotorsOnExtendedIdentifiers) {
+  Kit kit;
+  kit.dialect = &kRobStride;
+  kit.sensors = true;
+  Bench b(kit);
+  b.wire.send(encode_estop(kEstopId, false, 1));
+  b.wire.send(encode_estop(kEstopId, false, 2));
+  EXPECT_EQ(0u, b.read());
+  EXPECT_NEAR(-0.15, b.sensors.joints[0].position, 1e-3);
+  EXPECT_EQ(Special::kDisable, b.special_of(b.cycle(GAITD_JOINT_MODE_DAMPING)));
+  EXPECT_EQ(Special::kEnable, b.special_of(b.cycle(GAITD_JOINT_MODE_TORQUE, 4)));
+  const Frame frame = b.cycle(GAITD_JOINT_MODE_TORQUE, 4);
+  EXPECT_EQ(kExtended | 0x01000001, frame.id & 0xFF0000FF);
+  EXPECT_NEAR(-2.0, b.dialect.read_command(frame, kRanges)->torque, 1e-3);
+  // A fault that comes before the reply of the cycle is not lost with it.
+  b.write(GAITD_JOINT_MODE_TORQUE, 4);
+  b.wire.take();
+  b.wire.send(kRobStride.fault(b.motor, MotorError::kOverVoltage));
+  b.answer();
+  EXPECT_EQ(uint32_t{GAITD_HEALTH_MOTOR}, b.read());
+  EXPECT_STREQ("motor of knee0: over-voltage", b.health().text);
+  b.write(GAITD_JOINT_MODE_TORQUE, 4);
+  const std::vector<Frame> frames = b.wire.take();
+  ASSERT_EQ(1u, frames.size());
+  EXPECT_TRUE(b.special_of(frames[0]) == Special::kDisable ||
+              b.special_of(frames[0]) == Special::kClear);
 }
 
 TEST(CanRobot, CountsRepliesThatAreMissingLateAndDuplicate) {
@@ -77,11 +107,11 @@ TEST(CanRobot, AfterBusOffOnlySwitchesOffUntilTorqueIsCommandedAgain) {
   for (int i = 0; i < 250; ++i) b.write(GAITD_JOINT_MODE_DAMPING, 0);
   const std::vector<Frame> frames = b.wire.take();
   EXPECT_FALSE(frames.empty());
-  for (const Frame& frame : frames) EXPECT_EQ(Special::kDisable, decode_special(frame));
+  for (const Frame& frame : frames) EXPECT_EQ(Special::kDisable, b.special_of(frame));
   b.answer();
   EXPECT_EQ(0u, b.read());
-  EXPECT_EQ(Special::kDisable, decode_special(b.cycle(GAITD_JOINT_MODE_DAMPING)));
-  EXPECT_EQ(Special::kEnable, decode_special(b.cycle(GAITD_JOINT_MODE_TORQUE, 4)));
+  EXPECT_EQ(Special::kDisable, b.special_of(b.cycle(GAITD_JOINT_MODE_DAMPING)));
+  EXPECT_EQ(Special::kEnable, b.special_of(b.cycle(GAITD_JOINT_MODE_TORQUE, 4)));
 }
 
 TEST(CanRobot, ErrorPassiveIsAWarningUntilTheBusIsActiveAgain) {
@@ -120,7 +150,7 @@ TEST(CanRobot, ABusThatFellAndCameBackBetweenTwoReadsIsToldAndItsMotorsStayOff) 
   b.answer();
   EXPECT_EQ(uint32_t{GAITD_HEALTH_BUS}, b.read());
   // The daemon has latched its fault by now.
-  EXPECT_EQ(Special::kDisable, decode_special(b.cycle(GAITD_JOINT_MODE_DAMPING)));
+  EXPECT_EQ(Special::kDisable, b.special_of(b.cycle(GAITD_JOINT_MODE_DAMPING)));
 }
 
 }  // namespace

@@ -154,20 +154,20 @@ TEST(CanRobot, WhateverIsOnTheBusIsReadToFiguresInRangeAndNeverToTorque) {
   }
   EXPECT_GT(b.health().stale, 100u);
   for (const Frame& frame : b.wire.take()) {
-    EXPECT_EQ(Special::kDisable, decode_special(frame));
+    EXPECT_EQ(Special::kDisable, b.special_of(frame));
   }
 }
 
 TEST(CanRobot, AnAnswerAboutARegisterIsNoStateOfTheMotor) {
   Kit kit;
-  kit.dialect = Dialect::kDamiao;
+  kit.dialect = &kDamiao;
   Bench b(kit);
   b.read();
   const double position = b.sensors.joints[0].position;
   const uint32_t sequence = b.sensors.joints[0].info.sequence;
   const uint32_t stale = b.health().stale;
   // Somebody else asks the motor.
-  b.wire.send(encode_register_answer(kReplyId, {1, Register::kMasterId, kReplyId}));
+  b.wire.send(kDamiao.register_answer(b.motor, {1, 7, kReplyId}));
   b.read();
   EXPECT_EQ(position, b.sensors.joints[0].position);
   EXPECT_EQ(sequence, b.sensors.joints[0].info.sequence);
@@ -189,7 +189,7 @@ TEST(CanRobot, StopsTheMotorsThatItReachesWithoutWaitingForABusThatIsDown) {
   b.robot->stop();
   const std::vector<Frame> frames = b.wires[1]->take();
   EXPECT_EQ(3u, frames.size());
-  for (const Frame& frame : frames) EXPECT_EQ(Special::kDisable, decode_special(frame));
+  for (const Frame& frame : frames) EXPECT_EQ(Special::kDisable, b.special_of(frame));
   EXPECT_LE(slept, 50) << "0.1 s";
   ASSERT_FALSE(b.lines.empty());
   EXPECT_NE(std::string::npos, b.lines[0].find("bus leg0")) << b.lines[0];
@@ -212,7 +212,7 @@ TEST(CanRobot, StopsTheMotorsOfABusWhoseQueueIsFullAsSoonAsItTakesFrames) {
   for (const Frame& frame : b.wire.take()) frames.push_back(frame);
   ASSERT_GT(frames.size(), 3u);
   for (size_t i = frames.size() - 3; i < frames.size(); ++i) {
-    EXPECT_EQ(Special::kDisable, decode_special(frames[i]));
+    EXPECT_EQ(Special::kDisable, b.special_of(frames[i]));
   }
   EXPECT_LE(slept, 50);
 }

@@ -17,7 +17,7 @@
 namespace gaitd::can {
 
 inline const Ranges kRanges{12.5, 30, 10, 500, 5};
-inline constexpr uint32_t kReplyId = 0x11, kImuId = 0x300, kEstopId = 0x80;
+inline constexpr uint32_t kReplyId = 0x91, kImuId = 0x300, kEstopId = 0x80;
 
 // Time passes, and what waits comes to pass, as a test wants it.
 struct TestClocks : Clocks {
@@ -36,7 +36,7 @@ struct TestClocks : Clocks {
 
 struct Kit {
   RobotOptions options;
-  Dialect dialect = Dialect::kMiniCheetah;
+  const Dialect* dialect = &kMiniCheetah;
   int buses = 1;         // with a motor each
   bool sensors = false;  // an IMU and an e-stop on the first bus
 };
@@ -49,11 +49,13 @@ struct Bench {
   std::vector<std::string> lines;  // of the log
   std::unique_ptr<CanRobot> robot;
   GaitdSensors sensors{};
-  double position = 0.3;  // rad, that the motors show
-  const Dialect dialect;
+  double position = 0.3;                // rad, that the motors show
+  MotorError error = MotorError::kOff;  // that they tell, where the dialect can
+  const Dialect& dialect;
+  const MotorId motor{1, kReplyId};
 
   explicit Bench(const Kit& kit = {})
-      : wires(make_wires(kit.buses)), wire(*wires[0]), dialect(kit.dialect) {
+      : wires(make_wires(kit.buses)), wire(*wires[0]), dialect(*kit.dialect) {
     model.joint_count = kit.buses;
     Wiring wiring;
     for (int i = 0; i < kit.buses; ++i) {
@@ -104,22 +106,32 @@ struct Bench {
     return wires;
   }
   void respond(int bus, const Frame& frame) {
-    const auto request = decode_register_read(frame);
+    using Meaning = Register::Meaning;
+    const auto request =
+        dialect.registers.empty() ? std::nullopt : dialect.read_register_request(frame);
     if (!request) return answer(bus);
     RegisterValue value = *request;
-    if (value.address == Register::kPositionRange) value.raw = raw_of(12.5f);
-    if (value.address == Register::kVelocityRange) value.raw = raw_of(30.0f);
-    if (value.address == Register::kTorqueRange) value.raw = raw_of(10.0f);
-    if (value.address == Register::kTimeout) value.raw = 2000;
-    if (value.address == Register::kControlMode) value.raw = kMitControlMode;
-    wires[bus]->send(encode_register_answer(kReplyId, value));
+    for (const Register& entry : dialect.registers) {
+      if (entry.address != value.address) continue;
+      value.raw = entry.expected;
+      if (entry.meaning == Meaning::kPositionRange) value.raw = raw_of(12.5f);
+      if (entry.meaning == Meaning::kVelocityRange) value.raw = raw_of(30.0f);
+      if (entry.meaning == Meaning::kTorqueRange) value.raw = raw_of(10.0f);
+      if (entry.meaning == Meaning::kTorqueLimit) value.raw = raw_of(10.0f);
+      if (entry.meaning == Meaning::kTimeout) value.raw = 2000;
+    }
+    wires[bus]->send(dialect.register_answer(motor, value));
   }
   void answer(int bus = 0) {
     MotorReply reply;
-    reply.motor = 1;
     reply.position = position;
-    wires[bus]->send(
-        encode_reply(dialect == Dialect::kMiniCheetah ? 0 : kReplyId, reply, dialect, kRanges));
+    reply.error = static_cast<uint8_t>(error);
+    wires[bus]->send(dialect.reply(motor, kRanges, reply));
+  }
+  // What a motor of this dialect does when it hears this.
+  void obey(const Frame& frame) {
+    if (special_of(frame) == Special::kEnable) error = MotorError::kOn;
+    if (special_of(frame) == Special::kDisable) error = MotorError::kOff;
   }
   GaitdHealth health() const {
     GaitdHealth health;
@@ -140,11 +152,15 @@ struct Bench {
     }
     robot->write(commands);
   }
+  std::optional<Special> special_of(const Frame& frame) const {
+    return dialect.read_special(frame);
+  }
   // The one frame of a cycle.
   Frame cycle(int mode, double torque = 0) {
     write(mode, torque);
     const std::vector<Frame> frames = wire.take();
     EXPECT_EQ(1u, frames.size());
+    for (const Frame& frame : frames) obey(frame);
     answer();
     EXPECT_EQ(0u, read());
     return frames.empty() ? Frame{} : frames[0];

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "mit_codec.h"
+#include "frame.h"
 
 namespace gaitd::can {
 
@@ -54,8 +54,10 @@ class Slcan {
   }
   void bus_off() { say("sb000256"); }
   void send(const Frame& frame) {
-    char text[32];
-    int length = std::snprintf(text, sizeof(text), "t%03X%d", frame.id, frame.length);
+    char text[48];
+    const bool extended = (frame.id & kExtended) != 0;
+    int length = std::snprintf(text, sizeof(text), extended ? "T%08X%d" : "t%03X%d",
+                               frame.id & ~kExtended, frame.length);
     for (int i = 0; i < frame.length; ++i) {
       length += std::snprintf(text + length, sizeof(text) - length, "%02X", frame.data[i]);
     }
@@ -74,12 +76,14 @@ class Slcan {
     for (size_t end; (end = text_.find('\r')) != std::string::npos; text_.erase(0, end + 1)) {
       Frame frame;
       unsigned id = 0, length = 0;
-      if (std::sscanf(text_.c_str(), "t%3x%1u", &id, &length) != 2) continue;
-      frame.id = id;
+      const bool extended = text_[0] == 'T';
+      if (std::sscanf(text_.c_str(), extended ? "T%8x%1u" : "t%3x%1u", &id, &length) != 2) continue;
+      frame.id = id | (extended ? kExtended : 0);
+      const size_t begin = extended ? 10 : 5;
       frame.length = static_cast<uint8_t>(length);
       for (unsigned i = 0; i < length; ++i) {
         frame.data[i] =
-            static_cast<uint8_t>(std::strtoul(text_.substr(5 + 2 * i, 2).c_str(), nullptr, 16));
+            static_cast<uint8_t>(std::strtoul(text_.substr(begin + 2 * i, 2).c_str(), nullptr, 16));
       }
       frames.push_back(frame);
     }

@@ -57,6 +57,8 @@ TEST(BusLoad, MatchesTheMeasuredPairs) {
   EXPECT_NEAR(270, pair(1e6, 0), 0.01);
   EXPECT_NEAR(112, pair(1e6, 5e6), 0.5);
   EXPECT_NEAR(95, pair(1e6, 8e6), 0.6);
+  // Twenty bits more, of which one in four is stuffed after.
+  EXPECT_NEAR(160, 1e6 * frame_time({1e6, 0}, 8, true), 0.01);
 }
 
 TEST(BusLoad, RefusesMoreJointsThanABusCanCarry) {
@@ -168,7 +170,34 @@ TEST(Wiring, RefusesIdentifiersThatRepliesOfOthersHave) {
   text = make_wiring(1, 5e6);
   text["joints"]["j0"]["dialect"] = "mini_cheetah";
   text["joints"]["j0"]["id"] = "0x101";  // its reply would say 0x01
-  EXPECT_NE(std::string::npos, errors_of(text, 1, 0.001).find("an identifier up to 0xFF"));
+  EXPECT_NE(std::string::npos, errors_of(text, 1, 0.001).find("an identifier 0x001..0x0FF"));
+}
+
+TEST(Wiring, RobStrideMotorsHaveIdentifiersOfTheirOwnAndNoCanFd) {
+  json text = make_wiring(2, 0);
+  text["buses"]["feet"] = {{"interface", "can1"}};
+  text["feet"]["left"]["bus"] = text["feet"]["right"]["bus"] = "feet";
+  text["defaults"]["dialect"] = "robstride";
+  text["joints"]["j0"].erase("reply_id");
+  text["joints"]["j1"]["reply_id"] = "0xFC";
+  text["estop"] = {{"bus", "one"}, {"id", 1}};  // 11 bits: not that of j0
+  Wiring wiring;
+  EXPECT_EQ("", errors_of(text, 2, 0.004, &wiring));
+  EXPECT_EQ(&kRobStride, wiring.motors[0].dialect);
+  EXPECT_EQ(0xFDu, wiring.motors[0].reply_id);
+  EXPECT_EQ(0xFCu, wiring.motors[1].reply_id);
+  EXPECT_NEAR(4 * 160e-6 / 0.004, bus_load(wiring, 1, 0.004), 1e-9);
+  text["joints"]["j1"] = {{"bus", "one"}, {"id", "0x80"}, {"reply_id", 3}};
+  std::string errors = errors_of(text, 2, 0.004);
+  EXPECT_NE(std::string::npos, errors.find("j1.id: expected an identifier 0x001..0x07F")) << errors;
+  EXPECT_NE(std::string::npos, errors.find("j1.reply_id: expected an identifier 0x080..0x0FD"))
+      << errors;
+  text["joints"]["j1"] = {{"bus", "one"}, {"id", 1}};
+  text["buses"]["one"]["data_bitrate"] = 5e6;
+  errors = errors_of(text, 2, 0.004);
+  EXPECT_NE(std::string::npos, errors.find("0x001, which is can.joints.j0.id")) << errors;
+  EXPECT_NE(std::string::npos, errors.find("j0.bus: expected a bus without data_bitrate"))
+      << errors;
 }
 
 TEST(Wiring, AnEstopIsAlwaysWatched) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mit_codec.h"
-
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "codes.h"
+#include "dialect.h"
 #include "sensor_frames.h"
 
 namespace gaitd::can {
@@ -10,8 +12,11 @@ namespace {
 
 using Bytes = std::array<uint8_t, 8>;
 const Ranges kRanges{12.5, 30.0, 10.0, 500.0, 5.0};
+const MotorId kMotor{5, 0x15};
 
-TEST(MitCodec, EveryCodeSurvivesARoundTrip) {
+Frame command_of(const MotorCommand& command) { return kDamiao.command(kMotor, kRanges, command); }
+
+TEST(MitDialects, EveryCodeSurvivesARoundTrip) {
   const double ranges[] = {12.5, 3.141593, 95.5, 10.0, 54.0, 0.1};
   for (const double range : ranges) {
     for (uint32_t code = 0; code <= 0xFFFF; ++code) {
@@ -24,7 +29,7 @@ TEST(MitCodec, EveryCodeSurvivesARoundTrip) {
   }
 }
 
-TEST(MitCodec, EveryCodeOfEveryFieldSurvivesInTheFrame) {
+TEST(MitDialects, EveryCodeOfEveryFieldSurvivesInTheFrame) {
   for (uint32_t code = 0; code <= 0xFFFF; ++code) {
     MotorCommand command;
     command.position = from_code(code, -12.5, 12.5, 16);
@@ -33,9 +38,9 @@ TEST(MitCodec, EveryCodeOfEveryFieldSurvivesInTheFrame) {
     command.stiffness = from_code(small ^ 0xAAA, 0, 500, 12);
     command.damping = from_code(small ^ 0x555, 0, 5, 12);
     command.torque = from_code(0xFFF - small, -10, 10, 12);
-    const Frame frame = encode_command(0x12, kRanges, command);
-    const MotorCommand back = decode_command(frame, kRanges);
-    ASSERT_EQ(frame.data, encode_command(0x12, kRanges, back).data) << code;
+    const Frame frame = command_of(command);
+    const MotorCommand back = kDamiao.read_command(frame, kRanges).value();
+    ASSERT_EQ(frame.data, command_of(back).data) << code;
     ASSERT_EQ(code, static_cast<uint32_t>(frame.data[0] << 8 | frame.data[1]));
     ASSERT_EQ(small, static_cast<uint32_t>(frame.data[2] << 4 | frame.data[3] >> 4));
     ASSERT_EQ(small ^ 0xAAA, static_cast<uint32_t>((frame.data[3] & 0xF) << 8 | frame.data[4]));
@@ -46,19 +51,18 @@ TEST(MitCodec, EveryCodeOfEveryFieldSurvivesInTheFrame) {
   }
 }
 
-TEST(MitCodec, EveryCodeOfAReplySurvivesInEachDialect) {
-  for (const Dialect dialect : {Dialect::kDamiao, Dialect::kMiniCheetah, Dialect::kCubeMars}) {
+TEST(MitDialects, EveryCodeOfAReplySurvivesInEachDialect) {
+  for (const Dialect* dialect : {&kDamiao, &kMiniCheetah, &kCubeMars}) {
     for (uint32_t code = 0; code <= 0xFFFF; ++code) {
       MotorReply reply;
-      reply.motor = 5;
       reply.error = 1;
       reply.position = from_code(code, -12.5, 12.5, 16);
       reply.velocity = from_code(code & 0xFFF, -30, 30, 12);
       reply.torque = from_code(code >> 4, -10, 10, 12);
-      const Frame frame = encode_reply(0x15, reply, dialect, kRanges);
-      const auto back = decode_reply(frame, dialect, kRanges);
-      ASSERT_TRUE(back);
-      ASSERT_EQ(back->motor, 5u);
+      const Frame frame = dialect->reply(kMotor, kRanges, reply);
+      ASSERT_FALSE(dialect->read_reply(frame, {6, 0x15}, kRanges)) << "of another motor";
+      const auto back = dialect->read_reply(frame, kMotor, kRanges);
+      ASSERT_TRUE(back) << code;
       ASSERT_EQ(back->error, 1);
       ASSERT_DOUBLE_EQ(back->position, reply.position);
       ASSERT_DOUBLE_EQ(back->velocity, reply.velocity);
@@ -67,82 +71,85 @@ TEST(MitCodec, EveryCodeOfAReplySurvivesInEachDialect) {
   }
 }
 
-TEST(MitCodec, ZeroIsAlmostTheMiddleAndNotAnAllZeroPayload) {
+TEST(MitDialects, ZeroIsAlmostTheMiddleAndNotAnAllZeroPayload) {
   const Bytes zero{0x7F, 0xFF, 0x7F, 0xF0, 0x00, 0x00, 0x07, 0xFF};
-  EXPECT_EQ(zero, encode_command(1, kRanges, {}).data);
-  EXPECT_TRUE(is_torque_free(encode_command(1, kRanges, {})));
+  EXPECT_EQ(zero, command_of({}).data);
+  EXPECT_TRUE(kDamiao.is_torque_free(command_of({})));
+  EXPECT_FALSE(kDamiao.is_torque_free(command_of({.torque = 0.01})));
+  EXPECT_FALSE(kDamiao.is_torque_free(command_of({.velocity = 0.1})));
+  EXPECT_FALSE(kDamiao.is_torque_free(command_of({.stiffness = 0.2})));
   Frame nothing;  // what a forgotten initialisation would send
-  EXPECT_FALSE(is_torque_free(nothing));
-  EXPECT_DOUBLE_EQ(-10.0, decode_command(nothing, kRanges).torque);
+  EXPECT_FALSE(kDamiao.is_torque_free(nothing));
+  EXPECT_DOUBLE_EQ(-10.0, kDamiao.read_command(nothing, kRanges)->torque);
 }
 
-TEST(MitCodec, TheSafeIdleIsMiddleCodesWithASmallDamping) {
+TEST(MitDialects, TheSafeIdleIsMiddleCodesWithASmallDamping) {
   const Bytes idle{0x7F, 0xFF, 0x7F, 0xF0, 0x00, 0x19, 0x97, 0xFF};
-  EXPECT_EQ(idle, encode_damping(1, kRanges, 0.5).data);
-  EXPECT_TRUE(is_torque_free(encode_damping(1, kRanges, 0.5)));
+  EXPECT_EQ(idle, command_of({.damping = 0.5}).data);
+  EXPECT_TRUE(kDamiao.is_torque_free(command_of({.damping = 0.5})));
 }
 
-TEST(MitCodec, PublishedExamples) {
+TEST(MitDialects, PublishedExamples) {
   // p = PMAX, v = VMAX, kp = 500, kd = 5, t = TMAX: all ones.
   const Bytes ones{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
-  EXPECT_EQ(ones, encode_command(1, kRanges, {12.5, 30, 500, 5, 10}).data);
+  EXPECT_EQ(ones, command_of({12.5, 30, 500, 5, 10}).data);
   // Beyond the range is the end of the range, and what is no number is the middle.
-  EXPECT_EQ(ones, encode_command(1, kRanges, {99, 99, 999, 99, 99}).data);
+  EXPECT_EQ(ones, command_of({99, 99, 999, 99, 99}).data);
   EXPECT_EQ(0x7FFFu, to_code(std::nan(""), -12.5, 12.5, 16));
   // Half of the gains.
   const Bytes gains{0x7F, 0xFF, 0x7F, 0xF7, 0xFF, 0x7F, 0xF7, 0xFF};
-  EXPECT_EQ(gains, encode_command(1, kRanges, {0, 0, 250, 2.5, 0}).data);
+  EXPECT_EQ(gains, command_of({0, 0, 250, 2.5, 0}).data);
 }
 
-TEST(MitCodec, SpecialFrames) {
+TEST(MitDialects, SpecialFrames) {
   const Bytes enable{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC};
-  EXPECT_EQ(enable, encode_special(3, Special::kEnable).data);
+  EXPECT_EQ(enable, kDamiao.special(kMotor, Special::kEnable).data);
   for (const Special s :
        {Special::kEnable, Special::kDisable, Special::kSetZero, Special::kClear}) {
-    EXPECT_EQ(s, decode_special(encode_special(3, s)));
+    EXPECT_EQ(s, kDamiao.read_special(kDamiao.special(kMotor, s)));
   }
-  EXPECT_FALSE(decode_special(encode_command(3, kRanges, {12.5, 30, 500, 5, 10})));
+  EXPECT_FALSE(kDamiao.read_special(command_of({12.5, 30, 500, 5, 10})));
 }
 
-TEST(MitCodec, DamiaoReplyHasErrorAndTemperatures) {
+TEST(MitDialects, DamiaoReplyHasErrorAndTemperatures) {
   Frame frame;
   frame.id = 0x11;
   frame.data = {0xB1, 0x80, 0x00, 0x80, 0x08, 0x00, 65, 70};
-  const auto reply = decode_reply(frame, Dialect::kDamiao, kRanges);
+  const MotorId motor{1, 0x11};
+  const auto reply = kDamiao.read_reply(frame, motor, kRanges);
   ASSERT_TRUE(reply);
-  EXPECT_EQ(1u, reply->motor);
   EXPECT_STREQ("drive too hot", motor_error_text(reply->error));
   EXPECT_NEAR(0.0, reply->position, 2e-4);
   EXPECT_EQ(65, reply->mosfet_temperature);
   EXPECT_EQ(70, reply->rotor_temperature);
   frame.length = 7;
-  EXPECT_FALSE(decode_reply(frame, Dialect::kDamiao, kRanges));
-  EXPECT_TRUE(decode_reply(frame, Dialect::kMiniCheetah, kRanges));
+  frame.data[0] = 1;
+  EXPECT_FALSE(kDamiao.read_reply(frame, motor, kRanges));
+  EXPECT_TRUE(kMiniCheetah.read_reply(frame, motor, kRanges));
   frame.length = 12;
-  EXPECT_FALSE(decode_reply(frame, Dialect::kDamiao, kRanges));
-  EXPECT_FALSE(decode_reply(frame, Dialect::kMiniCheetah, kRanges));
+  EXPECT_FALSE(kDamiao.read_reply(frame, motor, kRanges));
+  EXPECT_FALSE(kMiniCheetah.read_reply(frame, motor, kRanges));
 }
 
-TEST(MitCodec, Registers) {
-  const Frame read = encode_register_read(0x104, Register::kPositionRange);
-  EXPECT_EQ(kRegisterId, read.id);
+TEST(MitDialects, RegistersOfDamiao) {
+  const MotorId motor{0x104, 0x14};
+  const Frame read = kDamiao.register_request(motor, 21);
+  EXPECT_EQ(kDamiaoRegisterId, read.id);
   EXPECT_EQ((Bytes{0x04, 0x01, 0x33, 21, 0, 0, 0, 0}), read.data);
-  const Frame answer =
-      encode_register_answer(0x14, {0x104, Register::kPositionRange, raw_of(12.5f)});
+  EXPECT_EQ(0x104u, kDamiao.read_register_request(read)->motor);
+  const Frame answer = kDamiao.register_answer(motor, {0x104, 21, raw_of(12.5f)});
   EXPECT_EQ((Bytes{0x04, 0x01, 0x33, 21, 0x00, 0x00, 0x48, 0x41}), answer.data);
-  const auto value = decode_register_answer(answer);
+  const auto value = kDamiao.read_register_answer(answer, motor);
   ASSERT_TRUE(value);
-  EXPECT_EQ(0x104u, value->motor);
+  EXPECT_EQ(21, value->address);
   EXPECT_FLOAT_EQ(12.5f, value->real());
-  EXPECT_TRUE(is_register_answer(answer, 0x104));
-  EXPECT_FALSE(is_register_answer(answer, 0x004));
+  EXPECT_FALSE(kDamiao.read_register_answer(answer, {0x004, 0x14}));
+  EXPECT_FALSE(kDamiao.read_register_answer(answer, {0x104, 0x15}));
+  // What is about a register is no state, whether it was read or written.
   Frame written = answer;
   written.data[2] = 0x55;
-  EXPECT_TRUE(is_register_answer(written, 0x104));
-  MotorReply reply;
-  reply.motor = 1;
-  reply.error = 1;
-  EXPECT_FALSE(is_register_answer(encode_reply(0x11, reply, Dialect::kDamiao, kRanges), 1));
+  EXPECT_FALSE(kDamiao.read_reply(answer, motor, kRanges));
+  EXPECT_FALSE(kDamiao.read_reply(written, motor, kRanges));
 }
 
 TEST(SensorFrames, EveryCodeSurvives) {
