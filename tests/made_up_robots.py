@@ -1,4 +1,4 @@
-"""Makes eight humanoids as different as published ones are: made_up_robots.py FOLDER [NAME...]
+"""Makes humanoids as different as published ones are: made_up_robots.py FOLDER [NAME...]
 
 Sizes of 0.3 to 1.2 of a human of 1.8 m, hips of every order and tilted, soles of boxes, spheres,
 cylinders and meshes (STL in both forms, OBJ, COLLADA, in collisions or only in visuals), IMUs in
@@ -186,6 +186,16 @@ def box_sole(robot, link, y, axes=ONE):
     robot.axes[link] = axes
     size = [robot.size * x for x in (FRONT - BACK, 2 * HALF, 0.03)]
     return shape(robot, link, [(FRONT + BACK) / 2, 0, DEPTH + 0.015], f'<box size="{text(size)}"/>')
+
+
+def narrow_sole(width):
+    """A box of this width, m at size 1."""
+    def make(robot, link, y, axes=ONE):
+        robot.axes[link] = axes
+        size = [robot.size * x for x in (FRONT - BACK, width, 0.03)]
+        return shape(robot, link, [(FRONT + BACK) / 2, 0, DEPTH + 0.015],
+                     f'<box size="{text(size)}"/>')
+    return make
 
 
 def sphere_sole(robot, link, y, axes=ONE):
@@ -390,7 +400,23 @@ def twisted(folder):
     r.write(folder)
 
 
-ROBOTS = [tiny, spheres, sideways, tilted, toes, backwards, nameless, twisted]
+def five_joints(name, width):
+    """Legs of five joints: nothing rolls the feet, which are bars."""
+    def make(folder):
+        r = Robot(name, 0.85)
+        pelvis(r)
+        imu(r, "pelvis", [0, 0, 0.03])
+        torso(r, waist="z")
+        for side in ("left", "right"):
+            leg(r, side, "zxy", "y", sole=sole_of(r, narrow_sole(width)))
+            arm(r, side)
+        r.write(folder)
+    make.__name__ = name
+    return make
+
+
+ROBOTS = [tiny, spheres, sideways, tilted, toes, backwards, nameless, twisted,
+          five_joints("narrow", 0.047), five_joints("wide", 0.12)]
 
 
 def main():

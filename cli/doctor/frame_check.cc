@@ -10,9 +10,11 @@
 namespace gaitd::doctor {
 namespace {
 
-constexpr double kMirror = 0.01;     // m
-constexpr double kMassShare = 0.05;  // of the mass of a leg link
-constexpr double kUpright = 0.5;     // rad
+constexpr double kMirror = 0.01;         // m
+constexpr double kMassShare = 0.05;      // of the mass of a leg link
+constexpr double kUpright = 0.5;         // rad
+constexpr int kLineFootJoints = 5;       // of a leg that cannot roll its foot
+constexpr double kWidestLineFoot = 0.1;  // heights of the CoM
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -28,6 +30,7 @@ class Frames {
   Findings check() {
     for (int side = 0; side < GAITD_MAX_FEET; ++side) check_foot(side);
     check_mirror();
+    check_line_feet();
     for (int i = 0; i < model_.imu_count; ++i) {
       const double tilt = angle_to_up(model_.imus[i]);
       if (tilt < kUpright) continue;
@@ -45,6 +48,30 @@ class Frames {
   }
 
  private:
+  // Feet that their legs cannot roll stand on an edge: the wider they are, the further that is from
+  // where it was planned.
+  void check_line_feet() {
+    if (model_.legs[GAITD_LEFT].joint_count > kLineFootJoints) return;
+    double width = 0.0;
+    for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+      const GaitdFoot& foot = model_.feet[side];
+      for (int i = 0; i < foot.point_count; ++i) {
+        for (int k = 0; k < i; ++k) {
+          width = std::max(width, std::abs(foot.points[i][1] - foot.points[k][1]));
+        }
+      }
+    }
+    const double height = kinematics_.com().z() - lowest_sole();
+    if (width <= kWidestLineFoot * height) return;
+    warn(format("no joint rolls the feet, and their soles are %.0f mm wide: more than %.0f mm, a "
+                "tenth of the height of the centre of mass, was seen to fall",
+                1e3 * width, 1e3 * kWidestLineFoot * height),
+         "round the soles off along their sides, or make them narrower, in the simulation too");
+  }
+  double lowest_sole() const {
+    double lowest = origin(model_.feet[GAITD_LEFT].sole).z();
+    return std::min(lowest, origin(model_.feet[GAITD_RIGHT].sole).z());
+  }
   void warn(std::string what, const char* advice) {
     findings_.push_back({"frames", Severity::kWarning, std::move(what), advice});
   }

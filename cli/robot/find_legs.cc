@@ -12,6 +12,7 @@ using Eigen::Vector3d;
 using Poses = std::vector<Eigen::Isometry3d>;
 
 constexpr int kLegJoints = 6;
+constexpr int kFewestLegJoints = 5;  // without one that rolls the foot
 constexpr int kMostLegJoints = 12;
 constexpr double kSymmetric = 0.2;  // of the distances between the two chains
 constexpr double kPitches = 0.6;    // part of an axis along y
@@ -116,7 +117,7 @@ bool find_legs(const GaitdModel& model, LegPair* pair, std::string* error) {
       if (std::abs(masses[0] - masses[1]) > 0.2 * (masses[0] + masses[1])) continue;
       const double names = name_hint(model, left) + name_hint(model, right);
       if (names > 0) most_joints = std::max(most_joints, left.size());
-      if (left.size() < kLegJoints) continue;
+      if (left.size() < kFewestLegJoints) continue;
       const double score = 2.0 * (masses[0] + masses[1]) / model.total_mass +
                            length_of(poses, left) / longest + 0.25 * names;
       if (score <= best) continue;
@@ -126,7 +127,7 @@ bool find_legs(const GaitdModel& model, LegPair* pair, std::string* error) {
     }
   }
   if (best > -1e9) return true;
-  *error = "no two legs found: expected two chains of at least six joints that mirror each other" +
+  *error = "no two legs found: expected two chains of at least five joints that mirror each other" +
            (most_joints > 0 ? "; the best have " + std::to_string(most_joints) : std::string());
   return false;
 }

@@ -13,7 +13,7 @@ struct LegPair {
   std::array<std::vector<int>, 2> joints;  // in the order of the chain; which is left is not known
 };
 
-// The pair of chains that is most likely to be the legs: mirror images of six joints or more,
+// The pair of chains that is most likely to be the legs: mirror images of five joints or more,
 // heavy and long, ended by what no other joint hangs on; what the joints are called counts for
 // little. False and why in `error` without one.
 bool find_legs(const GaitdModel& model, LegPair* pair, std::string* error);

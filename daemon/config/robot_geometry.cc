@@ -18,7 +18,7 @@ namespace {
 
 constexpr Bounds kLength = {-10.0, 10.0, "m"};
 constexpr std::size_t kMostOutlinePoints = 1000;
-constexpr int kMinLegJoints = 6;
+constexpr int kMinLegJoints = 5;
 constexpr int kMaxLegJoints = 12;
 
 void copy_name(const std::string& name, char* out) {

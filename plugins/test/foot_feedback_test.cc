@@ -19,9 +19,8 @@ constexpr double kGain = 20.0;  // 1/s
 
 // Atlas stands on both feet; the controller wants the CoP in the middle of each sole.
 struct Bench {
-  Bench() : dynamics(atlas()), feedback(atlas()) {
+  explicit Bench(const GaitdModel& model = atlas()) : dynamics(model), feedback(model) {
     robot = testing::standing_state(atlas());
-    const int n = atlas().joint_count;
     dynamics.update(robot);
     for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
       const GaitdFoot& foot = atlas().feet[side];
@@ -73,6 +72,21 @@ TEST(FootFeedback, AsksForNothingWhereTheCopIsWhereItShouldBe) {
   Bench b;
   EXPECT_NEAR(b.torque(left_leg().ankle_pitch, 100), 0.0, 1e-9);
   EXPECT_NEAR(b.torque(left_leg().ankle_roll, 100), 0.0, 1e-9);
+}
+
+TEST(FootFeedback, ALegThatCannotRollItsFootPitchesIt) {
+  GaitdModel model = atlas();
+  for (GaitdLeg& leg : model.legs) leg.ankle_roll = -1;
+  Bench with;
+  Bench without(model);
+  for (Bench* b : {&with, &without}) b->load(GAITD_LEFT, {-0.02, 0.0});
+  const int pitch = left_leg().ankle_pitch;
+  EXPECT_NE(0.0, with.torque(pitch, 20));
+  EXPECT_EQ(with.torque(pitch, 20), without.torque(pitch, 40));
+  for (int j = 0; j < model.joint_count; ++j) {
+    if (j == pitch || j == model.legs[GAITD_RIGHT].ankle_pitch) continue;
+    EXPECT_EQ(0.0, without.commands->joints[j].torque) << model.joints[j].name;
+  }
 }
 
 TEST(FootFeedback, PushesTheToesDownWhenTheCopIsTooFarBack) {

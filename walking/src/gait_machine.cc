@@ -88,7 +88,7 @@ void GaitMachine::reset(const GaitdRobotState& robot) {
     GaitdPose pose;
     sdk::view(pose.position) = sdk::view(robot.feet[side].position);
     sdk::store(sdk::quaternion(robot.feet[side].orientation), pose.orientation);
-    state_.footholds[side] = whole_sole(model_, side, pose);
+    state_.footholds[side] = on_line(model_, side, whole_sole(model_, side, pose));
   }
   begin_stand();
 }
@@ -179,7 +179,7 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   const Eigen::Vector3d missed =
       sdk::view(robot.feet[side].position) - sdk::view(landed.pose.position);
   sdk::view(landed.pose.position) = sdk::view(robot.feet[side].position);
-  state_.footholds[side] = foothold_of(model_, landed);
+  state_.footholds[side] = on_line(model_, side, foothold_of(model_, landed));
   state_.early_contact = early ? 1 : 0;
   if (!recovering_) goals_[side] = {queue_[0], true};
   queue_.pop();

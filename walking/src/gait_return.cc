@@ -48,6 +48,8 @@ bool GaitMachine::comes_back() const {
       state_.mode == GAITD_MODE_STAND) {
     return false;
   }
+  // On feet that bear on an edge, steps in place lead further away than they bring back.
+  if (!rolls_foot(model_, GAITD_LEFT)) return false;
   const double arrived = kArrived * model_.nominal_foot_separation;
   return goals_[GAITD_LEFT].known && goals_[GAITD_RIGHT].known &&
          std::max(astray(GAITD_LEFT).norm(), astray(GAITD_RIGHT).norm()) > arrived;

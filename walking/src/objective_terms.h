@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "gaitd/abi/control.h"
 #include "gaitd/abi/types.h"
 #include "gaitd/sdk/views.h"
 
@@ -12,10 +13,22 @@
 namespace gaitd::walking {
 
 inline constexpr std::uint32_t kAngularRows = 0b000111;
+inline constexpr std::uint32_t kRollRow = 0b000001;
 inline constexpr std::uint32_t kLinearRows = 0b111000;
 inline constexpr std::uint32_t kAllRows = 0b111111;
 
 inline double damping(double stiffness, double ratio) { return 2.0 * ratio * std::sqrt(stiffness); }
+
+// A task of a foot along the axes of its sole, and without the row of its roll: the leg cannot roll
+// it by itself.
+inline void leave_roll_free(const Eigen::Quaterniond& sole, GaitdTask& task) {
+  sdk::store(sole, task.axes);
+  auto angular = sdk::view(task.acceleration).head<3>();
+  auto linear = sdk::view(task.acceleration).tail<3>();
+  angular = (sole.conjugate() * Eigen::Vector3d(angular)).eval();
+  linear = (sole.conjugate() * Eigen::Vector3d(linear)).eval();
+  task.row_mask &= ~kRollRow;
+}
 
 inline Eigen::Vector3d rotation_error(const Eigen::Quaterniond& goal,
                                       const Eigen::Quaterniond& now) {

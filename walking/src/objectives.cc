@@ -134,7 +134,7 @@ void ObjectiveBuilder::update(double dt, const GaitdRobotState& robot, const Gai
   }
   plan_swing(robot, gait, lift_off);
   update_rests(dt, robot, gait, toe_off);
-  update_contacts(dt, gait, toe_off, out);
+  update_contacts(dt, robot, gait, toe_off, out);
   update_momentum(dt, robot, gait, adjustment, out);
   update_held_arms(dt, robot);
   update_upper_body(dt, gait, out);

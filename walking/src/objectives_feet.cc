@@ -61,7 +61,7 @@ void ObjectiveBuilder::update_rests(double dt, const GaitdRobotState& robot,
       rests_[side].reset();
       continue;
     }
-    const bool flat = stiff_alone(gait) && toe_off.active == 0;
+    const bool flat = stiff_alone(gait) && toe_off.active == 0 && rolls_foot(model_, side);
     const double start = flat ? kTiltStart : kNever;
     rests_[side].update(dt, robot.feet[side], gait.footholds[side], weight_, {start, kTiltFull});
   }
@@ -79,8 +79,9 @@ double ObjectiveBuilder::load_share(int side, const GaitdGaitState& gait) const 
   return std::clamp(share, 0.0, 1.0);
 }
 
-void ObjectiveBuilder::update_contacts(double dt, const GaitdGaitState& gait,
-                                       const GaitdToeOff& toe_off, GaitdObjectives& out) const {
+void ObjectiveBuilder::update_contacts(double dt, const GaitdRobotState& robot,
+                                       const GaitdGaitState& gait, const GaitdToeOff& toe_off,
+                                       GaitdObjectives& out) const {
   const double rho_max = kRhoMax * weight_;
   const double rho_min = kRhoMin * weight_;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
@@ -95,6 +96,8 @@ void ObjectiveBuilder::update_contacts(double dt, const GaitdGaitState& gait,
     const int points = toe ? 1 : foothold.polygon_count;
     const double used = stiff_alone(gait) ? 1.0 - kContactMargin : 1.0;
     const Eigen::Vector2d middle = sole_middle(foothold);
+    const bool rolls = rolls_foot(model_, side);
+    const double line = rolls ? 0.0 : bearing_line(model_, side, robot.feet[side]);
     for (int i = 0; i < points && out.contact_count < GAITD_MAX_CONTACTS; ++i) {
       GaitdContactPoint& c = out.contacts[out.contact_count++];
       c = {};  // it may have been that of a hand
@@ -103,7 +106,9 @@ void ObjectiveBuilder::update_contacts(double dt, const GaitdGaitState& gait,
       Eigen::Vector3d in_sole = view(toe_off.toe_point);
       if (!toe) {
         const Eigen::Vector2d corner = view(foothold.contact_polygon[i]);
-        in_sole << rests_[side].bearing_point(middle + used * (corner - middle)), 0.0;
+        Eigen::Vector2d p = middle + used * (corner - middle);
+        if (!rolls) p.y() = line;
+        in_sole << rests_[side].bearing_point(p), 0.0;
       }
       view(c.point) = point_in_body(foot, in_sole);
       view(c.normal) = sole * Eigen::Vector3d::UnitZ();
@@ -150,6 +155,9 @@ void ObjectiveBuilder::add_stance_foot(int side, const GaitdRobotState& robot,
   auto stop = view(task.acceleration).tail<3>();
   if (stop.norm() > kTouchdownStop) stop *= kTouchdownStop / stop.norm();
   view(task.weight).setConstant(kStanceWeight);
+  if (!rolls_foot(model_, side)) {
+    leave_roll_free(sdk::quaternion(robot.feet[side].orientation), task);
+  }
 }
 
 void ObjectiveBuilder::add_toe(int side, const GaitdRobotState& robot, const GaitdGaitState& gait,
@@ -171,6 +179,7 @@ void ObjectiveBuilder::add_toe(int side, const GaitdRobotState& robot, const Gai
   // back because no step follows.
   const bool stays = gait.phase == GAITD_PHASE_STAND || gait.transfer_final != 0;
   GaitdTask& turn = add_task(out, GAITD_TASK_FRAME, foot.body, stays ? kAngularRows : 0b000101);
+  if (!rolls_foot(model_, side)) turn.row_mask &= ~kRollRow;
   view(turn.point) = in_body;
   const Eigen::Quaterniond now = sdk::quaternion(robot.feet[side].orientation);
   sdk::store(now, turn.axes);
@@ -225,6 +234,7 @@ void ObjectiveBuilder::add_swing_foot(int side, const GaitdRobotState& robot,
       damping(kp_z, kSwingDamping) * (s.angular_velocity - twist.head<3>());
   view(task.weight).head<3>().setConstant(kSwingAngularWeight);
   view(task.weight).tail<3>().setConstant(parameters_[Objective::kSwingWeight]);
+  if (!rolls_foot(model_, side)) leave_roll_free(sdk::quaternion(now.orientation), task);
 }
 
 }  // namespace gaitd::walking

@@ -80,10 +80,9 @@ Eigen::Vector2d ConvexPolygon::closest_point(const Eigen::Vector2d& p) const {
   return inside ? p : best;
 }
 
-ConvexPolygon ConvexPolygon::inset(double margin) const {
+ConvexPolygon ConvexPolygon::clipped(double margin) const {
   ConvexPolygon result = *this;
-  if (size_ < 3) return result;
-  for (int i = 0; i < size_; ++i) {
+  for (int i = 0; i < size_ && !result.empty(); ++i) {
     const Eigen::Vector2d& a = vertices_[i];
     const Eigen::Vector2d d = (vertices_[(i + 1) % size_] - a).normalized();
     // Clip by the half-plane left of the edge, moved inwards (Sutherland and Hodgman).
@@ -99,11 +98,23 @@ ConvexPolygon ConvexPolygon::inset(double margin) const {
       }
     }
     result = clipped;
-    if (result.empty()) {
-      result.add(centre());
-      return result;
-    }
   }
+  return result;
+}
+
+ConvexPolygon ConvexPolygon::inset(double margin) const {
+  if (size_ < 3) return *this;
+  ConvexPolygon result = clipped(margin);
+  if (!result.empty()) return result;
+  // The widest margin that leaves something, to 1/64 of the one that does not.
+  double inside = 0.0;
+  for (double step = 0.5 * margin; step > margin / 100.0; step *= 0.5) {
+    ConvexPolygon wider = clipped(inside + step);
+    if (wider.empty()) continue;
+    inside += step;
+    result = wider;
+  }
+  if (result.empty()) result.add(centre());
   return result;
 }
 

@@ -12,6 +12,11 @@
 namespace gaitd::walking {
 namespace {
 
+// Of a foot that its leg cannot roll: the part of its width that it is taken to bear on, and the
+// weights on it from which its CoP is believed.
+constexpr double kLineWidth = 0.15;
+constexpr double kBearingLoad = 0.2;
+
 Eigen::Vector2d to_world(const GaitdPose& pose, double x, double y) {
   return sdk::transform(pose, {x, y, 0.0}).head<2>();
 }
@@ -86,6 +91,26 @@ GaitdFoothold foothold_of(const GaitdModel& model, const GaitdFootstep& footstep
     }
   }
   return foothold;
+}
+
+GaitdFoothold on_line(const GaitdModel& model, int side, GaitdFoothold foothold) {
+  if (rolls_foot(model, side)) return foothold;
+  const SoleExtent e = sole_extent(foothold);
+  const double outer = side == GAITD_LEFT ? e.y_max : e.y_min;
+  for (int i = 0; i < foothold.polygon_count; ++i) {
+    double& y = foothold.contact_polygon[i][1];
+    y = outer + kLineWidth * (y - outer);
+  }
+  return foothold;
+}
+
+double bearing_line(const GaitdModel& model, int side, const GaitdFootState& foot) {
+  const SoleExtent e = sole_extent(whole_sole(model, side, {}));
+  const double outer = side == GAITD_LEFT ? e.y_max : e.y_min;
+  if (foot.cop_valid == 0) return outer;
+  const double weight = model.total_mass * model.gravity;
+  const double loaded = std::clamp(foot.wrench[5] / (kBearingLoad * weight), 0.0, 1.0);
+  return outer + loaded * (std::clamp(foot.cop[1], e.y_min, e.y_max) - outer);
 }
 
 ConvexPolygon landing_region(const GaitdFootstep& footstep) {

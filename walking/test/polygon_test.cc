@@ -122,10 +122,17 @@ TEST(ConvexPolygon, InsetKeepsTheMarginFromEveryEdge) {
   }
 }
 
-TEST(ConvexPolygon, InsetLargerThanThePolygonLeavesItsCentre) {
-  const ConvexPolygon p = rectangle(2.0, 1.0).inset(0.7);
-  ASSERT_EQ(p.size(), 1);
-  EXPECT_LT(p.vertex(0).norm(), 1e-15);
+TEST(ConvexPolygon, InsetLargerThanThePolygonLeavesNearlyItsLine) {
+  const ConvexPolygon outer = rectangle(2.0, 1.0);
+  const ConvexPolygon p = outer.inset(0.7);
+  ASSERT_EQ(p.size(), 4);
+  for (int i = 0; i < p.size(); ++i) {
+    EXPECT_NEAR(std::abs(p.vertex(i).x()), 0.5, 0.7 / 64 + 1e-12);
+    EXPECT_LE(std::abs(p.vertex(i).y()), 0.7 / 64 + 1e-12);
+  }
+  // As much larger as it may be.
+  EXPECT_LE(outer.inset(1e6).size(), 4);
+  EXPECT_FALSE(outer.inset(1e6).empty());
 }
 
 TEST(ConvexPolygon, EmptyIsOutsideEverywhereAndLeavesPointsAlone) {

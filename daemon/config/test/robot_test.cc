@@ -261,7 +261,8 @@ TEST(Robot, NamesTheUnknownLinkAndJoint) {
 TEST(Robot, WantsTheWholeChainFromPelvisToFoot) {
   EXPECT_ERROR("joints: [l_leg_hpz, l_leg_hpx,", "joints: [l_leg_hpx, l_leg_hpz,",
                "legs.left.joints: expected a joint that starts at pelvis");
-  EXPECT_ERROR(", l_leg_aky, l_leg_akx]", ", l_leg_aky]", "legs.left.joints: expected a list of 6");
+  EXPECT_ERROR(", l_leg_kny, l_leg_aky, l_leg_akx]", ", l_leg_aky]",
+               "legs.left.joints: expected a list of 5");
 }
 
 TEST(Robot, GivesTheFiguresOfAPostureThatDoesNotStand) {

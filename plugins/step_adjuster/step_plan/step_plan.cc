@@ -140,8 +140,10 @@ CaptureSet StepPlan::capture_set(const GaitdGaitState& gait) const {
   const double time = time_ * (p_[P::kShortestTransfer] + p_[P::kShortestSwing]);
   const auto sole = [&](int of) {
     walking::ConvexPolygon polygon;
-    for (int i = 0; i < model_.feet[of].point_count; ++i) {
-      polygon.add({model_.feet[of].points[i][0], model_.feet[of].points[i][1]});
+    const GaitdFoothold foothold =
+        walking::on_line(model_, of, walking::whole_sole(model_, of, {}));
+    for (int i = 0; i < foothold.polygon_count; ++i) {
+      polygon.add({foothold.contact_polygon[i][0], foothold.contact_polygon[i][1]});
     }
     polygon.make_hull();
     return polygon.inset(feedback_[walking::Feedback::kMargin]);
@@ -177,8 +179,9 @@ LaterPhase StepPlan::next_transfer(const GaitdGaitState& gait, const GaitdIcpPla
   LaterPhase phase;
   const bool last = gait.footstep_count == 1;
   phase.region = stance_sole(gait);
-  walking::add_foothold(walking::foothold_of(model_, gait.adjusted[0]),
-                        model_.feet[gait.next_side].toe_point, phase.region);
+  walking::add_foothold(
+      walking::on_line(model_, gait.next_side, walking::foothold_of(model_, gait.adjusted[0])),
+      model_.feet[gait.next_side].toe_point, phase.region);
   phase.region.make_hull();
   phase.region = phase.region.inset(last ? kRestMargin : feedback_[walking::Feedback::kMargin]);
   const double settling = gait.omega * kSettling * time_;

@@ -78,6 +78,7 @@ void FootFeedback::add(int side, const dynamics::Dynamics& dynamics, const Gaitd
   std::array<double, 2> torque{};
   const std::array<int, 2> joints{leg.ankle_pitch, leg.ankle_roll};
   for (int k = 0; k < 2; ++k) {
+    if (joints[k] < 0) continue;  // no joint rolls the foot
     const GaitdJoint& joint = model_.joints[joints[k]];
     const Eigen::Vector3d axis = dynamics.R_WB(joint.child_body) * view(joint.axis);
     const Eigen::Vector3d in_sole = sole.conjugate() * axis;
@@ -87,6 +88,7 @@ void FootFeedback::add(int side, const dynamics::Dynamics& dynamics, const Gaitd
   }
   moment_[side] *= scale;
   for (int k = 0; k < 2; ++k) {
+    if (joints[k] < 0) continue;
     const double effort = model_.joints[joints[k]].effort_limit;
     double& command = commands.joints[joints[k]].torque;
     command = std::clamp(command + scale * torque[k], -effort, effort);

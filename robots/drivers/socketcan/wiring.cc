@@ -200,11 +200,12 @@ class WiringReader {
     if (extended) {
       motor->reply_id = kLastMaster;
       read_id(map, "reply_id", kLastMaster, &motor->reply_id, kFirstMaster);
-      if (wiring_.buses[motor->bus].fd()) {
+      const auto bus = static_cast<size_t>(motor->bus);  // there may be none at all
+      if (bus < wiring_.buses.size() && wiring_.buses[bus].fd()) {
         map->error(map->path("bus"),
                    "a bus without data_bitrate, as " + std::string(dialect.name) +
                        " motors do not know CAN FD and disturb it",
-                   wiring_.buses[motor->bus].name);
+                   wiring_.buses[bus].name);
       }
       return;
     }

@@ -198,6 +198,8 @@ TEST(Wiring, RobStrideMotorsHaveIdentifiersOfTheirOwnAndNoCanFd) {
   EXPECT_NE(std::string::npos, errors.find("0x001, which is can.joints.j0.id")) << errors;
   EXPECT_NE(std::string::npos, errors.find("j0.bus: expected a bus without data_bitrate"))
       << errors;
+  text["buses"] = json::object();
+  EXPECT_NE(std::string::npos, errors_of(text, 2, 0.004).find("can.buses: expected 1 to"));
 }
 
 TEST(Wiring, AnEstopIsAlwaysWatched) {

@@ -64,8 +64,8 @@ class ObjectiveBuilder {
   const LegConfiguration::Reference& leg(int side) const { return legs_[side].reference(); }
 
  private:
-  void update_contacts(double dt, const GaitdGaitState& gait, const GaitdToeOff& toe_off,
-                       GaitdObjectives& out) const;
+  void update_contacts(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
+                       const GaitdToeOff& toe_off, GaitdObjectives& out) const;
   void update_posture(const GaitdRobotState& robot, GaitdObjectives& out) const;
   void update_held_arms(double dt, const GaitdRobotState& robot);
   // Contacts and tasks of the hands that hold on.

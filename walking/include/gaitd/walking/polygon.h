@@ -28,7 +28,8 @@ class ConvexPolygon {
   double inside_distance(const Eigen::Vector2d& p) const;
   // Point of the polygon closest to p. p itself when the polygon is empty.
   Eigen::Vector2d closest_point(const Eigen::Vector2d& p) const;
-  // The polygon with every edge moved inwards by `margin` (m); its centre when nothing is left.
+  // The polygon with every edge moved inwards by `margin` (m), or, where that leaves nothing, by
+  // nearly as much as leaves something: of a narrow sole its line.
   ConvexPolygon inset(double margin) const;
   // All places that the polygon covers on its way along `way` (m): its sum with a segment. Of a
   // polygon with at most kCapacity - 2 vertices.
@@ -39,6 +40,9 @@ class ConvexPolygon {
   Eigen::Vector2d centre() const;
 
  private:
+  // Every edge moved inwards; empty when nothing is left.
+  ConvexPolygon clipped(double margin) const;
+
   std::array<Eigen::Vector2d, kCapacity> vertices_;
   int size_ = 0;
 };

@@ -28,6 +28,19 @@ GaitdFoothold foothold_of(const GaitdModel& model, const GaitdFootstep& footstep
 // A foothold at `pose` with the whole sole.
 GaitdFoothold whole_sole(const GaitdModel& model, int side, const GaitdPose& pose);
 
+// Whether the leg can roll its foot. One of five joints cannot: its foot rolls as the leg does, and
+// bears on one of its edges.
+inline bool rolls_foot(const GaitdModel& model, int side) {
+  return model.legs[side].joint_count >= 6;
+}
+// The foothold reduced to what a foot that cannot be rolled is planned to bear on, a strip at its
+// outer edge: the CoM sways towards a foot that stands alone, so its leg leans outwards, and the
+// foot with it. Other feet keep their foothold.
+GaitdFoothold on_line(const GaitdModel& model, int side, GaitdFoothold foothold);
+// Where across such a foot bears, m in the sole: at its measured CoP, and with little load, which
+// says nothing of that, at the outer edge.
+double bearing_line(const GaitdModel& model, int side, const GaitdFootState& foot);
+
 // Where the footstep may land, in W, seen from above; empty: anywhere.
 ConvexPolygon landing_region(const GaitdFootstep& footstep);
 
