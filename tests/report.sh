@@ -60,3 +60,10 @@ expect 0 gaitctl report walk.mcap pushed.mcap -o two.html
 expect 0 node "$GAITD_SOURCE/tests/report_two.mjs" "$playwright" "$scratch/two.html"
 expect 4 gaitctl --json report walk.mcap cut.mcap -o damaged.html >damaged.json 2>cut.txt
 grep -q '"logs"' damaged.json || fail "nothing of each log: $(cat damaged.json)"
+
+# A robot whose links have no shapes, or meshes only, is drawn as sticks.
+python3 "$GAITD_SOURCE/tests/made_up_robots.py" urdf tilted
+expect 0 gaitctl robot init urdf/tilted/tilted.urdf -o tilted >init.txt
+expect 0 gaitctl run tilted/stand.yaml --log sticks.mcap >run.txt
+expect 0 gaitctl report sticks.mcap -o sticks.html
+expect 0 node "$GAITD_SOURCE/tests/report_sticks.mjs" "$playwright" "$scratch/sticks.html" 1.1

@@ -6,6 +6,7 @@
 #include "cli/doctor/robot_doctor.h"
 #include "gaitd/dynamics/kinematics.h"
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
 
 namespace gaitd::doctor {
 namespace {
@@ -13,7 +14,6 @@ namespace {
 constexpr double kMirror = 0.01;         // m
 constexpr double kMassShare = 0.05;      // of the mass of a leg link
 constexpr double kUpright = 0.5;         // rad
-constexpr int kLineFootJoints = 5;       // of a leg that cannot roll its foot
 constexpr double kWidestLineFoot = 0.1;  // heights of the CoM
 
 using Eigen::Matrix3d;
@@ -51,7 +51,7 @@ class Frames {
   // Feet that their legs cannot roll stand on an edge: the wider they are, the further that is from
   // where it was planned.
   void check_line_feet() {
-    if (model_.legs[GAITD_LEFT].joint_count > kLineFootJoints) return;
+    if (walking::rolls_foot(model_, GAITD_LEFT)) return;
     double width = 0.0;
     for (int side = 0; side < GAITD_MAX_FEET; ++side) {
       const GaitdFoot& foot = model_.feet[side];

@@ -107,8 +107,11 @@ ConvexPolygon ConvexPolygon::inset(double margin) const {
   ConvexPolygon result = clipped(margin);
   if (!result.empty()) return result;
   // The widest margin that leaves something, to 1/64 of the one that does not.
+  constexpr int kHalvings = 6;
   double inside = 0.0;
-  for (double step = 0.5 * margin; step > margin / 100.0; step *= 0.5) {
+  double step = margin;
+  for (int i = 0; i < kHalvings; ++i) {
+    step *= 0.5;
     ConvexPolygon wider = clipped(inside + step);
     if (wider.empty()) continue;
     inside += step;

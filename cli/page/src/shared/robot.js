@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import URDFLoader from 'urdf-loader';
 import {fixJoints, rootAtPelvis} from './frames.js';
+import {addSticks, isBare} from './sticks.js';
 
 export function material(color, opacity = 1) {
   return new THREE.MeshLambertMaterial({color, opacity, transparent: opacity < 1});
@@ -19,6 +20,14 @@ function simplify(robot, opacity) {
   });
 }
 
+function parse(urdf, withCollisions) {
+  const loader = new URDFLoader();
+  loader.parseCollision = withCollisions;
+  // Whoever wrote the log chose the addresses of its meshes: nothing is fetched from anywhere.
+  loader.loadMeshCb = (path, manager, done) => done(new THREE.Group());
+  return loader.parse(urdf);
+}
+
 // The robot of a log in its posture.
 export class Robot {
   constructor(log, opacity = 1) {
@@ -26,10 +35,11 @@ export class Robot {
     this.pelvis = new THREE.Group();
     this.joints = [];
     if (!log.urdf) return;
-    const loader = new URDFLoader();
-    // Whoever wrote the log chose the addresses of its meshes: nothing is fetched from anywhere.
-    loader.loadMeshCb = (path, manager, done) => done(new THREE.Group());
-    const robot = loader.parse(log.urdf);
+    let robot = parse(log.urdf, false);
+    if (isBare(robot)) {
+      robot = parse(log.urdf, true);
+      addSticks(robot, log.robot?.feet);
+    }
     simplify(robot, opacity);
     this.links = robot.links;
     this.joints = Object.values(robot.joints)

@@ -28,10 +28,11 @@ GaitdFoothold foothold_of(const GaitdModel& model, const GaitdFootstep& footstep
 // A foothold at `pose` with the whole sole.
 GaitdFoothold whole_sole(const GaitdModel& model, int side, const GaitdPose& pose);
 
-// Whether the leg can roll its foot. One of five joints cannot: its foot rolls as the leg does, and
-// bears on one of its edges.
+// Whether the leg can roll its foot. One of five joints without an ankle roll cannot: its foot
+// rolls as the leg does, and bears on one of its edges.
 inline bool rolls_foot(const GaitdModel& model, int side) {
-  return model.legs[side].joint_count >= 6;
+  const GaitdLeg& leg = model.legs[side];
+  return leg.joint_count >= 6 || leg.ankle_roll >= 0;
 }
 // The foothold reduced to what a foot that cannot be rolled is planned to bear on, a strip at its
 // outer edge: the CoM sways towards a foot that stands alone, so its leg leans outwards, and the
