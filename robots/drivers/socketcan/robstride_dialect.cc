@@ -136,12 +136,15 @@ struct FaultBit {
   int bit;
   MotorError error;
 };
-constexpr std::array<FaultBit, 6> kFaultBits = {{{0, MotorError::kRotorHot},
-                                                 {1, MotorError::kOverCurrent},
+constexpr std::array<FaultBit, 9> kFaultBits = {{{0, MotorError::kRotorHot},
+                                                 {1, MotorError::kDriveFault},
                                                  {2, MotorError::kUnderVoltage},
                                                  {3, MotorError::kOverVoltage},
+                                                 {4, MotorError::kOverCurrent},  // phase B
+                                                 {5, MotorError::kOverCurrent},  // C
                                                  {7, MotorError::kUncalibrated},
-                                                 {14, MotorError::kOverload}}};
+                                                 {14, MotorError::kOverload},
+                                                 {16, MotorError::kOverCurrent}}};  // A
 
 void put_word(Frame* frame, int at, uint32_t word) {
   for (int i = 0; i < 4; ++i) frame->data[at + i] = static_cast<uint8_t>(word >> 8 * i);

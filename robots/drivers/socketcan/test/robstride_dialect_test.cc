@@ -82,13 +82,22 @@ TEST(RobStride, AReplyHasItsTemperatureInTenths) {
 }
 
 TEST(RobStride, AFaultFrameNamesItsFaultAndWarningsAreNone) {
-  for (const MotorError error : {MotorError::kOverVoltage, MotorError::kRotorHot,
-                                 MotorError::kOverload, MotorError::kDriveFault}) {
+  for (const MotorError error :
+       {MotorError::kOverVoltage, MotorError::kRotorHot, MotorError::kOverCurrent,
+        MotorError::kOverload, MotorError::kDriveFault}) {
     const Frame frame = kRobStride.fault(kMotor, error);
     EXPECT_EQ(error, kRobStride.read_fault(frame, kMotor));
     EXPECT_FALSE(kRobStride.read_fault(frame, {2, 0xFD}));
     EXPECT_FALSE(kRobStride.read_reply(frame, kMotor, kRanges));
   }
+  Frame phase;
+  phase.id = kExtended | 0x150001FD;
+  phase.data[2] = 1;
+  EXPECT_EQ(MotorError::kOverCurrent, kRobStride.read_fault(phase, kMotor));
+  Frame unknown;
+  unknown.id = phase.id;
+  unknown.data[3] = 0x80;
+  EXPECT_EQ(MotorError::kDriveFault, kRobStride.read_fault(unknown, kMotor));
   Frame warning;
   warning.id = kExtended | 0x150001FD;
   warning.data[4] = 1;
