@@ -182,13 +182,7 @@ def shape(robot, link, xyz, geometry, tag="collision", rotation=ONE):
             f"</geometry></{tag}>")
 
 
-def box_sole(robot, link, y, axes=ONE):
-    robot.axes[link] = axes
-    size = [robot.size * x for x in (FRONT - BACK, 2 * HALF, 0.03)]
-    return shape(robot, link, [(FRONT + BACK) / 2, 0, DEPTH + 0.015], f'<box size="{text(size)}"/>')
-
-
-def narrow_sole(width):
+def bar_sole(width):
     """A box of this width, m at size 1."""
     def make(robot, link, y, axes=ONE):
         robot.axes[link] = axes
@@ -196,6 +190,9 @@ def narrow_sole(width):
         return shape(robot, link, [(FRONT + BACK) / 2, 0, DEPTH + 0.015],
                      f'<box size="{text(size)}"/>')
     return make
+
+
+box_sole = bar_sole(2 * HALF)
 
 
 def sphere_sole(robot, link, y, axes=ONE):
@@ -408,7 +405,7 @@ def five_joints(name, width):
         imu(r, "pelvis", [0, 0, 0.03])
         torso(r, waist="z")
         for side in ("left", "right"):
-            leg(r, side, "zxy", "y", sole=sole_of(r, narrow_sole(width)))
+            leg(r, side, "zxy", "y", sole=sole_of(r, bar_sole(width)))
             arm(r, side)
         r.write(folder)
     make.__name__ = name

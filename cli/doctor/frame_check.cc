@@ -54,12 +54,8 @@ class Frames {
     if (walking::rolls_foot(model_, GAITD_LEFT)) return;
     double width = 0.0;
     for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-      const GaitdFoot& foot = model_.feet[side];
-      for (int i = 0; i < foot.point_count; ++i) {
-        for (int k = 0; k < i; ++k) {
-          width = std::max(width, std::abs(foot.points[i][1] - foot.points[k][1]));
-        }
-      }
+      const auto sole = walking::sole_extent(walking::whole_sole(model_, side, {}));
+      width = std::max(width, sole.y_max - sole.y_min);
     }
     const double height = kinematics_.com().z() - lowest_sole();
     if (width <= kWidestLineFoot * height) return;

@@ -16,29 +16,13 @@ void FakeRobot::answer_register(int index, uint16_t address) {
   const can::Motor& motor = wiring_.motors[index];
   const MotorState& state = motors_[index];
   if (state.silent) return;
-  using Meaning = can::Register::Meaning;
+  can::Ranges ranges = motor.ranges;
+  ranges.position = state.range;
   can::RegisterValue value{motor.id, address, 0, false};
   for (const can::Register& entry : motor.dialect->registers) {
     if (entry.address != address) continue;
     value.known = true;
-    switch (entry.meaning) {
-      case Meaning::kPositionRange:
-        value.raw = can::raw_of(static_cast<float>(state.range));
-        break;
-      case Meaning::kVelocityRange:
-        value.raw = can::raw_of(static_cast<float>(motor.ranges.velocity));
-        break;
-      case Meaning::kTorqueRange:
-      case Meaning::kTorqueLimit:
-        value.raw = can::raw_of(static_cast<float>(motor.ranges.torque));
-        break;
-      case Meaning::kTimeout:
-        value.raw = static_cast<uint32_t>(state.timeout / can::kTimeoutUnit + 0.5);
-        break;
-      case Meaning::kSetting:
-        value.raw = entry.expected;
-        break;
-    }
+    value.raw = can::fitting_value(entry, ranges, state.timeout);
   }
   const can::Frame answer = motor.dialect->register_answer(motor.address(), value);
   bool down = false;

@@ -19,7 +19,7 @@ bool FakeRobot::start(std::string* error) {
     std::vector<can::IdFilter> filters = {can::IdFilter::exactly(can::kDamiaoRegisterId)};
     for (const can::Motor& motor : wiring_.motors) {
       if (motor.bus != static_cast<int>(i)) continue;
-      filters.push_back(motor.dialect->route == can::ReplyRoute::kMaster
+      filters.push_back(motor.dialect->extended()
                             ? can::IdFilter{can::kExtended | motor.id, can::kExtended | 0xFF}
                             : can::IdFilter::exactly(motor.id));
     }

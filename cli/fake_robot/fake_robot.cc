@@ -94,7 +94,8 @@ void FakeRobot::take_command(int index, const can::Frame& frame) {
   if (!special && !command) return;
   state.commanded = true;
   if (cycle_start_ == 0) cycle_start_ = now_;
-  if (!special && !motor.dialect->is_torque_free(frame)) {
+  const bool torque_free = special || motor.dialect->is_torque_free(frame);
+  if (!torque_free) {
     if (first_torque_cycle_ < 0) first_torque_cycle_ = cycle_;
     last_torque_cycle_ = cycle_;
   }
@@ -118,7 +119,7 @@ void FakeRobot::take_command(int index, const can::Frame& frame) {
   state.command.torque = motor.joint_torque(c.torque);
   state.command.stiffness = c.stiffness * gain;
   state.command.damping = c.damping * gain;
-  state.damping = motor.dialect->is_torque_free(frame);
+  state.damping = torque_free;
 }
 
 bool FakeRobot::cycle_complete() const {

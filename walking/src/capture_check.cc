@@ -60,7 +60,7 @@ CaptureCheck::Room CaptureCheck::room(const GaitdFoothold& stance, const GaitdFo
   const double distance = away.norm();
   if (!(distance > 0.0)) return {0.0, INFINITY};
 
-  const GaitdFoothold landed = on_line(model_, steps[0].side, foothold_of(model_, steps[0]));
+  const GaitdFoothold landed = bearing_of(model_, steps[0]);
   const Eigen::Vector2d entry = entry_cmp(landed, side, offsets);
   ConvexPolygon alone, both;
   for (ConvexPolygon* polygon : {&alone, &both}) {

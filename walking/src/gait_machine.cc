@@ -179,7 +179,7 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   const Eigen::Vector3d missed =
       sdk::view(robot.feet[side].position) - sdk::view(landed.pose.position);
   sdk::view(landed.pose.position) = sdk::view(robot.feet[side].position);
-  state_.footholds[side] = on_line(model_, side, foothold_of(model_, landed));
+  state_.footholds[side] = bearing_of(model_, landed);
   state_.early_contact = early ? 1 : 0;
   if (!recovering_) goals_[side] = {queue_[0], true};
   queue_.pop();

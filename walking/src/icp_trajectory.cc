@@ -89,7 +89,7 @@ void IcpTrajectory::build(const GaitdModel& model, const GaitdGaitState& gait,
   }
   for (int i = 0; i < gait.footstep_count; ++i) {
     const GaitdFootstep& step = gait.adjusted[i];
-    const GaitdFoothold landing = on_line(model, step.side, foothold_of(model, step));
+    const GaitdFoothold landing = bearing_of(model, step);
     const Eigen::Vector2d entry = entry_cmp(stance, side, o);
     const Eigen::Vector2d exit = exit_cmp(stance, side, &landing, o);
     const bool current = i == 0 && gait.phase == GAITD_PHASE_SWING;

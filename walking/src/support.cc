@@ -17,6 +17,10 @@ namespace {
 constexpr double kLineWidth = 0.15;
 constexpr double kBearingLoad = 0.2;
 
+double outer_edge(int side, const SoleExtent& sole) {
+  return side == GAITD_LEFT ? sole.y_max : sole.y_min;
+}
+
 Eigen::Vector2d to_world(const GaitdPose& pose, double x, double y) {
   return sdk::transform(pose, {x, y, 0.0}).head<2>();
 }
@@ -95,8 +99,7 @@ GaitdFoothold foothold_of(const GaitdModel& model, const GaitdFootstep& footstep
 
 GaitdFoothold on_line(const GaitdModel& model, int side, GaitdFoothold foothold) {
   if (rolls_foot(model, side)) return foothold;
-  const SoleExtent e = sole_extent(foothold);
-  const double outer = side == GAITD_LEFT ? e.y_max : e.y_min;
+  const double outer = outer_edge(side, sole_extent(foothold));
   for (int i = 0; i < foothold.polygon_count; ++i) {
     double& y = foothold.contact_polygon[i][1];
     y = outer + kLineWidth * (y - outer);
@@ -104,9 +107,13 @@ GaitdFoothold on_line(const GaitdModel& model, int side, GaitdFoothold foothold)
   return foothold;
 }
 
+GaitdFoothold bearing_of(const GaitdModel& model, const GaitdFootstep& footstep) {
+  return on_line(model, footstep.side, foothold_of(model, footstep));
+}
+
 double bearing_line(const GaitdModel& model, int side, const GaitdFootState& foot) {
   const SoleExtent e = sole_extent(whole_sole(model, side, {}));
-  const double outer = side == GAITD_LEFT ? e.y_max : e.y_min;
+  const double outer = outer_edge(side, e);
   if (foot.cop_valid == 0) return outer;
   const double weight = model.total_mass * model.gravity;
   const double loaded = std::clamp(foot.wrench[5] / (kBearingLoad * weight), 0.0, 1.0);

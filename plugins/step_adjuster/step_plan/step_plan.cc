@@ -179,9 +179,8 @@ LaterPhase StepPlan::next_transfer(const GaitdGaitState& gait, const GaitdIcpPla
   LaterPhase phase;
   const bool last = gait.footstep_count == 1;
   phase.region = stance_sole(gait);
-  walking::add_foothold(
-      walking::on_line(model_, gait.next_side, walking::foothold_of(model_, gait.adjusted[0])),
-      model_.feet[gait.next_side].toe_point, phase.region);
+  walking::add_foothold(walking::bearing_of(model_, gait.adjusted[0]),
+                        model_.feet[gait.next_side].toe_point, phase.region);
   phase.region.make_hull();
   phase.region = phase.region.inset(last ? kRestMargin : feedback_[walking::Feedback::kMargin]);
   const double settling = gait.omega * kSettling * time_;

@@ -77,8 +77,7 @@ IcpCriteria::Candidate IcpCriteria::candidate(const GaitdGaitState& gait) const 
     c.leading = gait.footholds[walking::other_side(c.side)];
   } else if (gait.phase == GAITD_PHASE_SWING && gait.footstep_count > 1 &&
              gait.time_in_phase >= kSwingStart * gait.phase_duration) {
-    c.leading =
-        walking::on_line(model_, gait.next_side, walking::foothold_of(model_, gait.adjusted[0]));
+    c.leading = walking::bearing_of(model_, gait.adjusted[0]);
     const Eigen::Vector3d step =
         view(c.leading.pose.position) - view(gait.footholds[gait.support].pose.position);
     if (step.norm() >= kSwingReach * leg_length_) c.side = gait.support;

@@ -25,7 +25,7 @@ bool CanRobot::open(std::vector<std::string>* errors) {
     for (const Motor& motor : wiring_.motors) {
       if (motor.bus != static_cast<int>(i)) continue;
       zero = zero || motor.dialect->route == ReplyRoute::kSharedZero;
-      if (motor.dialect->route != ReplyRoute::kMaster) continue;
+      if (!motor.dialect->extended()) continue;
       filters.push_back({kExtended | motor.id << 8 | motor.reply_id, kExtended | 0xFFFF});
     }
     for (uint32_t id = 0; id < buses_[i].routes.size(); ++id) {

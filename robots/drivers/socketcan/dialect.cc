@@ -103,7 +103,7 @@ float RegisterValue::real() const { return std::bit_cast<float>(raw); }
 uint32_t raw_of(float value) { return std::bit_cast<uint32_t>(value); }
 
 bool Dialect::is_for(const Frame& frame, const MotorId& motor) const {
-  if (route != ReplyRoute::kMaster) return frame.id == motor.id;
+  if (!extended()) return frame.id == motor.id;
   return (frame.id & kExtended) != 0 && (frame.id & 0xFF) == motor.id;
 }
 
@@ -132,6 +132,23 @@ const Dialect* find_dialect(std::string_view name) {
     if (name == dialect->name) return dialect;
   }
   return nullptr;
+}
+
+uint32_t fitting_value(const Register& entry, const Ranges& ranges, double timeout) {
+  switch (entry.meaning) {
+    case Register::Meaning::kPositionRange:
+      return raw_of(static_cast<float>(ranges.position));
+    case Register::Meaning::kVelocityRange:
+      return raw_of(static_cast<float>(ranges.velocity));
+    case Register::Meaning::kTorqueRange:
+    case Register::Meaning::kTorqueLimit:
+      return raw_of(static_cast<float>(ranges.torque));
+    case Register::Meaning::kTimeout:
+      return static_cast<uint32_t>(std::lround(timeout / kTimeoutUnit));
+    case Register::Meaning::kSetting:
+      return entry.expected;
+  }
+  return 0;
 }
 
 std::string check_registers(const Dialect& dialect, std::span<const RegisterValue> values,

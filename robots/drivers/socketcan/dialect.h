@@ -123,7 +123,9 @@ struct Dialect {
   Frame (*register_answer)(const MotorId& motor, const RegisterValue& value);
   std::optional<RegisterValue> (*read_register_answer)(const Frame& frame, const MotorId& motor);
 
-  // The identifier of frames to this motor.
+  // Whether its identifiers have 29 bits.
+  bool extended() const { return route == ReplyRoute::kMaster; }
+  // Whether the frame goes to this motor.
   bool is_for(const Frame& frame, const MotorId& motor) const;
   // Neither torque nor stiffness, and no velocity to run after: at most half a code.
   bool is_torque_free(const Frame& frame) const;
@@ -136,6 +138,9 @@ const Dialect* find_dialect(std::string_view name);  // null: there is none
 
 // Requests for registers of a Damiao motor go to this identifier.
 inline constexpr uint32_t kDamiaoRegisterId = 0x7FF;
+
+// What a motor tells that is set as the wiring says, and switches off after `timeout` (s).
+uint32_t fitting_value(const Register& entry, const Ranges& ranges, double timeout);
 
 // What the wiring asks of a motor.
 struct MotorNeeds {

@@ -195,7 +195,7 @@ class WiringReader {
     const Dialect& dialect = *motor->dialect;
     if (!map->has("id")) map->error(map->path("id"), "an identifier", nullptr);
     read_id(map, "id", dialect.last_id, &motor->id);
-    const bool extended = dialect.route == ReplyRoute::kMaster;
+    const bool extended = dialect.extended();
     claim(motor->bus, motor->id | (extended ? kExtended : 0), map->path("id"));
     if (extended) {
       motor->reply_id = kLastMaster;
@@ -305,7 +305,7 @@ double bus_load(const Wiring& wiring, int bus, double period) {
   double busy = 0;
   for (const Motor& motor : wiring.motors) {
     if (motor.bus != bus) continue;
-    const bool extended = motor.dialect->route == ReplyRoute::kMaster;
+    const bool extended = motor.dialect->extended();
     busy +=
         frame_time(rates, 8, extended) + frame_time(rates, motor.dialect->reply_length, extended);
   }

@@ -25,12 +25,13 @@ export function isBare(robot) {
   return 2 * links.filter(isDrawn).length < links.length;
 }
 
+const part = (geometry) => new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({color: kColor}));
+
 // From the frame of a link to `end` in it.
 function stick(end) {
   const length = end.length();
   const radius = Math.min(kThickest, Math.max(kThinnest, kThick * length));
-  const mesh = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 16),
-                              new THREE.MeshLambertMaterial({color: kColor}));
+  const mesh = part(new THREE.CylinderGeometry(1, 1, 1, 16));
   mesh.scale.set(radius, length, radius);
   mesh.position.copy(end).multiplyScalar(0.5);
   mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), end.clone().normalize());
@@ -40,8 +41,7 @@ function stick(end) {
 // The sole of a foot of robot.yaml, in the link that carries it.
 function slab({sole, outline}) {
   const shape = new THREE.Shape(outline.map(([x, y]) => new THREE.Vector2(x, y)));
-  const mesh = new THREE.Mesh(new THREE.ExtrudeGeometry(shape, {depth: kSole, bevelEnabled: false}),
-                              new THREE.MeshLambertMaterial({color: kColor}));
+  const mesh = part(new THREE.ExtrudeGeometry(shape, {depth: kSole, bevelEnabled: false}));
   mesh.position.set(...sole?.xyz ?? [0, 0, 0]);
   mesh.rotation.set(...sole?.rpy ?? [0, 0, 0], 'ZYX');
   return mesh;
@@ -49,8 +49,8 @@ function slab({sole, outline}) {
 
 // `feet`: of robot.yaml, if it is known.
 export function addSticks(robot, feet) {
-  robot.traverse((part) => {
-    if (part.isURDFCollider) part.traverse((mesh) => mesh.material?.color?.set(kColor));
+  robot.traverse((child) => {
+    if (child.isURDFCollider) child.traverse((mesh) => mesh.material?.color?.set(kColor));
   });
   for (const foot of Object.values(feet ?? {})) {
     const link = robot.links[foot.link];

@@ -106,19 +106,13 @@ struct Bench {
     return wires;
   }
   void respond(int bus, const Frame& frame) {
-    using Meaning = Register::Meaning;
     const auto request =
         dialect.registers.empty() ? std::nullopt : dialect.read_register_request(frame);
     if (!request) return answer(bus);
     RegisterValue value = *request;
     for (const Register& entry : dialect.registers) {
       if (entry.address != value.address) continue;
-      value.raw = entry.expected;
-      if (entry.meaning == Meaning::kPositionRange) value.raw = raw_of(12.5f);
-      if (entry.meaning == Meaning::kVelocityRange) value.raw = raw_of(30.0f);
-      if (entry.meaning == Meaning::kTorqueRange) value.raw = raw_of(10.0f);
-      if (entry.meaning == Meaning::kTorqueLimit) value.raw = raw_of(10.0f);
-      if (entry.meaning == Meaning::kTimeout) value.raw = 2000;
+      value.raw = fitting_value(entry, kRanges, 0.1);
     }
     wires[bus]->send(dialect.register_answer(motor, value));
   }

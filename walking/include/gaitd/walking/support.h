@@ -38,6 +38,8 @@ inline bool rolls_foot(const GaitdModel& model, int side) {
 // outer edge: the CoM sways towards a foot that stands alone, so its leg leans outwards, and the
 // foot with it. Other feet keep their foothold.
 GaitdFoothold on_line(const GaitdModel& model, int side, GaitdFoothold foothold);
+// What the foot of a footstep will bear on: its foothold, on a line where it cannot be rolled.
+GaitdFoothold bearing_of(const GaitdModel& model, const GaitdFootstep& footstep);
 // Where across such a foot bears, m in the sole: at its measured CoP, and with little load, which
 // says nothing of that, at the outer edge.
 double bearing_line(const GaitdModel& model, int side, const GaitdFootState& foot);
