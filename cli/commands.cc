@@ -12,6 +12,7 @@
 #include "cli/help.h"
 #include "cli/joint_commands.h"
 #include "cli/log_commands.h"
+#include "cli/map_command.h"
 #include "cli/param_commands.h"
 #include "cli/plugin_commands.h"
 #include "cli/report/report_command.h"
@@ -27,6 +28,7 @@ void add_commands(CLI::App* app, Context* context) {
   add_daemon_commands(app, context);
   add_drive_command(app, context);
   add_goto_command(app, context);
+  add_map_command(app, context);
   add_teleop_command(app, context);
   add_plugin_commands(app, context);
   add_joint_commands(app, context);

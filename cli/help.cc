@@ -25,9 +25,10 @@ struct Group {
 
 const std::vector<Group>& groups() {
   static const std::vector<Group> kGroups = {
-      {"Command the robot", {"status",   "watch",   "view",  "arm",    "disarm", "estop",  "reset",
-                             "mode",     "walk",    "steps", "drive",  "goto",   "teleop", "pose",
-                             "handhold", "payload", "pause", "resume", "stop",   "abort",  "tare"}},
+      {"Command the robot",
+       {"status", "watch",  "view",  "arm",   "disarm", "estop", "reset",    "mode",
+        "walk",   "steps",  "drive", "goto",  "teleop", "pose",  "handhold", "payload",
+        "pause",  "resume", "stop",  "abort", "tare",   "map"}},
       {"Play scenarios", {"run", "campaign", "compare", "sim"}},
       {"Read logs", {"report", "log", "doctor"}},
       {"Set up", {"robot", "param", "plugin", "joint", "calibrate", "completion"}}};
@@ -49,6 +50,9 @@ const std::map<std::string, const char*>& examples() {
       {"steps", "gaitctl steps footsteps.yaml --replace"},
       {"drive", "gaitctl drive --forward 0.3 --turn 0.2 --for 5"},
       {"goto", "gaitctl goto 2.0 -0.5 1.57"},
+      {"map put", "gaitctl map put blocks.yaml"},
+      {"map save", "gaitctl map save seen.yaml"},
+      {"map clear", "gaitctl map clear"},
       {"teleop", "gaitctl teleop"},
       {"pose pelvis", "gaitctl pose pelvis --z -0.05 --pitch 0.1 --duration 2"},
       {"pose chest", "gaitctl pose chest --yaw 0.3 --duration 2"},

@@ -160,6 +160,44 @@ await drag(scene.x + 30, scene.y + scene.height - 30);
 check(!server.calls('sim.push').length, 'dragging the ground pushes');
 check(turned(before, await camera()) > 0.1, 'dragging the ground does not turn the camera');
 
+// The ground as it is known, and a place on it: by a click, with the heading by a drag.
+check(await page.evaluate(() => !gaitd.scene.ground.mesh.visible), 'ground is drawn that nobody knows');
+const kCells = 200, heights = new Int16Array(kCells * kCells).fill(-32768);
+for (let j = 40; j < 160; ++j) heights.fill(250, j * kCells + 20, j * kCells + 180);  // 0.25 m
+server.map = {revision: 7, columns: kCells, rows: kCells, resolution: 0.04, origin: [-4, -4], scale: 0.001,
+              heights: Buffer.from(heights.buffer).toString('base64')};
+await becomes(page, () => gaitd.scene.ground.mesh.visible);
+const bounds = await page.evaluate(() => {
+  const {geometry} = gaitd.scene.ground.mesh;
+  geometry.computeBoundingBox();
+  return {...geometry.boundingBox, faces: geometry.index.count / 3};
+});
+check(Math.abs(bounds.max.z - 0.25) < 0.01 && bounds.min.x < -3 && bounds.max.x > 2.5, JSON.stringify(bounds));
+check(bounds.faces > 1000 && bounds.faces < 24000, `${bounds.faces} faces`);
+const onScreen = (point) => page.evaluate((p) => {
+  const {scene} = gaitd, at = scene.camera.position.clone().set(...p).project(scene.camera);
+  return [at.x, at.y];
+}, point).then(([x, y]) => [scene.x + (x + 1) / 2 * scene.width, scene.y + (1 - y) / 2 * scene.height]);
+const goal = [0.6, 0.8, 0.253], ahead = [0.6, 1.4, 0.253];
+server.forget();
+await page.locator('#goto').click();
+check(await page.locator('#goto').getAttribute('aria-pressed') === 'true', 'the button does not stay down');
+const looked = await camera();
+await page.mouse.move(...await onScreen(goal));
+await page.mouse.down();
+await page.mouse.move(...await onScreen(ahead), {steps: 4});
+await page.mouse.up();
+await until('it does not go there', () => server.calls('goto').length === 1);
+const [asked] = server.calls('goto');
+check(Math.hypot(asked.x - goal[0], asked.y - goal[1]) < 0.03, `it goes to ${JSON.stringify(asked)}`);
+check(Math.abs(asked.yaw - Math.PI / 2) < 0.1, `it looks to ${asked.yaw}`);
+check(turned(looked, await camera()) < 1e-6, 'the camera turns while one says where to look');
+check(await page.locator('#goto').getAttribute('aria-pressed') === 'false', 'the button stays down');
+server.event('input', {type: 6, replace: true, footsteps: [
+  {side: 0, position: [0.3, 0.1, 0], orientation: [0, 0, 0, 1]},
+  {side: 1, position: [0.6, -0.1, 0.25], orientation: [0, 0, 0, 1]}]});
+await becomes(page, () => gaitd.live.plans.at(-1)?.steps.length === 2);
+
 // Refusals are shown; nothing that the robot says is taken for a part of the page.
 await page.locator('#walk').click();
 await shows('#toasts', /out of reach <img/);

@@ -147,9 +147,21 @@ const stood = truth.newest.pelvis[0];
 await sleep(1500);
 check(Math.abs(truth.newest.pelvis[0] - stood) < 0.05, 'it walks on though the stick was let go');
 
+// ---- A click on the ground sends it there.
+const scene = await page.locator('#scene').boundingBox();
+const goal = [truth.newest.pelvis[0] + 0.5, truth.newest.pelvis[1] - 0.1];
+const onScreen = await page.evaluate(([gx, gy]) => {
+  const {scene} = gaitd, level = gaitd.live.newest('foot/left/z');
+  return scene.camera.position.clone().set(gx, gy, level).project(scene.camera).toArray();
+}, goal);
+await page.locator('#goto').click();
+await page.mouse.click(scene.x + (onScreen[0] + 1) / 2 * scene.width, scene.y + (1 - onScreen[1]) / 2 * scene.height);
+await until('it does not go where one clicks', () =>
+    Math.hypot(...truth.newest.pelvis.slice(0, 2).map((value, i) => value - goal[i])) < 0.08);
+await state(page, 'standing');
+
 // ---- Who drags a link pushes it.
 truth.events = [];
-const scene = await page.locator('#scene').boundingBox();
 const chest = await page.evaluate(() => {
   const {scene} = gaitd, at = scene.camera.position.clone();
   return scene.robots[0].links.utorso.localToWorld(at.set(0, 0, 0.2)).project(scene.camera).toArray();

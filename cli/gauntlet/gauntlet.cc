@@ -6,6 +6,7 @@
 
 #include "cli/gauntlet/ground.h"
 #include "cli/gauntlet/story.h"
+#include "cli/gauntlet/worlds.h"
 
 namespace gaitd::cli {
 namespace {
@@ -124,7 +125,10 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
       {"blocks", blocks},
       {"drive", drive},
       {"push-walking", push_walking},
-      {"push-standing", push_standing}};
+      {"push-standing", push_standing},
+      {"goto-easy", [](const Draws& draws) { return world(draws, 0.2); }},
+      {"goto", [](const Draws& draws) { return world(draws, 0.5); }},
+      {"goto-hard", [](const Draws& draws) { return world(draws, 0.8); }}};
   return kMakers;
 }
 

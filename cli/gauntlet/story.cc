@@ -45,9 +45,9 @@ void add_terrain(const Draws& draws, const Story& story, std::string* text) {
   if (!story.boxes.empty()) add(text, "  boxes:\n");
   for (const Box& box : story.boxes) {
     add(text,
-        "    - {center: [%.4f, %.4f, %.4f], size: [%.4f, %.4f, %.4f], rpy: [%.4f, %.4f, 0]}\n",
+        "    - {center: [%.4f, %.4f, %.4f], size: [%.4f, %.4f, %.4f], rpy: [%.4f, %.4f, %.4g]}\n",
         settled(box.x), settled(box.y), settled(box.z), settled(box.length), settled(box.width),
-        settled(box.height), settled(box.roll), settled(box.pitch));
+        settled(box.height), settled(box.roll), settled(box.pitch), settled(box.yaw));
   }
 }
 
@@ -64,6 +64,11 @@ void add_model_error(const Draws& draws, std::string* text) {
 }
 
 void add_commands(const Story& story, std::string* text) {
+  if (story.goes) {
+    add(text, "commands:\n  - {at: %.4f, goto: {x: %.4f, y: %.4f, yaw: %.4f}}\n", settled(story.at),
+        settled(story.goal_x), settled(story.goal_y), settled(story.goal_yaw));
+    return;
+  }
   if (!story.drives.empty()) {
     add(text, "commands:\n");
     for (const Drive& drive : story.drives) {
@@ -153,12 +158,14 @@ std::string scenario_text(std::string_view kind, std::uint64_t seed, const Story
   add(&text, "schema: gaitd.scenario/1\nname: gauntlet-%s-%llu\nrobot: atlas\n", name.c_str(),
       static_cast<unsigned long long>(seed));
   // A pushed robot takes steps of its own before it goes on.
-  const double walked = story.drives.empty() ? story.at + strides * (story.swing + story.transfer)
-                                             : story.drives.back().at;
+  const double walked = story.goes             ? story.at + story.time
+                        : story.drives.empty() ? story.at + strides * (story.swing + story.transfer)
+                                               : story.drives.back().at;
   add(&text, "duration: %.0f\nseed: %llu\n", std::ceil(settled(walked + 8.0)),
       static_cast<unsigned long long>(seed));
   add(&text, "start: {x: 0, y: 0, z: %.4f, yaw: 0}\nmode: walk-straight\n", settled(story.start_z));
   add(&text, "sensors: {noise: nominal}\nactuators: {model: nominal}\n");
+  if (story.sees) add(&text, "perception: {sensor: depth_camera}\n");
   add_terrain(draws, story, &text);
   add_model_error(draws, &text);
   add_commands(story, &text);

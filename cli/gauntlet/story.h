@@ -31,7 +31,7 @@ class Draws {
 struct Box {
   double x, y, z;  ///< middle
   double length, width, height;
-  double roll = 0.0, pitch = 0.0;
+  double roll = 0.0, pitch = 0.0, yaw = 0.0;
 };
 
 /// Pose of a sole, m and rad, in the world.
@@ -71,6 +71,9 @@ struct Story {
   Walk walk;                            ///< either this
   std::vector<Foothold> footholds;      ///< or these
   std::vector<Drive> drives;            ///< or these, to a stand at the end
+  bool goes = false;                    ///< or to the goal, as it finds its way
+  bool sees = false;                    ///< the ground, which it does not know
+  double time = 0.0;                    ///< s, for going there
   double swing = 0.7, transfer = 0.25;  ///< s
   std::vector<Push> pushes;
   double goal_x = 0.0, goal_y = 0.0, goal_yaw = 0.0;  ///< m, rad

@@ -17,10 +17,10 @@
 #include <utility>
 #include <vector>
 
-#include "cli/base64.h"
 #include "cli/child.h"
 #include "cli/report/animated_png.h"
 #include "daemon/config/names.h"
+#include "daemon/server/base64.h"
 
 namespace gaitd::cli {
 namespace {
@@ -80,7 +80,8 @@ std::vector<Picture> read_pictures(std::string_view document) {
     const std::size_t begin = data + kData.size();
     const std::size_t end = document.find('"', begin);
     if (end == std::string_view::npos) break;
-    pictures.push_back({std::string(name), from_base64(document.substr(begin, end - begin))});
+    pictures.push_back(
+        {std::string(name), daemon::from_base64(document.substr(begin, end - begin))});
     at = end;
   }
   return pictures;

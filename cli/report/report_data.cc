@@ -12,12 +12,12 @@
 #include <system_error>
 #include <vector>
 
-#include "cli/base64.h"
 #include "cli/installed_page.h"
 #include "daemon/config/names.h"
 #include "daemon/config/node.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/scenario.h"
+#include "daemon/server/base64.h"
 #include "daemon/verdict/verdict.h"
 
 namespace gaitd::cli {
@@ -71,11 +71,12 @@ void add_signals(const LogReader& log, json* data) {
         rows.back() = std::max(rows.back(), value);
       }
     }
-    (*data)["signals"].push_back({{"name", signal.name},
-                                  {"unit", signal.unit},
-                                  {"words", signal.words},
-                                  {"values", base64({reinterpret_cast<const char*>(rows.data()),
-                                                     rows.size() * sizeof(float)})}});
+    (*data)["signals"].push_back(
+        {{"name", signal.name},
+         {"unit", signal.unit},
+         {"words", signal.words},
+         {"values", daemon::base64({reinterpret_cast<const char*>(rows.data()),
+                                    rows.size() * sizeof(float)})}});
   }
 }
 

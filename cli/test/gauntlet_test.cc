@@ -117,20 +117,51 @@ class Range {
 };
 
 TEST(Gauntlet, TheSameSeedIsTheSameTextOnEveryMachine) {
-  std::map<bool, std::string> all;  // drives apart: they came later
+  std::map<int, std::string> all;  // drives (1) and worlds (2) apart: they came later
   std::set<std::string> different;
   for (const std::string& kind : gauntlet_kinds()) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const std::string text = gauntlet_scenario(kind, seed);
       EXPECT_EQ(text, gauntlet_scenario(kind, seed));
       different.insert(text.substr(text.find("terrain:")));
-      all[kind == "drive"] += text;
+      all[kind == "drive" ? 1 : kind.starts_with("goto") ? 2 : 0] += text;
     }
   }
   EXPECT_EQ(different.size(), 20 * gauntlet_kinds().size());
   // Whoever changes what is drawn changes this, and makes old figures those of another gauntlet.
-  EXPECT_EQ(hash_of(all[false]), 0x5f94b2a5a103e6bfULL);
-  EXPECT_EQ(hash_of(all[true]), 0x871326e179adc25fULL);
+  EXPECT_EQ(hash_of(all[0]), 0x5f94b2a5a103e6bfULL);
+  EXPECT_EQ(hash_of(all[1]), 0x871326e179adc25fULL);
+  EXPECT_EQ(hash_of(all[2]), 0x38638c62b9913a6bULL);
+}
+
+// The robot has to see its way, there is room where it starts and where it goes to, and what is
+// harder has more obstacles.
+TEST(Gauntlet, WorldsAreCoursesBetweenTwoFreePlaces) {
+  std::map<std::string, double> boxes;
+  for (const std::string kind : {"goto-easy", "goto", "goto-hard"}) {
+    for_each_drawn(kind, [&](const daemon::Scenario& scenario) {
+      EXPECT_EQ(scenario.perception["sensor"], "depth_camera");
+      const json& goal = scenario.commands.at(0).params;
+      EXPECT_GT(goal["x"].get<double>(), 1.2);
+      EXPECT_LT(goal["x"].get<double>(), 12.0);
+      EXPECT_EQ(scenario.expect.final_pelvis->tolerance, 0.15);
+      boxes[kind] += static_cast<double>(scenario.terrain["boxes"].size());
+      for (const json& box : scenario.terrain["boxes"]) {
+        const double top = box["center"][2].get<double>() + 0.5 * box["size"][2].get<double>();
+        if (top < 0.301) continue;
+        for (const double x : {0.0, goal["x"].get<double>()}) {
+          const double off =
+              std::abs(box["center"][0].get<double>() - x) -
+              0.5 * std::hypot(box["size"][0].get<double>(), box["size"][1].get<double>());
+          const double across =
+              std::abs(box["center"][0].get<double>() - x) - 0.5 * box["size"][0].get<double>();
+          EXPECT_GT(std::max(off, across), 0.2) << scenario.name << box.dump();
+        }
+      }
+    });
+  }
+  EXPECT_GT(boxes["goto"], 1.3 * boxes["goto-easy"]);
+  EXPECT_GT(boxes["goto-hard"], 1.3 * boxes["goto"]);
 }
 
 TEST(Gauntlet, ADriveIsAMinuteOfTenVelocities) {
@@ -163,11 +194,12 @@ TEST(Gauntlet, EveryKindIsAcceptedAndAsksForAWalkToAGoal) {
       // Who stands still does not arrive.
       const daemon::FinalPelvis& goal = *scenario.expect.final_pelvis;
       EXPECT_GT(std::hypot(goal.x, goal.y), 1.5 * goal.tolerance);
-      if (kind.starts_with("push")) {
+      const bool goes = kind.starts_with("goto");
+      if (kind.starts_with("push") || goes) {
         ASSERT_EQ(scenario.expect.checks.size(), 1u);
         EXPECT_EQ(scenario.expect.checks[0].signal, "gait/step_index");
-        EXPECT_GE(scenario.expect.checks[0].min.value_or(0.0), 5.0);
-        EXPECT_EQ(scenario.disturbances.size(), 2u);
+        EXPECT_GE(scenario.expect.checks[0].min.value_or(0.0), goes ? 4.0 : 5.0);
+        EXPECT_EQ(scenario.disturbances.size(), goes ? 0u : 2u);
       } else {
         ASSERT_TRUE(scenario.expect.steps_taken);
         EXPECT_GE(*scenario.expect.steps_taken, 6);

@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "cli/base64.h"
 #include "cli/live/robot_metadata.h"
 #include "daemon/log/log_format.h"
+#include "daemon/server/base64.h"
 #include "daemon/telemetry/log_writer.h"
 #include "daemon/telemetry/signal_schema.h"
 
@@ -13,11 +13,13 @@ namespace gaitd::cli {
 FoxgloveChannels::FoxgloveChannels(const nlohmann::json& robot, const daemon::SignalTable& table,
                                    OnMessage on_message)
     : on_message_(std::move(on_message)), codec_(table), width_(table.size()) {
-  signals_ =
-      add_channel(add_schema(daemon::kSignalsMessage, "protobuf", daemon::signal_schema(table)),
-                  daemon::kSignalsTopic, "protobuf", {});
-  events_ = add_channel(add_schema(daemon::kEventMessage, "protobuf", daemon::records_schema()),
-                        daemon::kEventsTopic, "protobuf", {});
+  signals_ = FoxgloveChannels::add_channel(
+      FoxgloveChannels::add_schema(daemon::kSignalsMessage, "protobuf",
+                                   daemon::signal_schema(table)),
+      daemon::kSignalsTopic, "protobuf", {});
+  events_ = FoxgloveChannels::add_channel(
+      FoxgloveChannels::add_schema(daemon::kEventMessage, "protobuf", daemon::records_schema()),
+      daemon::kEventsTopic, "protobuf", {});
   scene_ = daemon::SceneTopics::create(log_metadata_of(robot), table);
   if (scene_) scene_->add_channels(this);
 }
@@ -43,7 +45,7 @@ void FoxgloveChannels::begin_again() {
 
 std::uint16_t FoxgloveChannels::add_schema(const std::string& name, const std::string& encoding,
                                            const std::string& data) {
-  schemas_.push_back({name, encoding, base64(data)});
+  schemas_.push_back({name, encoding, daemon::base64(data)});
   return static_cast<std::uint16_t>(schemas_.size());
 }
 

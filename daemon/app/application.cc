@@ -16,6 +16,7 @@
 #include "daemon/app/watch.h"
 #include "daemon/config/library_paths.h"
 #include "daemon/control/impedance.h"
+#include "daemon/goto/map_methods.h"
 #include "daemon/host/layers.h"
 
 namespace gaitd::daemon {
@@ -304,7 +305,9 @@ int Application::run() {
                                  .bridge = bridge_.get(),
                                  .scenario = player_.get(),
                                  .swaps = &swaps_->port(),
-                                 .plans = &plans_->port()};
+                                 .plans = &plans_->port(),
+                                 .refinements = &plans_->refinements(),
+                                 .sight = sight_};
   loop_ = std::make_unique<ControlLoop>(options, parts);
   status_->set_pulse(&loop_->pulse());
   running_loop_ = loop_.get();
@@ -332,10 +335,13 @@ int Application::run() {
   const double factor = report.wall_seconds > 0.0 ? simulated / report.wall_seconds : 0.0;
   const char* const end = kRunEndNames[static_cast<std::size_t>(report.end)];
   std::string error;
-  const bool logged = telemetry_->close({{"realtime_factor", std::to_string(factor)},
-                                         {"wall_seconds", std::to_string(report.wall_seconds)},
-                                         {"end", end}},
-                                        &error);
+  LogMetadata last_words = {{"realtime_factor", std::to_string(factor)},
+                            {"wall_seconds", std::to_string(report.wall_seconds)},
+                            {"end", end}};
+  constexpr double kLoggedCells = 0.04;  // m
+  const LiveGround::Known ground = ground_->known();
+  if (ground.map) last_words["map"] = map_json(ground, kLoggedCells).dump();
+  const bool logged = telemetry_->close(last_words, &error);
   const bool log_lost = !logged && config_.log.enabled;
   if (log_lost) spdlog::error("the log is not complete: {}", error);
   spdlog::info("{:.3f} s in {} ticks, {:.2f} times real time; overruns {}, late sensors {}; {}",

@@ -71,6 +71,7 @@ class Application {
   bool start_telemetry();
   void prepare_swaps();
   void read_height_map(Issues* issues);
+  void prepare_plans();
   void prepare_status();
   nlohmann::json describe_robot() const;
   bool start_server();
@@ -105,6 +106,8 @@ class Application {
   std::unique_ptr<CommandBridge> bridge_;
   std::unique_ptr<SwapService> swaps_;
   std::shared_ptr<const terrain::HeightMap> height_map_;  // of goto.height_map; null: none
+  std::shared_ptr<LiveGround> ground_;
+  SightTiming sight_;
   std::unique_ptr<PlanService> plans_;
   std::unique_ptr<Pipeline> pipeline_;
   std::unique_ptr<TickWatch> tick_watch_;

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -14,9 +15,12 @@
 #include "daemon/config/scenario_ground.h"
 #include "daemon/control/command_json.h"
 #include "daemon/control/parameter_methods.h"
+#include "daemon/goto/map_methods.h"
+#include "daemon/goto/range_mount.h"
 #include "daemon/host/layers.h"
 #include "daemon/host/plugin_json.h"
 #include "daemon/telemetry/input.h"
+#include "gaitd/sim/config.h"
 #include "gaitd/terrain/height_map_file.h"
 
 namespace gaitd::daemon {
@@ -77,6 +81,7 @@ LogMetadata Application::metadata() const {
     m["seed"] = std::to_string(scenario_->seed);
     m["world"] = scenario_->simulator_config().dump();
     m["expect"] = scenario_->expect_section.dump();
+    if (!scenario_->perception.is_null()) m["perception"] = scenario_->perception.dump();
   }
   return m;
 }
@@ -155,6 +160,29 @@ void Application::read_height_map(Issues* issues) {
   }
 }
 
+// What is known of the ground: a map from the beginning, or what a simulated sensor sees of it.
+void Application::prepare_plans() {
+  auto map = height_map_ || !scenario_ ? height_map_ : ground_map(*scenario_);
+  std::optional<LiveGround::Eye> eye;
+  const auto ticks = [this](double time) { return std::llround(time / config_.period); };
+  constexpr double kWithoutEye = 0.1;  // s, between two looks at where the robot is
+  sight_ = {std::max<std::int64_t>(1, ticks(kWithoutEye)), 0};
+  if (scenario_ && !scenario_->perception.is_null()) {
+    std::vector<std::string> errors;  // the backend has said them
+    const sim::Config world = sim::parse_config(scenario_->simulator_config().dump(), robot_->model,
+                                                config_.period, &errors);
+    eye.emplace(LiveGround::Eye{range_sensor(scenario_->perception, robot_->model),
+                                sim::Terrain(world.terrain, 1.0), scenario_->seed});
+    const std::int64_t period = std::max<std::int64_t>(1, ticks(eye->figures.period));
+    sight_ = {period, std::min<std::int64_t>(ticks(eye->figures.latency), 15 * period)};
+    if (!height_map_) map = nullptr;
+  }
+  ground_ = std::make_shared<LiveGround>(robot_->model, std::move(map), std::move(eye));
+  plans_ = std::make_unique<PlanService>(PlanService::Parts{
+      &robot_->model, ground_, config_.go_to.planner, {config_.go_to.expansions}});
+  plans_->start();
+}
+
 void Application::prepare_status() {
   const bool lockstep = config_.clock == GAITD_CLOCK_LOCKSTEP;
   const nlohmann::json scenario = scenario_ ? nlohmann::json(scenario_->name) : nlohmann::json();
@@ -201,10 +229,8 @@ bool Application::start_server() {
   add_parameter_methods(&methods, bridge_.get(), &parameters_);
   prepare_swaps();
   swaps_->add_methods(&methods);
-  auto map = height_map_ || !scenario_ ? height_map_ : ground_map(*scenario_);
-  plans_ = std::make_unique<PlanService>(PlanService::Parts{
-      &robot_->model, std::move(map), config_.go_to.planner, {config_.go_to.expansions}});
-  plans_->start();
+  prepare_plans();
+  add_map_methods(&methods, ground_.get());
   prepare_status();
   methods.add_snapshot("status", [this] { return status_->status(); });
   methods.add_snapshot("joint.list", [this] { return status_->joints(); });

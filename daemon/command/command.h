@@ -36,6 +36,7 @@ enum class CommandType : std::uint8_t {
   kPayload,    // what the robot carries
   kSimLoad,    // simulation only
   kHandhold,   // a hand holds on to something, or lets go
+  kRefine,     // footsteps ahead as the ground is known now; by gaitd itself
 };
 
 enum class PayloadAction : std::uint8_t { kSet, kClear, kEstimate };

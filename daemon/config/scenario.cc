@@ -14,9 +14,9 @@ namespace {
 
 // What the command line may replace. Of what is expected only which drives the bounds are for.
 constexpr std::string_view kBoundsKey = "expect.bounds";
-constexpr std::array<std::string_view, 10> kOverridable = {
-    "duration", "seed",      "start",       "mode",         "terrain",
-    "sensors",  "actuators", "model_error", "disturbances", "commands"};
+constexpr std::array<std::string_view, 11> kOverridable = {
+    "duration",  "seed",        "start",        "mode",     "terrain",   "sensors",
+    "actuators", "model_error", "disturbances", "commands", "perception"};
 
 // Of a list only single keys of what is there: disturbances.0.force, commands.0.walk.length.
 bool is_there(const NodePtr& root, const std::string& key, const Location& where, Issues* issues) {
@@ -161,6 +161,7 @@ std::optional<Scenario> read_scenario(const NodePtr& document, const std::string
   scenario.sensors = read_sensors(root.map("sensors"));
   scenario.actuators = read_actuators(root.map("actuators"));
   scenario.model_error = read_model_error(root.map("model_error"));
+  scenario.perception = read_perception(root.map("perception"));
   scenario.commands = read_scenario_commands(&root, scenario.duration);
   const CommandedSteps steps =
       check_commands(scenario.commands, scenario.mode, !scenario.hoist.is_null(), &found);
@@ -194,6 +195,9 @@ void check_scenario(const Scenario& scenario, const GaitdModel& model, Issues* i
                              : command.method == "sim.load" ? "load"
                                                             : command.method;
     parse_command(command.method, from_json(command.params, command.where), &model, path, issues);
+  }
+  if (scenario.perception.contains("link")) {
+    check_link(scenario.perception["link"], model, {scenario.file, 0}, "perception.link", issues);
   }
   for (const ScenarioDisturbance& disturbance : scenario.disturbances) {
     check_link(disturbance.link, model, disturbance.where, "disturbances.link", issues);

@@ -60,6 +60,7 @@ struct Scenario {
   nlohmann::json sensors;
   nlohmann::json actuators;
   nlohmann::json model_error;
+  nlohmann::json perception;              // null: footsteps are planned on the true terrain
   std::vector<ScenarioCommand> commands;  // by time; equal times in the order of the file
   std::vector<ScenarioDisturbance> disturbances;
   Expectations expect;

@@ -18,6 +18,8 @@ nlohmann::json read_terrain(MapReader map, const std::string& scenario_file,
 nlohmann::json read_sensors(MapReader map);
 nlohmann::json read_actuators(MapReader map);
 nlohmann::json read_model_error(MapReader map);
+// Null: there is none.
+nlohmann::json read_perception(MapReader map);
 
 std::vector<ScenarioCommand> read_scenario_commands(MapReader* root, double duration);
 // How many swings the commands ask for at most.

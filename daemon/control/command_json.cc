@@ -117,11 +117,13 @@ std::string input_text(const Command& c, int parameter_owner, int parameter_plac
       visit_walk(c.walk, Write{&out});
       break;
     case CommandType::kFootsteps:
+    case CommandType::kRefine:
       out["replace"] = c.replace;
       out["footsteps"] = json::array();
       for (int i = 0; i < c.footstep_count; ++i) {
         json step;
         visit(c.footsteps[i], Write{&step});
+        if (c.type == CommandType::kRefine) step["id"] = c.footsteps[i].id;
         out["footsteps"].push_back(std::move(step));
       }
       break;
@@ -195,13 +197,14 @@ bool read_input(const json& in, Command* c, int* parameter_owner, int* parameter
       visit_drive(c->drive, Read{&in});
       c->drive.ends = in.value("ends", false);
     }
-    if (c->type == CommandType::kFootsteps) {
+    if (c->type == CommandType::kFootsteps || c->type == CommandType::kRefine) {
       c->replace = in.at("replace").get<bool>();
       for (const json& step : in.at("footsteps")) {
         if (c->footstep_count >= static_cast<int>(c->footsteps.size())) return false;
         GaitdFootstep& footstep = c->footsteps[c->footstep_count++];
         footstep = {};
         visit(footstep, Read{&step});
+        footstep.id = step.value("id", std::uint32_t{0});
       }
     }
     if (c->type == CommandType::kSetParameter) {

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kNames[] = {
     "arm",    "disarm", "estop", "reset",     "mode",     "walk",      "footsteps",   "pause",
     "resume", "stop",   "abort", "param.set", "sim.push", "sim.reset", "plugin.swap", "joint.test",
-    "pose",   "drive",  "goto",  "tare",      "payload",  "sim.load",  "handhold"};
+    "pose",   "drive",  "goto",  "tare",      "payload",  "sim.load",  "handhold",    "refine"};
 
 class Writer {
  public:
@@ -89,6 +89,7 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
   if (c.type == CommandType::kFootsteps) {
     w.add(R"(,"count":%d,"replace":%s)", c.footstep_count, c.replace ? "true" : "false");
   }
+  if (c.type == CommandType::kRefine) w.add(R"(,"count":%d)", c.footstep_count);
   if (c.type == CommandType::kPush) {
     w.add(R"(,"body":%d,"force":[%.17g,%.17g,%.17g],"duration":%.17g)", c.push.body,
           c.push.force[0], c.push.force[1], c.push.force[2], c.push.duration);
@@ -123,6 +124,14 @@ std::string_view command_text(const Command& c, const CommandReply& reply, char*
     w.add(R"(,"reason":)");
     w.add_quoted(reply.message.data());
   }
+  w.add("}");
+  return w.text();
+}
+
+std::string_view note_text(const char* what, const char* text, char* buffer, std::size_t size) {
+  Writer w(buffer, size);
+  w.add(R"({"%s":)", what);
+  w.add_quoted(text);
   w.add("}");
   return w.text();
 }

@@ -21,6 +21,8 @@ std::string_view parameter_text(const char* key, const Command& command, const C
 // was weighed. [rt]
 std::string_view load_text(const char* what, const GaitdLoad& load, const char* link, char* buffer,
                            std::size_t size);
+// {what: text}. [rt]
+std::string_view note_text(const char* what, const char* text, char* buffer, std::size_t size);
 // {"push": link, "force", "point", "duration"} of a push that was made. [rt]
 std::string_view push_text(const GaitdDisturbance& push, const char* link, char* buffer,
                            std::size_t size);

@@ -60,6 +60,8 @@ ControlLoop::ControlLoop(const LoopOptions& options, const Parts& parts)
       scenario_(parts.scenario),
       swaps_(parts.swaps),
       goto_(parts.plans),
+      refine_(parts.refinements),
+      sight_(parts.plans, parts.sight),
       command_(std::make_unique<Command>()),
       pace_(options.period, options.overrun, options.overrun_run) {
   if (swaps_ != nullptr) swaps_->publish(pipeline_->swap_right());
@@ -81,7 +83,9 @@ LoopReport ControlLoop::run() {
     pulse_.beat();
     take_estop();
     take_commands();
+    take_sights();
     take_plan();
+    take_refinement();
     take_swaps();
     if (ended_) break;
     const Outcome outcome = tick();
@@ -91,7 +95,7 @@ LoopReport ControlLoop::run() {
       time_unread_ = 0.0;
       if (std::exchange(write_failed_, false)) raise(kFaultBackend, "backend");
       if (scenario_ != nullptr) {
-        const auto played = scenario_->update(options_.period, pipeline_->data());
+        const auto played = scenario_->update(options_.period, pipeline_->data(), goto_.active());
         if (played != ScenarioPlayer::End::kRunning) {
           end(end_of(played));
           break;
@@ -138,6 +142,7 @@ ControlLoop::Outcome ControlLoop::tick() {
   watch_->add(tick_, data.times, pipeline_->layers().budgets());
   data.has_truth = backend_.vtable->truth != nullptr &&
                    backend_.vtable->truth(backend_.self, &data.truth) == GAITD_OK;
+  sight_.look(model_, data, tick_);
   record();
   report_changes();
   if (!written) write_failed_ = true;

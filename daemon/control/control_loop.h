@@ -13,8 +13,10 @@
 #include "daemon/control/loop_pulse.h"
 #include "daemon/control/pace.h"
 #include "daemon/control/pipeline.h"
+#include "daemon/control/refine_task.h"
 #include "daemon/control/run_end.h"
 #include "daemon/control/scenario_player.h"
+#include "daemon/control/sight_task.h"
 #include "daemon/control/swap_port.h"
 #include "daemon/control/tick_watch.h"
 #include "daemon/server/command_bridge.h"
@@ -45,7 +47,7 @@ struct LoopReport {
 // simulation has made the next sensors.
 class ControlLoop {
  public:
-  // What it brings together; all of it outlives the loop. The last four may be null.
+  // What it brings together; all of it outlives the loop. The last five may be null.
   struct Parts {
     const GaitdModel* model;
     Pipeline* pipeline;
@@ -57,6 +59,8 @@ class ControlLoop {
     ScenarioPlayer* scenario = nullptr;
     SwapPort* swaps = nullptr;
     PlanPort* plans = nullptr;
+    PlanPort* refinements = nullptr;
+    SightTiming sight;
   };
   ControlLoop(const LoopOptions& options, const Parts& parts);
 
@@ -78,7 +82,10 @@ class ControlLoop {
   void begin_goto(const Command& command, bool from_client);
   void give_up_goto(const Command& command);
   void tell_goto(const Command& command, bool from_client, CommandReply reply);
+  void take_sights();
   void take_plan();
+  void take_refinement();
+  void note_goto(const char* text);
   CommandReply take_footsteps(const Command& command);
   static CommandReply refuse_outdated(const Command& command);
   CommandReply simulate(const Command& command);
@@ -108,6 +115,8 @@ class ControlLoop {
 
   LoopPulse pulse_;
   GotoTask goto_;
+  RefineTask refine_;
+  SightTask sight_;
   std::atomic<bool> stop_{false};
   std::unique_ptr<Command> command_;  // scratch: too large for the stack
   LoopReport report_;

@@ -26,6 +26,7 @@ bool replaces_goto(const Command& command) {
     case CommandType::kPayload:
     case CommandType::kHandhold:
     case CommandType::kSimLoad:
+    case CommandType::kRefine:
       return false;
     case CommandType::kMode:
       return command.mode == GAITD_MODE_STAND;
@@ -34,6 +35,11 @@ bool replaces_goto(const Command& command) {
     default:
       return true;
   }
+}
+
+void pause_for_plan() {
+  const timespec pause{0, 200'000};
+  nanosleep(&pause, nullptr);
 }
 
 }  // namespace
@@ -47,6 +53,7 @@ void ControlLoop::begin_goto(const Command& command, bool from_client) {
 
 void ControlLoop::give_up_goto(const Command& command) {
   if (!goto_.active() || !replaces_goto(command)) return;
+  if (goto_.answered()) return goto_.drop();
   CommandReply reply;
   std::snprintf(reply.message.data(), reply.message.size(), "another command has taken its place");
   tell_goto(goto_.command(), goto_.from_client(), reply);
@@ -63,29 +70,64 @@ void ControlLoop::tell_goto(const Command& command, bool from_client, CommandRep
   if (from_client) bridge_->push(reply);
 }
 
+// What was seen until now is there for the next plan. In lockstep simulated time stands still until
+// the thread that looks at it has kept up.
+void ControlLoop::take_sights() {
+  const bool waits = options_.clock == GAITD_CLOCK_LOCKSTEP;
+  while (!sight_.deliver(tick_) && waits && !stop_.load(std::memory_order_relaxed))
+    pause_for_plan();
+}
+
 // In lockstep simulated time stands still while footsteps are planned, so that their tick is known.
 void ControlLoop::take_plan() {
   const bool waits = options_.clock == GAITD_CLOCK_LOCKSTEP;
+  if (goto_.answered() && !pipeline_->safety().controlled()) {
+    note_goto("goto: given up, the robot is not under control");
+    goto_.drop();
+  }
   GotoTask::Step step = goto_.step(pipeline_->gait(), command_.get());
   while (waits && goto_.awaits_plan() && !stop_.load(std::memory_order_relaxed)) {
-    const timespec pause{0, 200'000};
-    nanosleep(&pause, nullptr);
+    pause_for_plan();
     step = goto_.step(pipeline_->gait(), command_.get());
   }
   CommandReply reply;
   if (step == GotoTask::Step::kFootsteps) {
     if (const CommandReply taken = take_footsteps(*command_); taken.accepted) {
       goto_.taken();
+    } else if (goto_.answered()) {
+      note_goto(taken.message.data());
+      goto_.refused(taken.message.data());
     } else {
       std::snprintf(reply.message.data(), reply.message.size(), "%s", taken.message.data());
       tell_goto(goto_.command(), goto_.from_client(), reply);
       goto_.drop();
     }
+  } else if (step == GotoTask::Step::kEnded) {
+    note_goto(goto_.message());
   } else if (step != GotoTask::Step::kWait) {
     reply.accepted = step == GotoTask::Step::kDone;
     std::snprintf(reply.message.data(), reply.message.size(), "%s", goto_.message());
     tell_goto(goto_.command(), goto_.from_client(), reply);
   }
+}
+
+// Footsteps of others, put on the ground as it is known.
+void ControlLoop::take_refinement() {
+  const bool waits = options_.clock == GAITD_CLOCK_LOCKSTEP;
+  const bool wanted = !goto_.active() && pipeline_->safety().controlled();
+  bool comes = refine_.step(pipeline_->gait(), wanted, command_.get());
+  while (waits && refine_.awaits_plan() && !stop_.load(std::memory_order_relaxed)) {
+    pause_for_plan();
+    comes = refine_.step(pipeline_->gait(), wanted, command_.get());
+  }
+  if (comes) take_footsteps(*command_);
+}
+
+// To the log: what becomes of a goto after it was answered.
+void ControlLoop::note_goto(const char* text) {
+  char note[kMaxEventText];
+  telemetry_->push_event(EventKind::kNote, tick_, static_cast<double>(tick_) * options_.period,
+                         note_text("goto", text, note, sizeof(note)));
 }
 
 // They are what a replay needs to know.

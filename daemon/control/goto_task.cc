@@ -2,6 +2,7 @@
 #include "daemon/control/goto_task.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "daemon/control/plan_start.h"
@@ -9,7 +10,12 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr int kMostAttempts = 5;  // to plan faster than the robot steps
+constexpr int kMostAttempts = 5;   // to plan faster than the robot steps
+constexpr int kMostTries = 4;      // standing, to find a way on
+constexpr double kTryAgain = 0.5;  // s, between them
+constexpr double kNotThere = 0.2;  // m, of the middle of the feet from the goal
+constexpr double kBetter = 0.5;    // steps, of the cost of a plan that leads nearer
+constexpr int kMostStale = 30;     // plans
 
 }  // namespace
 
@@ -19,13 +25,14 @@ void GotoTask::begin(const Command& command, bool from_client, const walking::Ga
   from_client_ = from_client;
   command_ = command;
   attempts_ = 0;
-  sent_ = in_hand_ = 0;
-  if (port_ != nullptr) ask(gait);
+  under_way_ = partial_ = false;
+  tries_ = 0;
+  if (port_ != nullptr) ask(gait, PlanKind::kGoto);
 }
 
 void GotoTask::drop() {
   release_plan();
-  active_ = false;
+  active_ = asked_ = under_way_ = false;
 }
 
 void GotoTask::release_plan() {
@@ -33,21 +40,40 @@ void GotoTask::release_plan() {
   plan_ = nullptr;
 }
 
-bool GotoTask::ask(const walking::GaitMachine& gait) {
+void GotoTask::ask(const walking::GaitMachine& gait, PlanKind kind) {
+  release_plan();
+  sent_ = in_hand_ = commands_ = 0;
+  kind_ = kind;
   start_ = plan_start(gait);
   PlanRequest request;
   request.serial = ++serial_;
+  request.kind = kind;
   request.start = start_;
   request.goal = {command_.target.x, command_.target.y, {}};
   if (command_.target.has_yaw) request.goal.yaw = command_.target.yaw;
+  request.height_offset = gait.height_offset();
   request.parameters = gait.parameters();
-  return attempts_++ < kMostAttempts && port_->request(request);
+  asked_ = port_->request(request);
 }
 
-GotoTask::Step GotoTask::refuse(const char* why) {
+GotoTask::Step GotoTask::ask_again(const walking::GaitMachine& gait) {
+  if (++attempts_ < kMostAttempts) {
+    ask(gait, kind_);
+    if (asked_) return Step::kWait;
+  }
+  if (!under_way_) {
+    return end(Step::kRefused,
+               "the robot steps on faster than footsteps are planned; `gaitctl stop` first");
+  }
+  release_plan();  // what is ahead stays; the next step asks again
+  asked_ = false;
+  return Step::kWait;
+}
+
+GotoTask::Step GotoTask::end(Step how, const char* why) {
   std::snprintf(message_.data(), message_.size(), "%s", why);
   drop();
-  return Step::kRefused;
+  return how;
 }
 
 void GotoTask::tell_done() {
@@ -55,42 +81,82 @@ void GotoTask::tell_done() {
   for (const GaitdFootstep& step : plan_->footsteps) {
     time += step.swing_duration + step.transfer_duration;
   }
-  std::snprintf(message_.data(), message_.size(), "%d footsteps, about %.0f s",
-                static_cast<int>(plan_->footsteps.size()), time);
+  std::snprintf(message_.data(), message_.size(), "%d footsteps, about %.0f s%s",
+                static_cast<int>(plan_->footsteps.size()), time,
+                plan_->partial ? ", to where the ground is not known yet" : "");
 }
 
-GotoTask::Step GotoTask::step(const walking::GaitMachine& gait, Command* out) {
-  if (port_ == nullptr) return active_ ? refuse("this gaitd has no planner") : Step::kWait;
+void GotoTask::take_answers() {
   PlanAnswer answer;
   while (port_->next_answer(answer)) {
-    if (active_ && answer.serial == serial_) {
+    if (active_ && asked_ && answer.serial == serial_ && plan_ == nullptr) {
       plan_ = answer.plan;
+      unchanged_ = answer.unchanged;
     } else {
       port_->retire(answer.plan);
     }
   }
-  if (!active_ || plan_ == nullptr) return Step::kWait;
-  if (!plan_->refusal.empty()) return refuse(plan_->refusal.c_str());
-  if (sent_ == 0 && !still_fits(start_, plan_start(gait))) {
-    release_plan();
-    if (ask(gait)) return Step::kWait;
-    return refuse("the robot steps on faster than footsteps are planned; `gaitctl stop` first");
+}
+
+GotoTask::Step GotoTask::step(const walking::GaitMachine& gait, Command* out) {
+  if (port_ == nullptr) {
+    return active_ ? end(Step::kRefused, "this gaitd has no planner") : Step::kWait;
   }
+  take_answers();
+  if (!active_) return Step::kWait;
+  if (!asked_) return under_way_ ? watch(gait) : end(Step::kRefused, "too many plans at once");
+  return plan_ == nullptr ? Step::kWait : hand_over(gait, out);
+}
+
+// On a map that grows, while the footsteps are taken.
+GotoTask::Step GotoTask::watch(const walking::GaitMachine& gait) {
+  const GaitdGaitState& state = gait.state();
+  if (state.phase == GAITD_PHASE_SWING && state.footstep_count > 0 &&
+      state.commanded[0].id != step_) {
+    step_ = state.commanded[0].id;
+    attempts_ = tries_ = 0;
+    ask(gait, PlanKind::kRevise);
+    return Step::kWait;
+  }
+  if (state.phase != GAITD_PHASE_STAND || state.footstep_count > 0) return Step::kWait;
+  const double* left = state.footholds[GAITD_LEFT].pose.position;
+  const double* right = state.footholds[GAITD_RIGHT].pose.position;
+  const double off = std::hypot(0.5 * (left[0] + right[0]) - command_.target.x,
+                                0.5 * (left[1] + right[1]) - command_.target.y);
+  if (!partial_ && off < kNotThere) {
+    std::snprintf(why_.data(), why_.size(), "goto: arrived, %.3f m off", off);
+    return end(Step::kEnded, why_.data());
+  }
+  if (state.time_in_phase < kTryAgain * (tries_ + 1)) return Step::kWait;
+  if (++tries_ > kMostTries) {
+    char text[256];
+    std::snprintf(text, sizeof(text), "goto: given up, %.2f m off: %.200s", off, why_.data());
+    return end(Step::kEnded, text);
+  }
+  attempts_ = 0;
+  ask(gait, PlanKind::kRevise);
+  return Step::kWait;
+}
+
+GotoTask::Step GotoTask::hand_over(const walking::GaitMachine& gait, Command* out) {
+  if (unchanged_) return all_taken();
   const int count = static_cast<int>(plan_->footsteps.size());
-  if (count == 0) {
-    std::snprintf(message_.data(), message_.size(), "nothing to do: the robot stands there");
-    drop();
-    return Step::kDone;
+  const bool refused = !plan_->refusal.empty();
+  if (refused && !under_way_) return end(Step::kRefused, plan_->refusal.c_str());
+  if (commands_ == 0 && !still_fits(start_, plan_start(gait))) return ask_again(gait);
+  if (commands_ == 0 && under_way_ && gets_nowhere()) {
+    return end(Step::kEnded,
+               "goto: given up, the way changes at every step and leads no nearer to the goal");
   }
-  if (sent_ == count) {
-    tell_done();
-    drop();
-    return Step::kDone;
+  if (count == 0 && !refused && !under_way_) {
+    return end(Step::kDone, "nothing to do: the robot stands there");
   }
+  const bool nothing_ahead = count == 0 && (!refused || gait.state().footstep_count == 0);
+  if (nothing_ahead || (commands_ > 0 && sent_ == count)) return all_taken();
   *out = Command{};
   out->type = CommandType::kFootsteps;
-  out->replace = sent_ == 0;
-  if (sent_ == 0 && is_chosen_only(gait)) {
+  out->replace = commands_ == 0;
+  if (commands_ == 0 && is_chosen_only(gait)) {
     out->footsteps[out->footstep_count++] = gait.state().commanded[0];
   }
   in_hand_ = std::min(count - sent_, walking::kMaxFootstepsPerCommand - out->footstep_count);
@@ -100,6 +166,48 @@ GotoTask::Step GotoTask::step(const walking::GaitMachine& gait, Command* out) {
   return Step::kFootsteps;
 }
 
-void GotoTask::taken() { sent_ += in_hand_; }
+// Whether the plans of many steps were no better than one before: it goes back and forth.
+bool GotoTask::gets_nowhere() {
+  const bool better = plan_->refusal.empty() && plan_->cost < least_cost_ - kBetter;
+  if (better) least_cost_ = plan_->cost;
+  stale_ = better ? 0 : stale_ + 1;
+  return stale_ > kMostStale;
+}
+
+// The plan is with the gait machine.
+GotoTask::Step GotoTask::all_taken() {
+  const bool first = !under_way_;
+  if (!unchanged_) partial_ = plan_->partial || !plan_->refusal.empty();
+  if (partial_) {
+    std::snprintf(why_.data(), why_.size(), "%s",
+                  plan_->refusal.empty() ? "the ground beyond is not seen from here"
+                                         : plan_->refusal.c_str());
+  }
+  if (first) {
+    tell_done();
+    least_cost_ = plan_->cost;
+    stale_ = 0;
+  }
+  if (!port_->live()) {
+    drop();
+    return Step::kDone;
+  }
+  release_plan();
+  asked_ = false;
+  under_way_ = true;
+  return first ? Step::kDone : Step::kWait;
+}
+
+void GotoTask::taken() {
+  ++commands_;
+  sent_ += in_hand_;
+}
+
+void GotoTask::refused(const char* why) {
+  std::snprintf(why_.data(), why_.size(), "%s", why);
+  partial_ = true;
+  release_plan();
+  asked_ = false;
+}
 
 }  // namespace gaitd::daemon

@@ -12,7 +12,8 @@ namespace gaitd::daemon {
 
 // A `goto` from when it is taken until its footsteps are in the gait machine: asks for a plan, asks
 // again where the robot has stepped on meanwhile, and hands the footsteps over, as many in a tick
-// as one command holds. [rt]
+// as one command holds. Where the map of the ground grows, until the robot is there: at every step
+// it asks whether what is ahead can still be walked, and standing, whether there is a way on. [rt]
 class GotoTask {
  public:
   explicit GotoTask(PlanPort* port) : port_(port) {}
@@ -23,27 +24,37 @@ class GotoTask {
   void drop();
 
   bool active() const { return active_; }
-  bool awaits_plan() const { return active_ && plan_ == nullptr; }
+  bool answered() const { return under_way_; }  // who asked for it has been told
+  bool awaits_plan() const { return active_ && asked_ && plan_ == nullptr; }
   bool from_client() const { return from_client_; }
   const Command& command() const { return command_; }
 
   enum class Step {
     kWait,       // nothing to do in this tick
-    kFootsteps,  // `out` is a command for the gait machine; taken() or drop() is to follow
+    kFootsteps,  // `out` is a command for the gait machine; taken(), refused() or drop() follows
     kDone,       // all footsteps were taken, or the robot stands there already
-    kRefused     // message() says why
+    kRefused,    // message() says why
+    kEnded       // after kDone: it is there, or there is no way on, as message() says
   };
   // Once in a tick, in lockstep until it does not wait any more.
   Step step(const walking::GaitMachine& gait, Command* out);
   // The command of the last step() was accepted.
   void taken();
+  // It was not, after kDone: what was ahead before is still there.
+  void refused(const char* why);
   // Why it was refused, or what was done.
   const char* message() const { return message_.data(); }
 
  private:
-  bool ask(const walking::GaitMachine& gait);
+  void ask(const walking::GaitMachine& gait, PlanKind kind);
+  Step ask_again(const walking::GaitMachine& gait);
+  Step watch(const walking::GaitMachine& gait);
+  Step hand_over(const walking::GaitMachine& gait, Command* out);
+  Step all_taken();
+  bool gets_nowhere();
+  void take_answers();
   void release_plan();
-  Step refuse(const char* why);
+  Step end(Step how, const char* why);
   void tell_done();
 
   PlanPort* port_;
@@ -51,11 +62,23 @@ class GotoTask {
   bool from_client_ = false;
   Command command_;
   std::uint64_t serial_ = 0;
+  bool asked_ = false;
+  PlanKind kind_ = PlanKind::kGoto;  // of what was asked
   int attempts_ = 0;
   footsteps::Start start_;  // that was planned from
   const footsteps::Plan* plan_ = nullptr;
-  int sent_ = 0;     // footsteps of the plan that were taken
-  int in_hand_ = 0;  // of the last command
+  bool unchanged_ = false;
+  int commands_ = 0;  // of the plan that were taken
+  int sent_ = 0;      // footsteps of the plan that were taken
+  int in_hand_ = 0;   // of the last command
+  // On a map that grows.
+  bool under_way_ = false;
+  bool partial_ = false;     // the footsteps ahead do not lead to the goal
+  int tries_ = 0;            // standing, without a way on
+  double least_cost_ = 0.0;  // of the plans so far
+  int stale_ = 0;            // plans since then that were no better
+  std::uint32_t step_ = 0;   // id of the one at which it was asked
+  std::array<char, 256> why_{};
   std::array<char, 256> message_{};
 };
 

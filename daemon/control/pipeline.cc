@@ -331,6 +331,9 @@ CommandReply Pipeline::execute(const Command& command) {
     case CommandType::kFootsteps:
       refusal = gait_.footsteps(command.footsteps.data(), command.footstep_count, command.replace);
       break;
+    case CommandType::kRefine:
+      refusal = gait_.refine(command.footsteps.data(), command.footstep_count);
+      break;
     case CommandType::kGoto:  // whether it may; the footsteps come as such
       if (gait_.mode() == GAITD_MODE_STAND) {
         why = "goto: the gait mode is stand; choose one to walk in: gaitctl mode walk-bent";

@@ -18,7 +18,7 @@ bool is_chosen_only(const walking::GaitMachine& gait) {
          state.footstep_count > 0;
 }
 
-footsteps::Start plan_start(const walking::GaitMachine& gait) {
+footsteps::Start standing_start(const walking::GaitMachine& gait) {
   const GaitdGaitState& state = gait.state();
   footsteps::Start start;
   start.omega = state.omega;
@@ -26,6 +26,12 @@ footsteps::Start plan_start(const walking::GaitMachine& gait) {
     start.feet[side] = state.footholds[side].pose;
     start.feet[side].position[2] -= gait.height_offset();
   }
+  return start;
+}
+
+footsteps::Start plan_start(const walking::GaitMachine& gait) {
+  const GaitdGaitState& state = gait.state();
+  footsteps::Start start = standing_start(gait);
   const bool swings = state.phase == GAITD_PHASE_SWING && state.footstep_count > 0;
   if (!swings && !is_chosen_only(gait)) return start;
   const GaitdFootstep& step = state.commanded[0];

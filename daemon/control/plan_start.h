@@ -6,6 +6,9 @@
 
 namespace gaitd::daemon {
 
+// The feet as they stand, in the frame of commands. [rt]
+footsteps::Start standing_start(const walking::GaitMachine& gait);
+
 // Where footsteps begin that replace all that have not begun: behind the step that is being taken
 // or that a transfer has chosen. [rt]
 footsteps::Start plan_start(const walking::GaitMachine& gait);

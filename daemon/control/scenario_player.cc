@@ -81,10 +81,10 @@ const GaitdDisturbance* ScenarioPlayer::next_disturbance(const TickData& data) {
   return nullptr;
 }
 
-ScenarioPlayer::End ScenarioPlayer::update(double dt, const TickData& data) {
+ScenarioPlayer::End ScenarioPlayer::update(double dt, const TickData& data, bool busy) {
   const bool standing = data.gait.phase == GAITD_PHASE_STAND;
   walked_ = walked_ || !standing;
-  const bool waiting = !standing || (data.gait.footstep_count > 0);
+  const bool waiting = !standing || busy || data.gait.footstep_count > 0;
   time_standing_ = waiting ? 0.0 : time_standing_ + dt;
   time_in_fault_ = data.safety == SafetyState::kFault ? time_in_fault_ + dt : 0.0;
   if (time_in_fault_ > kFaultTime) return End::kFault;

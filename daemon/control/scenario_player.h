@@ -27,8 +27,8 @@ class ScenarioPlayer {
 
   enum class End { kRunning, kSettled, kDuration, kFault };
   // After each tick. Settled: everything was played and the robot has stood for a while after
-  // having walked.
-  End update(double dt, const TickData& data);
+  // having walked. `busy`: it stands only for now, to look for a way on.
+  End update(double dt, const TickData& data, bool busy = false);
 
   double duration() const { return duration_; }
   bool pushes() const { return !disturbances_.empty(); }

@@ -3,18 +3,42 @@
 
 #include <pthread.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
 
 namespace gaitd::daemon {
 namespace {
 
 // The control thread cannot wake anybody: requests are looked for.
 constexpr std::chrono::milliseconds kPoll{2};
+constexpr double kSamePlace = 0.02;    // m: a footstep is that one of the route
+constexpr double kSameHeight = 0.003;  // m, and
+constexpr double kSameTilt = 0.01;     // rad: a footstep stays as it is
+
+constexpr double kMuchBetter = 0.85;  // of the cost of the way that was begun
+
+void raise(double by, GaitdFootstep* step) {
+  step->pose.position[2] += by;
+  for (int i = 0; i < step->region_count; ++i) step->landing_region[i][2] += by;
+}
+
+bool same(const GaitdFootstep& a, const GaitdFootstep& b) {
+  const double height = a.pose.position[2] - b.pose.position[2];
+  return std::abs(height) < kSameHeight && a.swing_duration == b.swing_duration &&
+         a.transfer_duration == b.transfer_duration && a.swing_height == b.swing_height &&
+         sdk::quaternion(a.pose.orientation).angularDistance(sdk::quaternion(b.pose.orientation)) <
+             kSameTilt;
+}
 
 }  // namespace
 
 void PlanService::start() {
+  look_around();
   thread_ = std::thread([this] { run(); });
   pthread_setname_np(thread_.native_handle(), "gaitd-goto");
 }
@@ -26,31 +50,164 @@ void PlanService::stop() {
   }
   wake_.notify_all();
   if (thread_.joinable()) thread_.join();
-  drop_the_rest();
+  for (PlanPort* port : {&port_, &refinements_}) {
+    for (PlanAnswer answer; port->next_answer(answer);) delete answer.plan;
+    for (const footsteps::Plan* plan = nullptr; port->next_retired(plan);) delete plan;
+  }
 }
 
 void PlanService::run() {
-  std::unique_ptr<footsteps::FootstepPlanner> planner;
   while (!stopping_) {
-    PlanRequest request;
-    while (!stopping_ && port_.next_request(request)) {
-      if (!planner) {
-        planner =
-            footsteps::make_planner(parts_.planner, *parts_.model, parts_.map, parts_.options);
-      }
-      auto plan = std::make_unique<footsteps::Plan>(
-          planner->plan(request.start, request.goal, request.parameters));
-      if (port_.answer({request.serial, plan.get()})) plan.release();
-    }
-    for (const footsteps::Plan* plan = nullptr; port_.next_retired(plan);) delete plan;
+    look_around();
+    answer_all(&port_);
+    answer_all(&refinements_);
     std::unique_lock lock(mutex_);
     wake_.wait_for(lock, kPoll, [this] { return stopping_.load(); });
   }
 }
 
-void PlanService::drop_the_rest() {
-  for (PlanAnswer answer; port_.next_answer(answer);) delete answer.plan;
-  for (const footsteps::Plan* plan = nullptr; port_.next_retired(plan);) delete plan;
+void PlanService::look_around() {
+  for (Sight sight; !stopping_ && port_.next_sight(sight);) parts_.ground->look(sight);
+  const bool live = parts_.ground->live();
+  port_.set_live(live);
+  refinements_.set_live(live);
+}
+
+void PlanService::answer_all(PlanPort* port) {
+  PlanRequest request;
+  while (!stopping_ && port->next_request(request)) {
+    look_around();  // what was seen before it was asked
+    bool unchanged = false;
+    auto plan = std::make_unique<footsteps::Plan>(answer(request, &unchanged));
+    if (port->answer({request.serial, plan.get(), unchanged})) static_cast<void>(plan.release());
+  }
+  for (const footsteps::Plan* plan = nullptr; port->next_retired(plan);) delete plan;
+}
+
+footsteps::FootstepPlanner& PlanService::planner() {
+  const LiveGround::Known known = parts_.ground->known();
+  if (!planner_ || known.map != known_.map) {
+    known_ = known;
+    footsteps::PlannerOptions options = parts_.options;
+    options.explore = parts_.ground->live();
+    planner_ = footsteps::make_planner(parts_.planner, *parts_.model, known_.map, options);
+  }
+  return *planner_;
+}
+
+// A map that is made while the robot walks is higher or lower than its feet by what its sensor and
+// its estimator are off. What counts is the height from where it stands: plans are made in the
+// frame of the map, below the foot that stays.
+footsteps::Plan PlanService::answer(const PlanRequest& request, bool* unchanged) {
+  footsteps::FootstepPlanner& planner = this->planner();
+  PlanRequest on_map = request;
+  double bias = 0.0;
+  if (parts_.ground->live()) {
+    bias = -request.height_offset;
+    const bool steps = request.start.under_way.has_value();
+    double sum = 0.0;
+    int count = 0;
+    for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+      if (steps && side == request.start.under_way->side) continue;
+      if (const auto ground = planner.ground_below(side, request.start.feet[side])) {
+        sum += request.start.feet[side].position[2] - *ground;
+        ++count;
+      }
+    }
+    if (count > 0) bias = sum / count;
+  }
+  for (GaitdPose& foot : on_map.start.feet) foot.position[2] -= bias;
+  if (on_map.start.under_way) raise(-bias, &*on_map.start.under_way);
+  for (int i = 0; i < on_map.ahead_count; ++i) raise(-bias, &on_map.ahead[i]);
+  footsteps::Plan plan;
+  switch (request.kind) {
+    case PlanKind::kGoto:
+      exhausted_.clear();
+      plan = planner.plan(on_map.start, on_map.goal, on_map.parameters);
+      if (plan.refusal.empty()) {
+        route_ = plan;
+      }
+      break;
+    case PlanKind::kRevise:
+      on_map.goal.exhausted = exhausted_;
+      plan = revise(on_map, unchanged);
+      break;
+    case PlanKind::kRefine:
+      plan.footsteps = planner.refine(
+          on_map.start, {on_map.ahead.begin(), on_map.ahead.begin() + on_map.ahead_count},
+          on_map.parameters);
+      break;
+  }
+  for (GaitdFootstep& step : plan.footsteps) raise(bias, &step);
+  return plan;
+}
+
+// The footsteps of the route behind the one that is under way; nothing if that is none of them.
+std::optional<std::vector<GaitdFootstep>> PlanService::left_of_route(
+    const PlanRequest& request) const {
+  if (!request.start.under_way) return std::nullopt;
+  const GaitdFootstep& now = *request.start.under_way;
+  const auto& steps = route_.footsteps;
+  const auto at = std::find_if(steps.begin(), steps.end(), [&now](const GaitdFootstep& step) {
+    return step.side == now.side &&
+           std::hypot(step.pose.position[0] - now.pose.position[0],
+                      step.pose.position[1] - now.pose.position[1]) < kSamePlace;
+  });
+  if (at == steps.end()) return std::nullopt;
+  return std::vector<GaitdFootstep>(at + 1, steps.end());
+}
+
+// The same footsteps as long as they can be taken and lead to the goal. Else another way; and if
+// there is none, as many of them as can be taken.
+footsteps::Plan PlanService::revise(const PlanRequest& request, bool* unchanged) {
+  const auto found = left_of_route(request);
+  footsteps::Goal goal = request.goal;
+  const std::vector<GaitdFootstep> left = found.value_or(std::vector<GaitdFootstep>{});
+  const bool known = found && !route_.partial;
+  // It comes to the end of a plan that has not been taken further on the way there.
+  if (found && left.empty() && route_.partial) {
+    const double* end = request.start.under_way->pose.position;
+    exhausted_.emplace_back(end[0], end[1]);
+    goal.exhausted = exhausted_;
+  }
+  footsteps::Plan adapted;
+  if (!left.empty()) adapted = planner_->adapt(request.start, left, request.parameters);
+  if (known && adapted.refusal.empty()) {
+    *unchanged = std::equal(left.begin(), left.end(), adapted.footsteps.begin(),
+                            adapted.footsteps.end(), same);
+    if (!*unchanged) route_ = adapted;
+    return *unchanged ? footsteps::Plan{} : adapted;
+  }
+  footsteps::Plan plan = planner_->plan(request.start, goal, request.parameters);
+  if (!left.empty() && adapted.refusal.empty()) {
+    go_on(request, adapted, &plan);
+  }
+  if (plan.refusal.empty()) {
+    route_ = plan;
+    return plan;
+  }
+  adapted.refusal = plan.refusal;
+  adapted.partial = true;
+  route_ = adapted;
+  return adapted;
+}
+
+// From where the map ended a way leads on, over what is seen now: rather that than another way from
+// here that is hardly better, or the robot would change its mind at every step.
+void PlanService::go_on(const PlanRequest& request, const footsteps::Plan& begun,
+                        footsteps::Plan* plan) const {
+  footsteps::Start end = request.start;
+  for (const GaitdFootstep& step : begun.footsteps) end.feet[step.side] = step.pose;
+  end.under_way = begun.footsteps.back();
+  end.first_side = walking::other_side(begun.footsteps.back().side);
+  footsteps::Plan on = planner_->plan(end, request.goal, request.parameters);
+  if (!on.refusal.empty()) return;
+  const bool better = plan->refusal.empty() && plan->partial <= on.partial &&
+                      plan->cost < kMuchBetter * (begun.cost + on.cost);
+  if (better) return;
+  on.footsteps.insert(on.footsteps.begin(), begun.footsteps.begin(), begun.footsteps.end());
+  on.cost += begun.cost;
+  *plan = std::move(on);
 }
 
 }  // namespace gaitd::daemon

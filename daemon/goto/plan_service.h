@@ -5,23 +5,25 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "daemon/control/plan_port.h"
+#include "daemon/goto/live_ground.h"
 #include "gaitd/abi/types.h"
-#include "gaitd/terrain/height_map.h"
 
 namespace gaitd::daemon {
 
-/// Plans footsteps on a thread of its own for the control thread. Nothing is prepared, and no time
-/// is taken, before the first request.
+/// Plans footsteps, and looks at the ground, on a thread of its own for the control thread. Nothing
+/// is prepared, and no time is taken, before the first request.
 class PlanService {
  public:
   struct Parts {
-    const GaitdModel* model;                        ///< outlives the service
-    std::shared_ptr<const terrain::HeightMap> map;  ///< null: level ground
-    std::string planner;                            ///< one of footsteps::kPlannerNames
+    const GaitdModel* model;             ///< outlives the service
+    std::shared_ptr<LiveGround> ground;  ///< what is known of it
+    std::string planner;                 ///< one of footsteps::kPlannerNames
     footsteps::PlannerOptions options;
   };
   explicit PlanService(Parts parts) : parts_(std::move(parts)) {}
@@ -30,18 +32,30 @@ class PlanService {
   void start();
   /// After the control thread has ended. Waits for the plan that is being made.
   void stop();
-  PlanPort& port() { return port_; }
+  PlanPort& port() { return port_; }                ///< of goto
+  PlanPort& refinements() { return refinements_; }  ///< of footsteps of others
 
  private:
   void run();
-  void drop_the_rest();
+  void answer_all(PlanPort* port);
+  void look_around();
+  footsteps::FootstepPlanner& planner();
+  footsteps::Plan answer(const PlanRequest& request, bool* unchanged);
+  footsteps::Plan revise(const PlanRequest& request, bool* unchanged);
+  void go_on(const PlanRequest& request, const footsteps::Plan& begun, footsteps::Plan* plan) const;
+  std::optional<std::vector<GaitdFootstep>> left_of_route(const PlanRequest& request) const;
 
   const Parts parts_;
-  PlanPort port_;
+  PlanPort port_, refinements_;
   std::mutex mutex_;
   std::condition_variable wake_;
   std::atomic<bool> stopping_ = false;
   std::thread thread_;
+  // Of that thread.
+  LiveGround::Known known_;
+  std::unique_ptr<footsteps::FootstepPlanner> planner_;  // on known_
+  footsteps::Plan route_;                                // of the last goto, as it was revised
+  std::vector<Eigen::Vector2d> exhausted_;               // m, W: Goal::exhausted of it
 };
 
 }  // namespace gaitd::daemon

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <queue>
 #include <unordered_set>
 #include <utility>
 
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
+#include "goal_place.h"
 #include "step_costs.h"
 
 namespace gaitd::footsteps {
@@ -19,10 +21,8 @@ using walking::Gait;
 using walking::other_side;
 using walking::side_sign;
 
-// Of the lattice, in pelvis heights and parts of a turn.
+// Of the lattice, in pelvis heights.
 constexpr double kCell = 0.043;
-constexpr int kHeadings = 24;
-constexpr double kHeading = 2.0 * M_PI / kHeadings;
 // Strides: ahead, and outwards beyond the distance of the feet in the nominal posture; pelvis
 // heights.
 constexpr double kAhead[] = {-0.22, -0.11, 0.0, 0.11, 0.22, 0.33, 0.43, 0.54};
@@ -34,16 +34,21 @@ constexpr double kInflations[] = {3.0, 2.0, 1.5};
 // Once there is a way: so much more is spent on a better one, over what it took.
 constexpr int kImprove = 2;
 constexpr int kLeastImprove = 6000;
-constexpr double kGoalReach = 0.15;  // m, by which footholds at the goal may be beside it
-
 constexpr double kLongestGoal = 0.45;  // pelvis heights, of the steps to the goal itself
+
+// Where the map ends: pelvis heights, by which a foothold that is not known has to be nearer to the
+// goal for the way to lead on there; and what that way costs over one on known ground.
+constexpr double kLeadsOn = 0.2;
+constexpr double kBeyond = 1.5;
+constexpr double kSameEnd =
+    0.22;  // pelvis heights, around the end of a plan that saw no more there
 
 double wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 
 }  // namespace
 
 Lattice::Lattice(std::shared_ptr<StepMaker> steps, const PlannerOptions& options)
-    : steps_(std::move(steps)), options_(options) {
+    : MapPlanner(std::move(steps)), options_(options) {
   const double unit = steps_->unit();
   const double apart = steps_->model().nominal_foot_separation;
   for (const double ahead : kAhead) {
@@ -76,6 +81,7 @@ class Lattice::Search {
         steps_(*lattice.steps_),
         start_(start),
         parameters_(parameters),
+        exhausted_(goal.exhausted),
         cell_(kCell * steps_.unit()) {
     const Place from = middle_of(start.feet[GAITD_LEFT], start.feet[GAITD_RIGHT]);
     const double dx = goal.x - from.x, dy = goal.y - from.y;
@@ -95,56 +101,30 @@ class Lattice::Search {
     }
     plan.expansions = expansions_;
     plan.footsteps = best_;
+    plan.partial = partial_;
+    plan.cost = best_cost_;
     if (best_.empty()) plan.refusal = why_not();
     return plan;
   }
 
  private:
-  Place goal_place(int side) const {
-    const double y = 0.5 * steps_.model().nominal_foot_separation * side_sign(side);
-    return {goal_.x - std::sin(goal_.yaw) * y, goal_.y + std::cos(goal_.yaw) * y, goal_.yaw};
-  }
+  Place goal_place(int side) const { return sole_beside(goal_, side, steps_.model()); }
 
   Foothold look(int side, const Place& place) const {
     return steps_.footholds().at(side, place, walking::kMaxStepTilt);
   }
 
-  // Footholds for both feet at the goal, or as near to it as there are any.
+  // False: there is no place for the feet at the goal, or near it.
   bool find_goal(std::string* refusal) {
     const Place wanted = goal_;
-    const int reach = static_cast<int>(kGoalReach / cell_);
-    double nearest = std::numeric_limits<double>::infinity();
-    Place best = wanted;
-    FootholdState problem = FootholdState::kGood;
-    for (int i = -reach; i <= reach; ++i) {
-      for (int j = -reach; j <= reach; ++j) {
-        const double distance = cell_ * std::hypot(i, j);
-        if (distance > kGoalReach || distance >= nearest) continue;
-        goal_ = {wanted.x + cell_ * i, wanted.y + cell_ * j, wanted.yaw};
-        const Foothold left = look(GAITD_LEFT, goal_place(GAITD_LEFT));
-        const Foothold right = look(GAITD_RIGHT, goal_place(GAITD_RIGHT));
-        if (i == 0 && j == 0) {
-          problem = left.state != FootholdState::kGood ? left.state : right.state;
-        }
-        if (left.state != FootholdState::kGood || right.state != FootholdState::kGood) continue;
-        if (std::abs(left.z - right.z) > steps_.highest_step()) continue;
-        nearest = distance;
-        best = goal_;
-        goal_footholds_ = {left, right};
-      }
-    }
-    goal_ = best;
-    if (nearest <= kGoalReach) return true;
-    char text[200];
-    std::snprintf(text, sizeof(text),
-                  "no foothold within %.2f m of the goal (%.2f, %.2f): the ground there is %s",
-                  kGoalReach, wanted.x, wanted.y,
-                  problem == FootholdState::kUnknown   ? "not known"
-                  : problem == FootholdState::kSteep   ? "too steep"
-                  : problem == FootholdState::kBlocked ? "beside a riser"
-                                                       : "not flat enough for a sole");
-    *refusal = text;
-    return false;
+    const GoalPlace found = find_goal_place(steps_, wanted, cell_);
+    goal_ = found.middle;
+    goal_footholds_ = found.footholds;
+    // What is not known cannot be good yet: on the way there more of it will be seen.
+    goal_known_ = found.found;
+    const bool later = found.problem == FootholdState::kUnknown && lattice_.options_.explore;
+    if (!found.found && !later) *refusal = no_goal_place(wanted, found.problem);
+    return found.found || later;
   }
 
   double estimate(const Node& node) const {
@@ -198,6 +178,7 @@ class Lattice::Search {
     nodes_.clear();
     closed_.clear();
     order_ = 0;
+    frontier_.reset();
     for (int stance = 0; stance < GAITD_MAX_FEET; ++stance) {
       if (start_.first_side == stance) continue;  // it has to step, not to stand
       const GaitdPose& foot = start_.feet[stance];
@@ -222,6 +203,12 @@ class Lattice::Search {
       const Node node = queue_.top().node;
       queue_.pop();
       if (closed_.contains(node.key) || node.cost >= best_cost_) continue;
+      if (node.beyond) {
+        best_cost_ = node.cost;
+        take(node.parent);
+        partial_ = found = true;
+        break;
+      }
       GaitdFootstep step;
       if (node.parent >= 0) {
         const StepState state = step_to(node, &step);
@@ -244,10 +231,17 @@ class Lattice::Search {
       if (node.goal && nodes_[node.parent].goal) {
         best_cost_ = node.cost;
         take(at);
+        partial_ = false;
         found = true;
         break;
       }
       expand(at, inflation);
+    }
+    // Out of expansions: as far as the best of what was reached.
+    if (!found && best_.empty() && frontier_) {
+      take(frontier_->second);
+      best_cost_ = nodes_[frontier_->second].cost + kBeyond * estimate(nodes_[frontier_->second]);
+      partial_ = true;
     }
     return found;
   }
@@ -262,8 +256,9 @@ class Lattice::Search {
       tally_ = {};
     }
     const int side = other_side(node.side);
-    add_goal(at, side, inflation);
+    if (goal_known_) add_goal(at, side, inflation);
     if (node.goal) return;
+    bool leads_on = false;
     const double outwards = side_sign(side);
     const double c = std::cos(node.place.yaw), s = std::sin(node.place.yaw);
     for (const Stride& stride : lattice_.strides_) {
@@ -284,7 +279,28 @@ class Lattice::Search {
       if (found.state == FootholdState::kGood) {
         add({side, place, key, found, at, stride.cost, false}, inflation);
       }
+      leads_on = leads_on || (found.state == FootholdState::kUnknown &&
+                              std::hypot(x, v) < distance - kLeadsOn * steps_.unit());
     }
+    if (leads_on && lattice_.options_.explore && !is_start(at)) add_beyond(at, inflation);
+  }
+
+  // The way ends here for now, and goes on over ground that is seen from here.
+  void add_beyond(int at, double inflation) {
+    const Node& node = nodes_[at];
+    const bool known = std::any_of(exhausted_.begin(), exhausted_.end(), [&](const auto& p) {
+      return std::hypot(p.x() - node.place.x, p.y() - node.place.y) < kSameEnd * steps_.unit();
+    });
+    if (known) return;
+    const double there = estimate(node);
+    Node beyond = node;
+    beyond.key = (std::uint64_t{1} << 62) + static_cast<std::uint64_t>(at);
+    beyond.parent = at;
+    beyond.cost = node.cost + kBeyond * there;
+    beyond.beyond = true;
+    const double rank = beyond.cost + (inflation - 1.0) * there;
+    if (!frontier_ || rank < frontier_->first) frontier_ = {rank, at};
+    queue_.push({rank, order_++, std::move(beyond)});
   }
 
   // The last footstep but one, or the last one. How the first of the two is reached decides whether
@@ -346,9 +362,13 @@ class Lattice::Search {
   const StepMaker& steps_;
   const Start& start_;
   const walking::GaitParameters& parameters_;
+  const std::span<const Eigen::Vector2d> exhausted_;
   const double cell_;  // m
   Place goal_;
   std::array<Foothold, GAITD_MAX_FEET> goal_footholds_;
+  bool goal_known_ = true;
+  bool partial_ = false;                            // best_ ends where the map does
+  std::optional<std::pair<double, int>> frontier_;  // rank and node, where the map ends
 
   struct Later {
     bool operator()(const Queued& a, const Queued& b) const {

@@ -9,8 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "gaitd/footsteps/planner.h"
-#include "step_maker.h"
+#include "map_planner.h"
 #include "tally.h"
 #include "way_estimate.h"
 
@@ -21,7 +20,7 @@ namespace gaitd::footsteps {
 // it, for a better one (ARA*). A step is checked, and its swing weighed, when it is taken out of
 // the queue, not for each of the thousands that are put in. The same problem has the same answer,
 // whatever the machine.
-class Lattice : public FootstepPlanner {
+class Lattice : public MapPlanner {
  public:
   Lattice(std::shared_ptr<StepMaker> steps, const PlannerOptions& options);
   Plan plan(const Start& start, const Goal& goal,
@@ -45,6 +44,7 @@ class Lattice : public FootstepPlanner {
     double cost;           // steps, up to here
     bool goal;             // a sole of the goal, exactly
     bool weighed = false;  // the cost of its swing is in it
+    bool beyond = false;   // no sole: the way goes on from its parent where nothing is known
   };
   struct Queued {
     double rank;
@@ -56,7 +56,6 @@ class Lattice : public FootstepPlanner {
   std::vector<Stride> strides_;
   double per_metre_;                  // least cost of a stride over what it leads on
   std::unique_ptr<WayEstimate> way_;  // null: without a map
-  std::shared_ptr<StepMaker> steps_;
   const PlannerOptions options_;
 };
 

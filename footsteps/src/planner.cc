@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gaitd/footsteps/planner.h"
 
+#include <cmath>
 #include <utility>
 
 #include "lattice.h"
@@ -10,19 +11,33 @@
 namespace gaitd::footsteps {
 namespace {
 
-class Auto : public FootstepPlanner {
+class Auto : public MapPlanner {
  public:
   Auto(const std::shared_ptr<StepMaker>& steps, const PlannerOptions& options)
-      : has_map_(steps->footholds().has_map()), straight_(steps), lattice_(steps, options) {}
+      : MapPlanner(steps),
+        has_map_(steps->footholds().has_map()),
+        straight_(steps),
+        lattice_(steps, options) {}
 
   Plan plan(const Start& start, const Goal& goal,
             const walking::GaitParameters& parameters) override {
     Plan plan = straight_.plan(start, goal, parameters);
-    if (plan.refusal.empty() || !has_map_) return plan;
-    return lattice_.plan(start, goal, parameters);
+    const bool found = plan.refusal.empty();
+    if (!has_map_ || (found && !roundabout(start, goal, plan))) return plan;
+    Plan searched = lattice_.plan(start, goal, parameters);
+    return found && !(searched.refusal.empty() && searched.cost < plan.cost) ? plan : searched;
   }
 
  private:
+  // Whether it takes far more footsteps than the distance does, to turn away and back again.
+  bool roundabout(const Start& start, const Goal& goal, const Plan& plan) const {
+    constexpr double kStride = 0.3;  // pelvis heights
+    constexpr double kTurns = 6.0;   // footsteps
+    const Place from = middle_of(start.feet[GAITD_LEFT], start.feet[GAITD_RIGHT]);
+    const double way = std::hypot(goal.x - from.x, goal.y - from.y);
+    return static_cast<double>(plan.footsteps.size()) > way / (kStride * steps_->unit()) + kTurns;
+  }
+
   const bool has_map_;
   TurnWalkTurn straight_;
   Lattice lattice_;

@@ -11,8 +11,11 @@
 
 namespace gaitd::footsteps {
 
+inline constexpr int kHeadings = 24;  // of a turn
+inline constexpr double kHeading = 2.0 * M_PI / kHeadings;
+
 // Of a stride: ahead of the other foot and outwards beyond their distance in the nominal posture,
-// pelvis heights; turned by so many of the 24 headings.
+// pelvis heights; turned by so many headings.
 inline double stride_cost(double ahead, double outwards, double headings) {
   return 1.0 + 1.5 * ahead * ahead + 20.0 * outwards * outwards + 0.15 * headings +
          (ahead < 0.0 ? 0.3 : 0.0);

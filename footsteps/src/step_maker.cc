@@ -8,6 +8,7 @@
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
 #include "gaitd/walking/swing_trajectory.h"
+#include "step_costs.h"
 
 namespace gaitd::footsteps {
 namespace {
@@ -36,6 +37,10 @@ double tilt_of(const GaitdPose& pose) {
 }
 
 }  // namespace
+
+Place place_of(const GaitdPose& sole) {
+  return {sole.position[0], sole.position[1], sdk::yaw_of(sdk::quaternion(sole.orientation))};
+}
 
 Place middle_of(const GaitdPose& left, const GaitdPose& right) {
   const GaitdPose middle = walking::middle_pose(left, right);
@@ -84,6 +89,19 @@ StepState StepMaker::make(int side, const GaitdPose& pose, const GaitdPose& stan
     if (swings_clear(*step, from)) return StepState::kGood;
   }
   return StepState::kSwing;
+}
+
+double StepMaker::cost(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
+                       const walking::GaitParameters& parameters) const {
+  const Place a = place_of(stance), b = place_of(step.pose);
+  const double c = std::cos(a.yaw), s = std::sin(a.yaw);
+  const double ahead = c * (b.x - a.x) + s * (b.y - a.y);
+  const double outwards = walking::side_sign(step.side) * (c * (b.y - a.y) - s * (b.x - a.x)) -
+                          model_.nominal_foot_separation;
+  const double turn = std::abs(std::remainder(b.yaw - a.yaw, 2.0 * M_PI));
+  return stride_cost(ahead / unit_, outwards / unit_, turn / kHeading) +
+         height_cost((step.pose.position[2] - stance.position[2]) / unit_) +
+         swing_cost(step, from, unit_, parameters);
 }
 
 // Whether the outline of the sole passes over the ground in the swing that the footstep will get,

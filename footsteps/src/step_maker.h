@@ -26,6 +26,10 @@ class StepMaker {
   StepState make(int side, const GaitdPose& pose, const GaitdPose& stance, const GaitdPose& from,
                  const walking::GaitParameters& parameters, GaitdFootstep* step) const;
 
+  // Of a footstep, as the lattice weighs it, but for its foothold.
+  double cost(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
+              const walking::GaitParameters& parameters) const;
+
   // Puts the last touches to a plan: regions, times, and the check of a command.
   void finish(const Start& start, const walking::GaitParameters& parameters, Plan* plan) const;
 
@@ -45,6 +49,7 @@ class StepMaker {
   double unit_;
 };
 
+Place place_of(const GaitdPose& sole);
 // m, of the middle between two soles, and rad, of their mean heading.
 Place middle_of(const GaitdPose& left, const GaitdPose& right);
 

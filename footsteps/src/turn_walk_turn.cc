@@ -35,19 +35,6 @@ int count_of(double way, double each) {
   return std::abs(way) < kNoWay ? 0 : static_cast<int>(std::ceil(std::abs(way) / each - 1e-9));
 }
 
-const char* reason(FootholdState state) {
-  switch (state) {
-    case FootholdState::kUnknown:
-      return "the ground is not known there";
-    case FootholdState::kRough:
-      return "the sole would not lie flat there";
-    case FootholdState::kSteep:
-      return "the ground is too steep there";
-    default:
-      return "a riser is in the way there";
-  }
-}
-
 }  // namespace
 
 Plan TurnWalkTurn::walk(const Start& start, const Goal& goal, const Manner& manner,
@@ -103,6 +90,7 @@ Plan TurnWalkTurn::walk(const Start& start, const Goal& goal, const Manner& mann
       plan.refusal = text;
       return false;
     }
+    plan.cost += foothold.cost + steps_->cost(step, feet[other_side(side)], feet[side], parameters);
     feet[side] = step.pose;
     plan.footsteps.push_back(step);
     side = other_side(side);

@@ -3,17 +3,17 @@
 #define GAITD_FOOTSTEPS_TURN_WALK_TURN_H_
 
 #include <memory>
+#include <utility>
 
-#include "gaitd/footsteps/planner.h"
-#include "step_maker.h"
+#include "map_planner.h"
 
 namespace gaitd::footsteps {
 
 // Turns on the spot, walks in a straight line, turns on the spot. The line is walked forwards,
 // backwards or sideways, whichever takes the fewest footsteps of those that can be taken.
-class TurnWalkTurn : public FootstepPlanner {
+class TurnWalkTurn : public MapPlanner {
  public:
-  explicit TurnWalkTurn(std::shared_ptr<StepMaker> steps) : steps_(std::move(steps)) {}
+  explicit TurnWalkTurn(std::shared_ptr<StepMaker> steps) : MapPlanner(std::move(steps)) {}
   Plan plan(const Start& start, const Goal& goal,
             const walking::GaitParameters& parameters) override;
 
@@ -25,8 +25,6 @@ class TurnWalkTurn : public FootstepPlanner {
   };
   Plan walk(const Start& start, const Goal& goal, const Manner& manner,
             const walking::GaitParameters& parameters) const;
-
-  std::shared_ptr<StepMaker> steps_;
 };
 
 }  // namespace gaitd::footsteps

@@ -32,6 +32,7 @@ from .errors import (
     Refused,
     WaitTimeout,
 )
+from .height_map import HeightMap
 from .log import Event, Log
 from .model import Joint, Model
 from .programs import find_program, write_yaml
@@ -48,6 +49,7 @@ __all__ = [
     "Expectation",
     "Fault",
     "GaitdError",
+    "HeightMap",
     "Joint",
     "Log",
     "LogError",

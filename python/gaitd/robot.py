@@ -7,6 +7,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from .drive import Drive
 from .errors import Fault, WaitTimeout
+from .height_map import HeightMap
 from .log import Event
 from .model import Model
 from .rpc import Connection
@@ -151,6 +152,33 @@ class Robot:
         replace: in place of those that have not begun.
         """
         return dict(self.call("footsteps", footsteps=[dict(step) for step in footsteps], replace=replace))
+
+    def goto(self, x: float, y: float, yaw: Optional[float] = None, *, timeout: float = 60.0) -> Dict[str, Any]:
+        """Plans footsteps to a place over the ground that gaitd knows, and walks there.
+
+        x, y: of the middle of the feet, m in the world. yaw: heading there, rad; without it as it comes. timeout: s, for
+        the plan. Raises :class:`Refused` where there is no way, with what blocks it.
+        """
+        place = {"x": x, "y": y} if yaw is None else {"x": x, "y": y, "yaw": yaw}
+        return dict(self.call("goto", timeout=timeout, **place))
+
+    def map(self, resolution: float = 0.0) -> Optional[HeightMap]:
+        """The ground as gaitd knows it, or None if nothing is known and it takes the ground for level.
+
+        resolution: m per cell at least; cells are coarser where there would be more than 200,000.
+        """
+        return HeightMap._from_answer(self.call("map.get", resolution=resolution) if resolution else self.call("map.get"))
+
+    def map_put(self, map: HeightMap, *, forget: bool = False) -> int:
+        """Tells gaitd of the ground; what it knew of these cells is replaced. How many cells it took.
+
+        forget: where the map has NaN, gaitd is to know nothing either.
+        """
+        return sum(self.call("map.put", forget=forget, **tile)["cells"] for tile in map._tiles())
+
+    def map_clear(self) -> None:
+        """Forgets what was told or seen of the ground, but for goto.height_map."""
+        self.call("map.clear")
 
     def mode(self, mode: str) -> Dict[str, Any]:
         """``"walk-straight"``, ``"walk-bent"`` or ``"stand"``; while walking from the next step on."""

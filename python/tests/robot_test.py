@@ -4,6 +4,8 @@ import os
 import threading
 import unittest
 
+import numpy as np
+
 import support
 import gaitd
 from support import scratch
@@ -51,6 +53,33 @@ class Commands(unittest.TestCase):
             robot.call("walk", steps=2, lenght=0.3)
         with self.assertRaisesRegex(ValueError, "standing"):
             robot.wait("stading")
+
+    def test_goes_over_ground_that_it_is_told_of(self):
+        robot.sim_reset()
+        robot.wait("standing")
+        self.assertIsNone(robot.map())
+        heights = np.zeros((100, 150))
+        heights[:, 75:100] = 0.1  # a board of half a metre, 0.5 m ahead
+        heights[0, 0] = np.nan
+        told = gaitd.HeightMap(heights, origin=(-1.0, -1.0), resolution=0.02, variance=1e-6)
+        self.assertEqual(robot.map_put(told), heights.size - 1)
+        known = robot.map()
+        self.assertEqual(known.heights.shape, heights.shape)
+        self.assertAlmostEqual(known.height(0.7, 0.0), 0.1, places=3)
+        self.assertAlmostEqual(known.height(0.2, 0.0), 0.0, places=3)
+        self.assertTrue(np.isnan(known.height(9.0, 0.0)))
+        coarse = robot.map(resolution=0.1)
+        self.assertAlmostEqual(coarse.resolution, 0.1, places=6)
+        robot.map_put(gaitd.HeightMap(np.full((50, 50), np.nan), origin=(-1.0, -1.0)), forget=True)
+        self.assertIn("not known yet", robot.goto(-0.6, -0.6)["note"])
+        robot.stop()
+        robot.wait("standing", timeout=60)
+        self.assertRegex(robot.goto(0.2, 0.1, 0.0)["note"], "footsteps, about")
+        robot.wait("standing", timeout=60)
+        with self.assertRaisesRegex(ValueError, "rows, columns"):
+            robot.map_put(gaitd.HeightMap(np.zeros(3)))
+        robot.map_clear()
+        self.assertIsNone(robot.map())
 
     def test_a_hand_goes_where_it_is_sent_or_says_what_it_misses(self):
         self.assertIsNone(robot.pose("hand", "left", x=0.45, y=0.35, z=0.2, duration=1)["note"])

@@ -198,6 +198,39 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
   return {};
 }
 
+Refusal GaitMachine::refine(const GaitdFootstep* steps, int count) {
+  std::array<GaitdFootstep, GAITD_MAX_FOOTSTEPS> ahead;
+  const int known = std::min<int>(queue_.size(), GAITD_MAX_FOOTSTEPS);
+  const int kept = std::min(first_free(), known);
+  for (int i = 0; i < known; ++i) ahead[i] = queue_[i];
+  for (int i = 0; i < count; ++i) {
+    const auto old = std::find_if(ahead.begin() + kept, ahead.begin() + known,
+                                  [&](const auto& s) { return s.id == steps[i].id; });
+    if (old == ahead.begin() + known) continue;
+    GaitdFootstep step = steps[i];
+    step.side = old->side;
+    step.closing = old->closing;
+    *old = step;
+  }
+  GaitdPose feet[2] = {state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose};
+  for (GaitdPose& foot : feet) foot.position[2] -= height_offset_;
+  for (int i = 0; i < known; ++i) {
+    const GaitdFootstep& step = ahead[i];
+    if (i >= kept) {
+      const GaitdPose& stance = feet[other_side(step.side)];
+      if (Refusal r = check(step, stance, feet[step.side], i + 1); r.refused()) return r;
+    }
+    feet[step.side] = step.pose;
+  }
+  if (Refusal r = check_capture(ahead.data() + kept, known - kept, kept, known); r.refused()) {
+    return r;
+  }
+  for (int i = kept; i < known; ++i) queue_[i] = ahead[i];
+  publish_footsteps();
+  changed();
+  return {};
+}
+
 Refusal GaitMachine::pause() {
   drive_.end();
   state_.paused = 1;

@@ -58,6 +58,39 @@ TEST(GaitCommands, FootstepsWithoutDurationsTakeTheParameters) {
   EXPECT_EQ(g.commanded[1].id, g.commanded[0].id + 1);
 }
 
+// What is known of the ground by now changes footsteps that are ahead, found by their number.
+TEST(GaitCommands, FootstepsAheadArePutOnTheGroundAsItIsKnown) {
+  SyntheticWalk w;
+  walk(w);
+  ASSERT_TRUE(w.run_until_fraction(1, 0.5));
+  const GaitdGaitState before = w.gait();
+  GaitdFootstep higher[] = {before.commanded[0], before.commanded[1], before.commanded[2]};
+  for (GaitdFootstep& step : higher) step.pose.position[2] = 0.06;
+  higher[1].side = before.commanded[0].side;  // not asked for
+  higher[1].closing = 1;
+  ASSERT_FALSE(w.machine.refine(higher, 3).refused());
+  const GaitdGaitState& after = w.gait();
+  EXPECT_EQ(after.footstep_count, before.footstep_count);
+  EXPECT_EQ(after.commanded[0].pose.position[2], 0.0) << "it has begun";
+  EXPECT_EQ(after.commanded[1].pose.position[2], 0.06);
+  EXPECT_EQ(after.commanded[2].pose.position[2], 0.06);
+  EXPECT_EQ(after.commanded[3].pose.position[2], 0.0);
+  EXPECT_EQ(after.commanded[1].side, before.commanded[1].side);
+  EXPECT_EQ(after.commanded[1].closing, before.commanded[1].closing);
+  EXPECT_EQ(after.commanded[1].id, before.commanded[1].id);
+  EXPECT_NE(after.plan_revision, before.plan_revision);
+
+  // Out of reach: nothing changes.
+  higher[2].pose.position[2] = 0.9;
+  higher[1].pose.position[2] = 0.02;
+  EXPECT_TRUE(w.machine.refine(higher, 3).refused());
+  EXPECT_EQ(w.gait().commanded[1].pose.position[2], 0.06);
+  // Others than those ahead are nobody's.
+  higher[1].id = higher[2].id = 12345;
+  EXPECT_FALSE(w.machine.refine(higher, 3).refused());
+  EXPECT_EQ(w.gait().commanded[1].pose.position[2], 0.06);
+}
+
 TEST(GaitCommands, AReplacementLeavesTheStepThatHasBegun) {
   SyntheticWalk w;
   walk(w);

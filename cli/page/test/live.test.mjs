@@ -72,3 +72,18 @@ test('the parts of a drag are one push', () => {
   assert.deepEqual(live.pushes[0].force, [9, 0, 0]);
   assert.ok(Math.abs(live.pushes[0].duration - 0.53) < 1e-9);
 });
+
+const step = (side, x) => ({side, position: [x, 0, 0], orientation: [0, 0, 0, 1]});
+
+test('footsteps that come in several commands are one plan, another command is another one', () => {
+  const live = filled(3);
+  const input = (replace, ...footsteps) => live.appendPlan({time: 1, kind: 'input', text: {type: 6, replace, footsteps}});
+  input(true, step(0, 0.1), step(1, 0.2));
+  input(false, step(0, 0.3));
+  assert.deepEqual(live.plans.map(({steps}) => steps.map(({side}) => side)), [['left', 'right', 'left']]);
+  input(true, step(1, 0.5));
+  assert.deepEqual(live.plans.map(({steps}) => steps.length), [1]);
+  live.appendPlan({time: 2, kind: 'input', text: {type: 23, footsteps: [step(0, 1)]}});
+  live.appendPlan({time: 2, kind: 'command', text: {command: 'walk'}});
+  assert.equal(live.plans.length, 1);
+});

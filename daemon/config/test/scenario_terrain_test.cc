@@ -41,6 +41,27 @@ class ScenarioTerrain : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(ScenarioTerrain, ASensorThatSeesItHasAClassAndAPlace) {
+  const std::string ground = "terrain: {ground_z: 0}\n";
+  Issues issues;
+  const auto scenario =
+      read(ground +
+               "perception: {sensor: lidar, far: 6, link: head, position: [0.1, 0, "
+               "0.2], rpy: [0, 0.5, 0]}\n",
+           &issues);
+  ASSERT_TRUE(scenario) << issues.error_text();
+  EXPECT_EQ(scenario->perception["sensor"], "lidar");
+  EXPECT_EQ(scenario->perception["far"], 6.0);
+  EXPECT_EQ(scenario->perception["rpy"][1], 0.5);
+  EXPECT_TRUE(read(ground, &issues)->perception.is_null());
+  EXPECT_NE(errors_of(ground + "perception: {sensor: radar}\n").find("lidar"), std::string::npos);
+  EXPECT_NE(errors_of(ground + "perception: {}\n").find("sensor"), std::string::npos);
+  EXPECT_NE(errors_of(ground + "perception: {sensor: lidar, rpy: [0, 0, 0]}\n").find("add link"),
+            std::string::npos);
+  EXPECT_NE(errors_of(ground + "perception: {sensor: lidar, rate: 3}\n").find("rate"),
+            std::string::npos);
+}
+
 TEST_F(ScenarioTerrain, AMapIsFoundBesideTheScenarioAndStoodOn) {
   Issues issues;
   const auto scenario = read("terrain: {height_map: maps/step.yaml}\nstart: {x: 2.0}\n", &issues);

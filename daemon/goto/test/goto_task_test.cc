@@ -153,6 +153,68 @@ TEST_F(GotoTaskTest, ARobotThatHasSteppedOnIsPlannedForAnewAFewTimes) {
             std::string::npos);
 }
 
+// A map that grows: once the first plan is with the gait machine, each swing asks again.
+TEST_F(GotoTaskTest, OnAMapThatGrowsEachSwingAsksWhetherWhatIsAheadStillHolds) {
+  port_.set_live(true);
+  begin();
+  footsteps::Plan plan = walk_of(4);
+  plan.partial = true;
+  answer(plan);
+  ASSERT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kFootsteps);
+  ASSERT_FALSE(gait_.footsteps(out_->footsteps.data(), out_->footstep_count, true).refused());
+  task_.taken();
+  EXPECT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kDone);
+  EXPECT_STREQ(task_.message(), "4 footsteps, about 3 s, to where the ground is not known yet");
+  EXPECT_TRUE(task_.active());
+  EXPECT_TRUE(task_.answered());
+  EXPECT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kWait);
+  PlanRequest request;
+  EXPECT_FALSE(port_.next_request(request)) << "no swing yet";
+  for (int i = 0; i < 4000 && gait_.state().phase != GAITD_PHASE_SWING; ++i) tick();
+  ASSERT_EQ(gait_.state().phase, GAITD_PHASE_SWING);
+  EXPECT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kWait);
+  EXPECT_TRUE(task_.awaits_plan());
+  // Nothing good is ahead any more: what has not begun is dropped, and it goes on looking.
+  footsteps::Plan none;
+  none.refusal = "a riser is in the way there";
+  EXPECT_EQ(answer(none).kind, PlanKind::kRevise);
+  ASSERT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kFootsteps);
+  EXPECT_EQ(out_->footstep_count, 0);
+  EXPECT_TRUE(out_->replace);
+  ASSERT_FALSE(gait_.footsteps(out_->footsteps.data(), 0, true).refused());
+  task_.taken();
+  EXPECT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kWait);
+  EXPECT_TRUE(task_.active());
+}
+
+TEST_F(GotoTaskTest, WhereThereIsNoWayOnItGivesUpAfterSomeTries) {
+  port_.set_live(true);
+  begin();
+  footsteps::Plan plan;  // it stands at the end of what is known
+  plan.partial = true;
+  plan.footsteps = walk_of(1).footsteps;
+  answer(plan);
+  ASSERT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kFootsteps);
+  task_.taken();  // as if they had been walked
+  ASSERT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kDone);
+  footsteps::Plan none;
+  none.refusal = "no way to (2.00, 0.50)";
+  int asked = 0;
+  GotoTask::Step step = GotoTask::Step::kWait;
+  for (int i = 0; i < 10000 && step == GotoTask::Step::kWait; ++i) {
+    tick();
+    step = task_.step(gait_, out_.get());
+    if (!task_.awaits_plan()) continue;
+    answer(none);
+    ++asked;
+  }
+  EXPECT_EQ(step, GotoTask::Step::kEnded);
+  EXPECT_EQ(asked, 4);
+  EXPECT_EQ(std::string(task_.message()).find("goto: given up, 2.0"), 0U) << task_.message();
+  EXPECT_NE(std::string(task_.message()).find("no way to (2.00, 0.50)"), std::string::npos);
+  EXPECT_FALSE(task_.active());
+}
+
 TEST_F(GotoTaskTest, WithoutAPlannerItIsRefused) {
   GotoTask alone(nullptr);
   EXPECT_EQ(alone.step(gait_, out_.get()), GotoTask::Step::kWait);

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <memory>
 #include <thread>
 
 #include "gaitd/walking/gait_machine.h"
@@ -37,7 +40,8 @@ PlanAnswer wait_for_answer(PlanPort* port) {
 }
 
 TEST(PlanService, AnswersRequestsInTheirOrder) {
-  PlanService service({&atlas(), nullptr, "auto", {}});
+  PlanService service(
+      {&atlas(), std::make_shared<LiveGround>(atlas(), nullptr, std::nullopt), "auto", {}});
   service.start();
   ASSERT_TRUE(service.port().request(request_to(1.0, 7)));
   ASSERT_TRUE(service.port().request(request_to(2.0, 8)));
@@ -52,8 +56,111 @@ TEST(PlanService, AnswersRequestsInTheirOrder) {
   }
 }
 
+// Level ground of 3 m, as somebody tells it, with a block of `height` on it from x to x + 0.5 m.
+std::shared_ptr<LiveGround> ground_with_block(double x, double height) {
+  auto ground = std::make_shared<LiveGround>(atlas(), nullptr, std::nullopt);
+  terrain::HeightMap tile(terrain::Grid{200, 150, 0.02, {-1.0, -1.5}});
+  for (int j = 0; j < 150; ++j) {
+    for (int i = 0; i < 200; ++i) {
+      const double at = tile.grid().centre(i, j).x();
+      tile.set(i, j, at > x && at < x + 0.5 ? height : 0.0, 1e-6);
+    }
+  }
+  ground->put(tile, false);
+  return ground;
+}
+
+TEST(PlanService, ARouteStaysUntilTheGroundChanges) {
+  const auto ground = ground_with_block(10.0, 0.0);
+  PlanService service({&atlas(), ground, "auto", {}});
+  service.start();
+  PlanRequest request = request_to(1.5, 1);
+  ASSERT_TRUE(service.port().request(request));
+  const PlanAnswer first = wait_for_answer(&service.port());
+  ASSERT_EQ(first.plan->refusal, "");
+  EXPECT_FALSE(first.plan->partial);
+  const std::vector<GaitdFootstep> route = first.plan->footsteps;
+  service.port().retire(first.plan);
+
+  // The first step swings.
+  request.kind = PlanKind::kRevise;
+  request.start.under_way = route[0];
+  request.start.feet[route[0].side] = route[0].pose;
+  request.start.first_side = route[1].side;
+  request.serial = 2;
+  ASSERT_TRUE(service.port().request(request));
+  const PlanAnswer same = wait_for_answer(&service.port());
+  EXPECT_TRUE(same.unchanged);
+  service.port().retire(same.plan);
+
+  terrain::HeightMap tile(terrain::Grid{25, 150, 0.02, {0.7, -1.5}});
+  for (int j = 0; j < 150; ++j) {
+    for (int i = 0; i < 25; ++i) tile.set(i, j, 0.1, 1e-6);
+  }
+  ground->put(tile, false);
+  request.serial = 3;
+  ASSERT_TRUE(service.port().request(request));
+  const PlanAnswer other = wait_for_answer(&service.port());
+  EXPECT_FALSE(other.unchanged);
+  EXPECT_EQ(other.plan->refusal, "");
+  double highest = 0.0;
+  for (const GaitdFootstep& step : other.plan->footsteps) {
+    highest = std::max(highest, step.pose.position[2]);
+  }
+  EXPECT_NEAR(highest, 0.1, 0.01) << "over it";
+  EXPECT_NEAR(other.plan->footsteps.back().pose.position[0], 1.5, 1e-6);
+  service.port().retire(other.plan);
+}
+
+TEST(PlanService, BeyondTheMapAPlanLeadsToItsEnd) {
+  PlanService service({&atlas(), ground_with_block(10.0, 0.0), "auto", {}});
+  service.start();
+  ASSERT_TRUE(service.port().request(request_to(6.0, 1)));
+  const PlanAnswer answer = wait_for_answer(&service.port());
+  EXPECT_EQ(answer.plan->refusal, "");
+  EXPECT_TRUE(answer.plan->partial);
+  ASSERT_FALSE(answer.plan->footsteps.empty());
+  EXPECT_GT(answer.plan->footsteps.back().pose.position[0], 2.0);
+  EXPECT_LT(answer.plan->footsteps.back().pose.position[0], 3.0);
+  service.port().retire(answer.plan);
+}
+
+// Footsteps of a walk that knows nothing: onto the block, and beside its edge.
+TEST(PlanService, FootstepsOfOthersArePutOnTheGroundAndOffEdges) {
+  PlanService service({&atlas(), ground_with_block(0.5, 0.08), "auto", {}});
+  service.start();
+  PlanRequest request = request_to(0.0, 1);
+  request.kind = PlanKind::kRefine;
+  request.height_offset = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    GaitdFootstep& step = request.ahead[request.ahead_count++];
+    step = {};
+    step.side = i % 2 == 0 ? GAITD_LEFT : GAITD_RIGHT;
+    step.id = static_cast<std::uint32_t>(10 + i);
+    step.pose = request.start.feet[step.side];
+    constexpr double kWay[] = {0.2, 0.6, 0.8};
+    step.pose.position[0] = kWay[i];
+    step.swing_duration = 0.8;
+    step.transfer_duration = 0.3;
+    step.swing_height = 0.12;
+  }
+  ASSERT_TRUE(service.refinements().request(request));
+  const PlanAnswer answer = wait_for_answer(&service.refinements());
+  ASSERT_EQ(answer.plan->footsteps.size(), 2U) << "the first is on level ground";
+  const GaitdFootstep& second = answer.plan->footsteps[0];
+  EXPECT_EQ(second.id, 11U);
+  EXPECT_NEAR(second.pose.position[2], 0.08, 0.005);
+  EXPECT_GT(second.pose.position[0], 0.62) << "its heel is not over the edge any more";
+  EXPECT_NEAR(answer.plan->footsteps[1].pose.position[2], 0.08, 0.005);
+  EXPECT_GT(answer.plan->footsteps[1].region_count, 2);
+  service.refinements().retire(answer.plan);
+}
+
 TEST(PlanService, EndsWithPlansThatNobodyTook) {
-  PlanService service({&atlas(), nullptr, "turn_walk_turn", {}});
+  PlanService service({&atlas(),
+                       std::make_shared<LiveGround>(atlas(), nullptr, std::nullopt),
+                       "turn_walk_turn",
+                       {}});
   service.start();
   for (std::uint64_t i = 1; i <= 3; ++i) service.port().request(request_to(1.0, i));
   std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -19,7 +19,10 @@ HeightField::HeightField(std::shared_ptr<const terrain::HeightMap> map, double f
     : map_(std::move(map)), friction_(friction) {
   const terrain::Grid& grid = map_->grid();
   for (int j = 0; j < grid.rows; ++j) {
-    for (int i = 0; i < grid.columns; ++i) ridges_.push_back(is_ridge(i, j));
+    for (int i = 0; i < grid.columns; ++i) {
+      ridges_.push_back(is_ridge(i, j));
+      if (map_->known(i, j)) highest_ = std::max(highest_, map_->height(i, j));
+    }
   }
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import {appendPlan} from '../shared/plan.js';
 import {Signals} from '../shared/signals.js';
 
 // What gaitctl put into the page: everything of a log that is shown.
@@ -12,6 +13,9 @@ export class Log extends Signals {
     // Beside what the robot did: {time, push: link, force, point, duration}.
     this.pushes = this.events.filter(({text}) => text?.push && text.force)
         .map(({time, text}) => ({time, ...text}));
+    this.plans = [];
+    for (const event of this.events) appendPlan(this.plans, event);
+    this.ground = JSON.parse(this.metadata.map ?? 'null');  // as it was known at the end
     this.legs = JSON.parse(this.metadata.legs ?? '{}');
     this.efforts = Object.fromEntries(JSON.parse(this.metadata.joints ?? '[]')
         .map((joint) => [joint.name, joint.effort_limit]));

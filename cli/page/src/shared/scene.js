@@ -2,7 +2,9 @@
 import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {HandArrow, Loads, PullArrow} from './forces.js';
+import {Ground} from './ground.js';
 import {hull} from './hull.js';
+import {Plan} from './plan.js';
 import {PushArrow} from './push_arrow.js';
 import {chooseRenderer} from './renderer.js';
 import {material, Robot} from './robot.js';
@@ -39,7 +41,8 @@ function gridPoints() {
 
 function terrain(world) {
   const group = new THREE.Group();
-  const {boxes = [], ground_z: ground = boxes.length ? undefined : 0} = world?.terrain ?? {};
+  const {boxes = [], height_map, ground_z} = world?.terrain ?? {};
+  const ground = ground_z ?? (boxes.length || height_map ? undefined : 0);
   if (ground !== undefined) {
     const plane = new THREE.Mesh(new THREE.PlaneGeometry(40, 40),
                                  new THREE.MeshBasicMaterial({color: theme.ground}));
@@ -93,6 +96,9 @@ export class Scene {
     this.scene.add(light);
     this.terrain = terrain(log.world);
     this.scene.add(this.terrain);
+    this.ground = new Ground();
+    this.ground.show(log.ground);
+    this.scene.add(this.ground.mesh);
     this.addRobots();
     this.addMarkers();
     this.watcher = new ResizeObserver(() => this.resize());
@@ -137,6 +143,8 @@ export class Scene {
       this.footsteps[side] = line;
       this.scene.add(line);
     }
+    this.plan = new Plan(this.log);
+    this.scene.add(this.plan.group);
     this.support = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial(
         {color: '#1f77b4', opacity: 0.25, transparent: true, side: THREE.DoubleSide}));
     this.support.frustumCulled = false;
@@ -196,6 +204,7 @@ export class Scene {
     for (const robot of this.robots) robot.show(robot.log.row(time));
     for (const arrow of this.arrows) arrow.show(time);
     for (const force of this.forces) force.show(force.robot.log.row(time));
+    this.plan.show(time);
     const loaded = [];
     for (const side of ['left', 'right']) {
       setPoints(this.footsteps[side].geometry, this.outline(side, 'footstep', row));

@@ -10,6 +10,7 @@ const kOthers = [
   ['Stick', 'forwards and turn; with Shift sideways. The strip below: sideways'],
   ['Gamepad', 'left stick goes, right stick turns; right button (B) stops, Select is the E-STOP'],
   ['Robot', 'in a simulation: drag a part of it to push it'],
+  ['Go to…', 'then click on the ground; drag there to say where to look at the end'],
   ['Scene', 'drag elsewhere to turn, right button to shift, wheel to zoom'],
 ];
 

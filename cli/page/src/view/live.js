@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import {appendPlan} from '../shared/plan.js';
 import {Signals} from '../shared/signals.js';
 
 const kSeconds = 30, kRate = 100;  // that are kept, frames/s at most
@@ -24,6 +25,7 @@ export class Live extends Signals {
   clear() {
     this.first = this.rows = 0;
     this.pushes = [];
+    this.plans = [];
     this.time = this.times.subarray(0, 0);
   }
 
@@ -59,6 +61,12 @@ export class Live extends Signals {
     this.tick = view.getFloat64(8, true);
     ++this.version;
     return true;
+  }
+
+  // Of an event, if it is a command of footsteps: the newest ones count.
+  appendPlan(event) {
+    appendPlan(this.plans, event);
+    if (this.plans.length > 1) this.plans = this.plans.slice(-1);
   }
 
   // Of an event, if it is a push.

@@ -11,8 +11,10 @@ import {EStop} from './estop.js';
 import {parsed} from './event_list.js';
 import {Events} from './events.js';
 import {readGamepads} from './gamepad.js';
+import {GoThere} from './go_there.js';
 import {listenToKeys} from './keys.js';
 import {Layers} from './layers.js';
+import {MapWatch} from './map_watch.js';
 import {Parameters} from './parameters.js';
 import {reachOf, velocityOf} from './reach.js';
 import {addRecord} from './record.js';
@@ -120,6 +122,14 @@ document.addEventListener('visibilitychange', () => {
   tellRate();
 });
 
+// Where to go, and the ground.
+const goThere = new GoThere(state, call);
+const map = new MapWatch(state, call, (known) => {
+  if (!stage) return;
+  stage.scene.ground.show(known);
+  stage.scene.stale = true;
+});
+
 // The robot.
 const push = {
   call: (method, params) => call(method, params, kPushAnswer), congested, tell, label: $('push-label'),
@@ -134,6 +144,8 @@ connection.addEventListener('robot', ({detail}) => {
   const view = stage?.view;
   stage?.remove();
   stage = new Stage(detail, push, frames);
+  goThere.attach(stage.scene);
+  map.restart();
   if (view) stage.view = view;
   parameters.load();
   layers.load();
@@ -148,6 +160,7 @@ layers.onswap = () => parameters.load();
 connection.addEventListener('event', ({detail}) => {
   const event = parsed(detail.event);
   stage?.live.appendPush(event);
+  stage?.live.appendPlan(event);
   events.add(event);
   if (event.kind !== 'swap' && event.kind !== 'parameter') return;
   changed.add(event.kind === 'parameter' ? event.text?.name : undefined);

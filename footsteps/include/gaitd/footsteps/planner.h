@@ -5,8 +5,10 @@
 #ifndef GAITD_FOOTSTEPS_PLANNER_H_
 #define GAITD_FOOTSTEPS_PLANNER_H_
 
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,12 +32,16 @@ struct Start {
 struct Goal {
   double x = 0.0, y = 0.0;    // m
   std::optional<double> yaw;  // rad; none: as it comes
+  // m, W: where plans have ended before, without seeing more from there. Not to end there again.
+  std::span<const Eigen::Vector2d> exhausted{};
 };
 
 struct Plan {
   std::vector<GaitdFootstep> footsteps;  // alternating; with all durations and swing heights
   std::string refusal;                   // why there is no way; empty: there is one
   int expansions = 0;                    // of the search
+  double cost = 0.0;                     // steps, to the goal, as the search weighs them
+  bool partial = false;                  // it ends where the ground is not known any more
 };
 
 class FootstepPlanner {
@@ -44,10 +50,27 @@ class FootstepPlanner {
   // `parameters` are those of the gait that will check the footsteps.
   virtual Plan plan(const Start& start, const Goal& goal,
                     const walking::GaitParameters& parameters) = 0;
+
+  // What is left of a plan, on the map of this planner: the same places, with heights, tilts, times
+  // and regions as the ground has them. Ends before the first that cannot be taken any more; then
+  // the refusal says why.
+  virtual Plan adapt(const Start& start, const std::vector<GaitdFootstep>& ahead,
+                     const walking::GaitParameters& parameters) = 0;
+
+  // Footsteps of somebody who does not know the ground: put on it where it is known, and beside an
+  // edge (kAside) that they would stand on. Only those that change, with their `id`.
+  virtual std::vector<GaitdFootstep> refine(const Start& start,
+                                            const std::vector<GaitdFootstep>& ahead,
+                                            const walking::GaitParameters& parameters) = 0;
+  static constexpr double kAside = 0.08;  // m
+
+  // m: the map at the middle of the sole of `side`; nothing where it is not known.
+  virtual std::optional<double> ground_below(int side, const GaitdPose& sole) const = 0;
 };
 
 struct PlannerOptions {
   int expansions = 20000;  // at most, of the lattice
+  bool explore = false;    // the map grows: plan to where it ends if the goal is beyond
 };
 
 inline constexpr std::string_view kPlannerNames[] = {"auto", "lattice", "turn_walk_turn"};

@@ -48,6 +48,9 @@ class GaitMachine {
   // Appends the footsteps, or replaces all that have not begun. `count` at most
   // kMaxFootstepsPerCommand. Zero durations and heights take the parameters.
   Refusal footsteps(const GaitdFootstep* steps, int count, bool replace);
+  // Footsteps ahead that have not begun, found by their `id`, take pose, region, durations and
+  // swing height of `steps`; others are left out. The order, the sides and what is closing stay.
+  Refusal refine(const GaitdFootstep* steps, int count);
   // Walks at a velocity, in the place of the footsteps that have not begun. A walk or footsteps end
   // it likewise, as stop and abort do.
   Refusal drive(const VelocityCommand& command);

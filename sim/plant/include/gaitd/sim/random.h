@@ -36,6 +36,8 @@ enum class RandomPurpose : uint64_t {
   kBacklash = 26,
   kSpringDamping = 27,
   kCogging = 28,
+  kRange = 30,
+  kRangeMount = 31,
 };
 
 class RandomStream {

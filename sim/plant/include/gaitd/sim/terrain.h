@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -41,6 +42,8 @@ class HeightField {
   HeightField(std::shared_ptr<const terrain::HeightMap> map, double friction);
 
   double friction() const { return friction_; }
+  double resolution() const { return map_->grid().resolution; }  // m
+  double highest() const { return highest_; }  // m, W; -infinity: nothing is known
   // m, below the surface at `p_W` across it, and the normal there (unit, W); not positive above it
   // and where the map knows nothing. On the flank of a riser, which is one cell wide, the normal is
   // nearly level. Never deeper than kDeepest: beyond that nobody can tell by which way it came in.
@@ -65,6 +68,7 @@ class HeightField {
 
   std::shared_ptr<const terrain::HeightMap> map_;
   double friction_;
+  double highest_ = -std::numeric_limits<double>::infinity();
   std::vector<bool> ridges_;  // by cell, row by row
 };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/base64.h"
+#include "daemon/server/base64.h"
 
 #include <cstddef>
 #include <cstdint>
 
-namespace gaitd::cli {
+namespace gaitd::daemon {
 namespace {
 
 constexpr std::string_view kDigits =
@@ -45,4 +45,4 @@ std::string from_base64(std::string_view text) {
   return bytes;
 }
 
-}  // namespace gaitd::cli
+}  // namespace gaitd::daemon

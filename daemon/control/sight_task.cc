@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/control/sight_task.h"
+
+#include <algorithm>
+
+namespace gaitd::daemon {
+namespace {
+
+constexpr double kCarries = 0.1;  // of its weight, from which a robot stands on a foot
+
+GaitdPose pose_of(const double* position, const double* orientation) {
+  GaitdPose pose;
+  std::copy_n(position, 3, pose.position);
+  std::copy_n(orientation, 4, pose.orientation);
+  return pose;
+}
+
+}  // namespace
+
+void SightTask::look(const GaitdModel& model, const TickData& data, std::int64_t tick) {
+  if (port_ == nullptr || timing_.period == 0 || tick % timing_.period != 0) return;
+  if (data.robot.valid == 0) return;
+  Pending& pending = pending_[static_cast<std::size_t>(looked_ % kPending)];
+  Sight& sight = pending.sight;
+  if (looked_ - delivered_ == kPending) ++delivered_;  // the oldest is lost
+  ++looked_;
+  pending.due = tick + timing_.latency;
+  sight.time = data.time.time;
+  sight.pelvis = pose_of(data.robot.pelvis_position, data.robot.pelvis_orientation);
+  sight.has_truth = data.has_truth;
+  sight.true_pelvis = pose_of(data.truth.pelvis_position, data.truth.pelvis_orientation);
+  std::copy_n(data.robot.joint_position, model.joint_count, sight.joints);
+  std::copy_n(data.truth.joint_position, model.joint_count, sight.true_joints);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const GaitdFootState& foot = data.robot.feet[side];
+    sight.soles[side] = pose_of(foot.position, foot.orientation);
+    sight.stands[side] = data.gait.footholds[side].contact == GAITD_CONTACT_FULL &&
+                         foot.normal_force > kCarries * model.total_mass * model.gravity;
+  }
+}
+
+bool SightTask::deliver(std::int64_t tick) {
+  while (delivered_ < looked_) {
+    const Pending& next = pending_[static_cast<std::size_t>(delivered_ % kPending)];
+    if (next.due > tick) return true;
+    if (!port_->see(next.sight)) return false;
+    ++delivered_;
+  }
+  return true;
+}
+
+}  // namespace gaitd::daemon

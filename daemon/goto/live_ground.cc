@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/goto/live_ground.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/polygon.h"
+
+namespace gaitd::daemon {
+namespace {
+
+// Standard deviations (m) of what a sensor sees that come from where it is believed to be, and of
+// the ground below a foot.
+constexpr double kPose = 0.003;
+constexpr double kSole = 0.004;
+constexpr double kLevel = 0.03;  // m, by which both soles are on one plane
+// A ray along the ground says where it ends, not how high: of the variance of its range at least
+// this part is one of the height.
+constexpr double kGrazing = 0.1;
+constexpr double kExact = 1e-8;  // m^2, of a sensor without noise
+
+using terrain::HeightMap;
+
+// `base` with what is known of `over` in its place.
+std::shared_ptr<const HeightMap> overlaid(const HeightMap& base, const HeightMap& over) {
+  terrain::Grid grid = base.grid();
+  const double r = grid.resolution;
+  const Eigen::Vector2d reach =
+      over.grid().origin +
+      over.grid().resolution * Eigen::Vector2d(over.grid().columns, over.grid().rows);
+  const Eigen::Vector2i low = grid.cell(over.grid().origin).cwiseMin(Eigen::Vector2i::Zero());
+  const Eigen::Vector2i high =
+      grid.cell(reach).cwiseMax(Eigen::Vector2i(grid.columns - 1, grid.rows - 1));
+  grid.origin += r * low.cast<double>();
+  grid.columns = high.x() - low.x() + 1;
+  grid.rows = high.y() - low.y() + 1;
+  auto map = std::make_shared<HeightMap>(grid);
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      const Eigen::Vector2i c = over.grid().cell(grid.centre(i, j));
+      if (over.grid().contains(c.x(), c.y()) && over.known(c.x(), c.y())) {
+        map->set(i, j, over.height(c.x(), c.y()), over.variance(c.x(), c.y()));
+      } else if (base.grid().contains(i + low.x(), j + low.y())) {
+        map->set(i, j, base.height(i + low.x(), j + low.y()),
+                 base.variance(i + low.x(), j + low.y()));
+      }
+    }
+  }
+  return map;
+}
+
+}  // namespace
+
+LiveGround::LiveGround(const GaitdModel& model, std::shared_ptr<const HeightMap> base,
+                       std::optional<Eye> eye)
+    : model_(model), base_(std::move(base)), eye_(std::move(eye)), kinematics_(model) {
+  if (eye_) sensor_.emplace(eye_->figures, model, eye_->seed);
+  known_.map = base_;
+  memory_.move_to(Eigen::Vector2d::Zero());
+}
+
+bool LiveGround::live() const {
+  const std::scoped_lock lock(mutex_);
+  return told_ || eye_;
+}
+
+LiveGround::Known LiveGround::known() const {
+  const std::scoped_lock lock(mutex_);
+  if (!told_ && !eye_) {
+    known_ = {base_, memory_.revision()};
+  } else if (known_.revision != memory_.revision() || known_time_ != time_) {
+    // The time as well: what one asks for does not change what another one gets.
+    known_time_ = time_;
+    auto map = std::make_shared<const HeightMap>(memory_.map(time_));
+    known_ = {base_ && !eye_ ? overlaid(*base_, *map) : std::move(map), memory_.revision()};
+  }
+  return known_;
+}
+
+int LiveGround::put(const HeightMap& tile, bool forget) {
+  const std::scoped_lock lock(mutex_);
+  told_ = true;
+  return memory_.put(tile, forget, time_);
+}
+
+void LiveGround::clear() {
+  const std::scoped_lock lock(mutex_);
+  told_ = false;
+  memory_.clear();
+}
+
+void LiveGround::look(const Sight& sight) {
+  const std::scoped_lock lock(mutex_);
+  time_ = sight.time;
+  memory_.move_to(sdk::view(sight.pelvis.position).head<2>());
+  if (!told_ && !eye_) return;
+  stand_on_soles(sight);
+  if (!eye_ || !sight.has_truth) return;
+  const auto bodies = [this](const GaitdPose& pelvis, const double* joints) {
+    kinematics_.update(sdk::view(pelvis.position), sdk::quaternion(pelvis.orientation),
+                       sdk::Vector6d::Zero(),
+                       Eigen::Map<const Eigen::VectorXd>(joints, model_.joint_count),
+                       Eigen::VectorXd::Zero(model_.joint_count));
+    std::vector<Eigen::Isometry3d> X_WB;
+    X_WB.reserve(static_cast<std::size_t>(model_.body_count));
+    for (int body = 0; body < model_.body_count; ++body) X_WB.push_back(kinematics_.X_WB(body));
+    return X_WB;
+  };
+  sensor_->scan(eye_->terrain, bodies(sight.true_pelvis, sight.true_joints), &points_);
+  const Eigen::Isometry3d X_WS =
+      bodies(sight.pelvis, sight.joints)[static_cast<std::size_t>(eye_->figures.body)] *
+      eye_->figures.X_BS;
+  seen_.clear();
+  for (const sim::RangeSensor::Point& point : points_) {
+    const Eigen::Vector3d ray = X_WS.linear() * point.p_S;
+    const double down = ray.z() * ray.z() / ray.squaredNorm();
+    seen_.push_back({X_WS.translation() + ray,
+                     std::max(kExact, point.sigma * point.sigma * std::max(kGrazing, down))});
+  }
+  memory_.see(seen_, kPose * kPose, sight.time);
+}
+
+// Also between the soles: a robot that stands hides what is there.
+void LiveGround::stand_on_soles(const Sight& sight) {
+  std::vector<Eigen::Vector3d> both;
+  double low = INFINITY, high = -INFINITY;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    if (!sight.stands[side]) continue;
+    const GaitdFoot& foot = model_.feet[side];
+    std::vector<Eigen::Vector3d> sole;
+    for (int i = 0; i < foot.point_count; ++i) {
+      sole.push_back(
+          sdk::transform(sight.soles[side], {foot.points[i][0], foot.points[i][1], 0.0}));
+      low = std::min(low, sole.back().z());
+      high = std::max(high, sole.back().z());
+    }
+    both.insert(both.end(), sole.begin(), sole.end());
+    walking::ConvexPolygon hull;
+    for (const Eigen::Vector3d& p : sole) hull.add(p.head<2>());
+    hull.make_hull();
+    std::vector<Eigen::Vector3d> outline;
+    for (int i = 0; i < hull.size(); ++i) {
+      const auto same = std::min_element(sole.begin(), sole.end(), [&](auto& a, auto& b) {
+        return (a.template head<2>() - hull.vertex(i)).squaredNorm() <
+               (b.template head<2>() - hull.vertex(i)).squaredNorm();
+      });
+      outline.push_back(*same);
+    }
+    memory_.stand_on(outline, kSole * kSole, sight.time);
+  }
+  if (!sight.stands[GAITD_LEFT] || !sight.stands[GAITD_RIGHT] || high - low > kLevel) return;
+  walking::ConvexPolygon hull;
+  for (const Eigen::Vector3d& p : both) hull.add(p.head<2>());
+  hull.make_hull();
+  std::vector<Eigen::Vector3d> outline;
+  outline.reserve(static_cast<std::size_t>(hull.size()));
+  for (int i = 0; i < hull.size(); ++i) {
+    outline.emplace_back(hull.vertex(i).x(), hull.vertex(i).y(), 0.5 * (low + high));
+  }
+  memory_.stand_on(outline, kSole * kSole, sight.time);
+}
+
+}  // namespace gaitd::daemon

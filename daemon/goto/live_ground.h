@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "daemon/control/plan_port.h"
+#include "gaitd/abi/model.h"
+#include "gaitd/dynamics/kinematics.h"
+#include "gaitd/sim/range_sensor.h"
+#include "gaitd/terrain/ground_memory.h"
+
+namespace gaitd::daemon {
+
+/// The ground as gaitd knows it: a map that was there from the beginning, what other processes tell
+/// of it, and what a simulated sensor sees. Every method may be called by any thread.
+class LiveGround {
+ public:
+  struct Eye {
+    sim::RangeSensorFigures figures;
+    sim::Terrain terrain;  ///< what there really is
+    std::uint64_t seed = 1;
+  };
+  /// `base`: known from the beginning; null: nothing, or level ground. `eye`: none on a robot,
+  /// whose perception is another process.
+  LiveGround(const GaitdModel& model, std::shared_ptr<const terrain::HeightMap> base,
+             std::optional<Eye> eye);
+
+  /// What is seen from there, and where the robot stands.
+  void look(const Sight& sight);
+  /// What another process knows: GroundMemory::put. How many cells were taken: the others are too
+  /// far from the robot.
+  int put(const terrain::HeightMap& tile, bool forget);
+  /// Forgets everything but what was known from the beginning.
+  void clear();
+
+  /// Whether it changes: something sees, or has told something.
+  bool live() const;
+  struct Known {
+    std::shared_ptr<const terrain::HeightMap> map;  ///< null: level ground
+    std::uint64_t revision = 0;
+  };
+  Known known() const;
+
+ private:
+  void stand_on_soles(const Sight& sight);
+
+  const GaitdModel model_;
+  const std::shared_ptr<const terrain::HeightMap> base_;
+  mutable std::mutex mutex_;
+  bool told_ = false;
+  double time_ = 0.0;  // s, of the last sight
+  terrain::GroundMemory memory_;
+  mutable Known known_;
+  mutable double known_time_ = 0.0;  // s
+  // Of the simulated sensor.
+  std::optional<Eye> eye_;
+  std::optional<sim::RangeSensor> sensor_;
+  dynamics::Kinematics kinematics_;
+  std::vector<sim::RangeSensor::Point> points_;
+  std::vector<terrain::SeenPoint> seen_;
+};
+
+}  // namespace gaitd::daemon

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/goto/live_ground.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "daemon/goto/map_methods.h"
+#include "daemon/goto/range_mount.h"
+#include "daemon/server/base64.h"
+#include "gaitd/sdk/views.h"
+#include "walking/test/atlas.h"
+
+namespace gaitd::daemon {
+namespace {
+
+using nlohmann::json;
+using testing::atlas;
+using testing::standing_state;
+
+// Standing at the start, moved by `x` and raised by `z`, where it believes to be `off` higher.
+Sight standing(double time, double x = 0.0, double off = 0.0) {
+  const GaitdRobotState robot = standing_state(atlas());
+  Sight sight;
+  sight.time = time;
+  sight.has_truth = true;
+  sdk::view(sight.true_pelvis.position) = sdk::view(robot.pelvis_position);
+  sight.true_pelvis.position[0] += x;
+  sight.true_pelvis.orientation[3] = 1.0;
+  sight.pelvis = sight.true_pelvis;
+  sight.pelvis.position[2] += off;
+  std::copy_n(robot.joint_position, GAITD_MAX_JOINTS, sight.joints);
+  std::copy_n(robot.joint_position, GAITD_MAX_JOINTS, sight.true_joints);
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    sight.stands[side] = true;
+    sdk::view(sight.soles[side].position) = sdk::view(robot.feet[side].position);
+    sight.soles[side].position[0] += x;
+    sight.soles[side].position[2] += off;
+    sight.soles[side].orientation[3] = 1.0;
+  }
+  return sight;
+}
+
+// A step of 0.15 m up, 1 m ahead.
+LiveGround::Eye eye_on_a_step(const char* sensor) {
+  sim::TerrainConfig config;
+  config.ground_z = 0.0;
+  sim::BoxConfig box;
+  box.center = {2.0, 0.0, 0.075};
+  box.size = {2.0, 4.0, 0.15};
+  config.boxes.push_back(box);
+  return {range_sensor({{"sensor", sensor}}, atlas()), sim::Terrain(config, 1.0), 1};
+}
+
+class Eyes : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Eyes, SeeTheGroundBeforeTheFeetAndAStepFurtherAway) {
+  LiveGround ground(atlas(), nullptr, eye_on_a_step(GetParam()));
+  EXPECT_TRUE(ground.live());
+  for (int k = 0; k < 15; ++k) ground.look(standing(0.1 * k));
+  const LiveGround::Known known = ground.known();
+  ASSERT_NE(known.map, nullptr);
+  for (const double x : {0.0, 0.1, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.1, 1.2, 1.4, 1.6}) {
+    const auto surface = known.map->surface({x, 0.15});
+    ASSERT_TRUE(surface) << x;
+    EXPECT_NEAR(surface->height, x > 1.0 ? 0.15 : 0.0, 0.02) << x;
+  }
+  EXPECT_FALSE(known.map->surface({-1.5, 0.0}) && std::string_view(GetParam()) == "depth_camera");
+}
+
+INSTANTIATE_TEST_SUITE_P(Sensors, Eyes, ::testing::Values("depth_camera", "lidar"));
+
+TEST(LiveGround, WhatIsSeenIsWhereTheRobotBelievesToBe) {
+  LiveGround ground(atlas(), nullptr, eye_on_a_step("depth_camera"));
+  for (int k = 0; k < 15; ++k) ground.look(standing(0.1 * k, 0.0, 0.05));
+  EXPECT_NEAR(ground.known().map->surface({0.6, 0.0})->height, 0.05, 0.02);
+}
+
+TEST(LiveGround, WithoutEyesItIsWhatWasKnownUntilSomebodyTellsMore) {
+  terrain::HeightMap base(terrain::Grid{100, 100, 0.02, {-1.0, -1.0}});
+  for (int j = 0; j < 100; ++j) {
+    for (int i = 0; i < 100; ++i) base.set(i, j, 0.3);
+  }
+  const auto shared = std::make_shared<const terrain::HeightMap>(base);
+  LiveGround ground(atlas(), shared, std::nullopt);
+  ground.look(standing(0.1));
+  EXPECT_FALSE(ground.live());
+  EXPECT_EQ(ground.known().map, shared);
+  terrain::HeightMap tile(terrain::Grid{20, 20, 0.02, {0.9, 0.0}});  // half beside the map
+  for (int j = 0; j < 20; ++j) {
+    for (int i = 0; i < 20; ++i) tile.set(i, j, 0.5);
+  }
+  EXPECT_EQ(ground.put(tile, false), 400);
+  EXPECT_TRUE(ground.live());
+  const auto map = ground.known().map;
+  EXPECT_NEAR(map->surface({0.5, 0.2})->height, 0.3, 1e-6);
+  EXPECT_NEAR(map->surface({0.95, 0.2})->height, 0.5, 1e-6);
+  EXPECT_NEAR(map->surface({1.2, 0.2})->height, 0.5, 1e-6);
+  ground.clear();
+  EXPECT_NEAR(ground.known().map->surface({0.95, 0.2})->height, 0.3, 1e-6);
+}
+
+class MapMethods : public ::testing::Test {
+ protected:
+  MapMethods() { add_map_methods(&methods_, &ground_); }
+  RpcResult call(const char* method, const json& params) {
+    RpcResult result = json();
+    Caller caller;
+    (*methods_.find(method))(params, caller, [&result](RpcResult r) { result = std::move(r); });
+    return result;
+  }
+  static std::string floats(const std::vector<float>& values) {
+    return base64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
+  }
+  static json tile() {
+    return {{"columns", 3},
+            {"rows", 2},
+            {"resolution", 0.02},
+            {"origin", {0.5, 0.0}},
+            {"heights", floats({0.1F, 0.2F, NAN, 0.4F, 0.5F, 0.6F})}};
+  }
+  std::string error_of(const char* method, const json& params) {
+    const RpcResult result = call(method, params);
+    const auto* error = std::get_if<RpcError>(&result);
+    return error != nullptr ? error->message : "";
+  }
+
+  LiveGround ground_{atlas(), nullptr, std::nullopt};
+  Methods methods_;
+};
+
+TEST_F(MapMethods, WhatIsPutIsWhatOneGets) {
+  EXPECT_EQ(std::get<json>(call("map.get", json::object())).size(), 1U) << "nothing is known";
+  EXPECT_EQ(std::get<json>(call("map.get", json())).size(), 1U);
+  EXPECT_EQ(std::get<json>(call("map.put", tile()))["cells"], 5);
+  const json map = std::get<json>(call("map.get", json::object()));
+  EXPECT_EQ(map["columns"], 3);
+  EXPECT_EQ(map["rows"], 2);
+  EXPECT_NEAR(map["origin"][0], 0.5, 1e-9);
+  const std::string bytes = from_base64(map["heights"].get<std::string>());
+  std::int16_t heights[6];
+  ASSERT_EQ(bytes.size(), sizeof(heights));
+  std::memcpy(heights, bytes.data(), sizeof(heights));
+  EXPECT_EQ(heights[0], 100);
+  EXPECT_EQ(heights[2], -32768);
+  EXPECT_EQ(heights[5], 600);
+  const json same = std::get<json>(call("map.get", {{"since", map["revision"]}}));
+  EXPECT_FALSE(same.contains("heights"));
+  const json coarse = std::get<json>(call("map.get", {{"resolution", 0.06}}));
+  EXPECT_EQ(coarse["columns"], 1);
+  const json part = std::get<json>(call("map.get", {{"window", {0.521, 0.001, 0.539, 0.019}}}));
+  EXPECT_EQ(part["columns"], 1);
+  EXPECT_NEAR(part["origin"][0], 0.52, 1e-9);
+  call("map.clear", json());
+  EXPECT_FALSE(std::get<json>(call("map.get", json::object())).contains("heights"));
+}
+
+TEST_F(MapMethods, WhatIsNoTileIsRefusedWithTheReason) {
+  const auto with = [](const char* key, const json& value) {
+    json params = tile();
+    params[key] = value;
+    return params;
+  };
+  EXPECT_NE(error_of("map.put", with("heights", "AAAA")).find("24 bytes"), std::string::npos);
+  EXPECT_NE(error_of("map.put", with("columns", 16000)).find("at most 16384 cells"),
+            std::string::npos);
+  EXPECT_NE(error_of("map.put", with("rows", 0)).find("rows"), std::string::npos);
+  EXPECT_NE(error_of("map.put", with("colour", 1)).find("colour"), std::string::npos);
+  EXPECT_NE(error_of("map.put", with("heights", floats({0.1F, 0.2F, INFINITY, 0.4F, 0.5F, 0.6F}))),
+            "");
+  EXPECT_NE(error_of("map.put", with("variances", floats({-1, 0, 0, 0, 0, 0}))), "");
+  EXPECT_NE(error_of("map.put", json()), "");
+  EXPECT_NE(error_of("map.get", {{"window", {1, 2}}}), "");
+  EXPECT_NE(error_of("map.clear", {{"all", true}}), "");
+  EXPECT_FALSE(ground_.live());
+}
+
+}  // namespace
+}  // namespace gaitd::daemon

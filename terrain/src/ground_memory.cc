@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/terrain/ground_memory.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace gaitd::terrain {
+namespace {
+
+constexpr double kSlack = 0.1;   // of the square, by which the robot may be off its middle
+constexpr double kLevel = 0.03;  // m, by which heights around a hole, or beside a cell, agree
+constexpr int kNeighbours = 5;   // of eight, that have to be known around a hole
+constexpr int kClosings = 2;     // cells, of half the width of a hole that is closed
+constexpr float kNothing = -INFINITY;
+
+}  // namespace
+
+GroundMemory::GroundMemory(const MemoryRules& rules) : rules_(rules) {
+  const int cells = std::max(2, static_cast<int>(std::lround(rules.size / rules.resolution)));
+  grid_ = Grid{cells, cells, rules.resolution, Eigen::Vector2d::Zero()};
+  const std::size_t count = static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
+  cells_.resize(count);
+  highest_.assign(count, kNothing);
+  sum_.assign(count, 0.0F);
+  weight_.assign(count, 0.0F);
+}
+
+void GroundMemory::clear() {
+  std::fill(cells_.begin(), cells_.end(), Cell{});
+  ++revision_;
+}
+
+void GroundMemory::move_to(const Eigen::Vector2d& middle) {
+  const double half = 0.5 * grid_.resolution * grid_.columns;
+  const Eigen::Vector2d wanted = middle - Eigen::Vector2d::Constant(half);
+  // Whole cells of W: maps of the same resolution have the same cells.
+  const Eigen::Vector2d origin =
+      (wanted / grid_.resolution).array().round().matrix() * grid_.resolution;
+  if (!placed_) {
+    grid_.origin = origin;
+    placed_ = true;
+    return;
+  }
+  if ((origin - grid_.origin).cwiseAbs().maxCoeff() < kSlack * half) return;
+  const Eigen::Vector2i by =
+      ((origin - grid_.origin) / grid_.resolution).array().round().cast<int>();
+  std::vector<Cell> before(cells_.size());
+  before.swap(cells_);
+  for (int j = 0; j < grid_.rows; ++j) {
+    for (int i = 0; i < grid_.columns; ++i) {
+      if (!grid_.contains(i + by.x(), j + by.y())) continue;
+      at(i, j) =
+          before[static_cast<std::size_t>(j + by.y()) * static_cast<std::size_t>(grid_.columns) +
+                 static_cast<std::size_t>(i + by.x())];
+    }
+  }
+  grid_.origin = origin;
+}
+
+double GroundMemory::variance_at(const Cell& cell, double time) const {
+  const double age = std::max(0.0, time - static_cast<double>(cell.seen));
+  return static_cast<double>(cell.variance) + rules_.drift * rules_.drift * age;
+}
+
+void GroundMemory::learn(Cell* cell, double height, double variance, double time) const {
+  const bool known = cell->variance >= 0.0F;
+  const double before = known ? variance_at(*cell, time) : 0.0;
+  const double off = height - static_cast<double>(cell->height);
+  const bool fits = known && std::abs(off) < rules_.contradiction +
+                                                 rules_.believable * std::sqrt(before + variance);
+  if (known && !fits && ++cell->doubts < rules_.repeated) return;
+  cell->doubts = 0;
+  cell->seen = static_cast<float>(time);
+  if (!fits) {
+    cell->height = static_cast<float>(height);
+    cell->variance = static_cast<float>(variance);
+    return;
+  }
+  const double gain = before / (before + variance);
+  cell->height += static_cast<float>(gain * off);
+  cell->variance = static_cast<float>((1.0 - gain) * before);
+}
+
+void GroundMemory::see(std::span<const SeenPoint> points, double common, double time) {
+  touched_.clear();
+  const auto cell_of = [this](const SeenPoint& point) {
+    const Eigen::Vector2i c = grid_.cell(point.p.head<2>());
+    return grid_.contains(c.x(), c.y()) ? c.y() * grid_.columns + c.x() : -1;
+  };
+  for (const SeenPoint& point : points) {
+    if (!point.p.allFinite() || !(point.variance > 0.0)) continue;
+    const int cell = cell_of(point);
+    if (cell < 0) continue;
+    float& highest = highest_[static_cast<std::size_t>(cell)];
+    if (highest == kNothing) touched_.push_back(cell);
+    highest = std::max(highest, static_cast<float>(point.p.z()));
+  }
+  for (const SeenPoint& point : points) {
+    if (!point.p.allFinite() || !(point.variance > 0.0)) continue;
+    const int cell = cell_of(point);
+    if (cell < 0) continue;
+    const auto k = static_cast<std::size_t>(cell);
+    const float below = highest_[k] - static_cast<float>(point.p.z());
+    if (below > static_cast<float>(rules_.mixed)) continue;
+    const auto weight = static_cast<float>(1.0 / point.variance);
+    sum_[k] -= weight * below;
+    weight_[k] += weight;
+  }
+  for (const int cell : touched_) {
+    const auto k = static_cast<std::size_t>(cell);
+    learn(&cells_[k], static_cast<double>(highest_[k] + sum_[k] / weight_[k]),
+          common + 1.0 / static_cast<double>(weight_[k]), time);
+    highest_[k] = kNothing;
+    sum_[k] = weight_[k] = 0.0F;
+  }
+  if (!touched_.empty()) ++revision_;
+}
+
+void GroundMemory::stand_on(std::span<const Eigen::Vector3d> outline, double variance,
+                            double time) {
+  if (outline.size() < 3) return;
+  Eigen::Vector2d low = outline[0].head<2>(), high = low;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    low = low.cwiseMin(outline[k].head<2>());
+    high = high.cwiseMax(outline[k].head<2>());
+    middle += outline[k] / static_cast<double>(outline.size());
+  }
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    normal += (outline[k] - middle).cross(outline[(k + 1) % outline.size()] - middle);
+  }
+  if (!(normal.z() > 0.0)) return;
+  const Eigen::Vector2i first = grid_.cell(low).cwiseMax(Eigen::Vector2i::Zero());
+  const Eigen::Vector2i last =
+      grid_.cell(high).cwiseMin(Eigen::Vector2i(grid_.columns - 1, grid_.rows - 1));
+  bool learned = false;
+  for (int j = first.y(); j <= last.y(); ++j) {
+    for (int i = first.x(); i <= last.x(); ++i) {
+      Cell& cell = at(i, j);
+      if (cell.variance >= 0.0F) continue;
+      const Eigen::Vector2d p = grid_.centre(i, j);
+      bool inside = true;
+      for (std::size_t k = 0; k < outline.size() && inside; ++k) {
+        const Eigen::Vector2d a = outline[k].head<2>();
+        const Eigen::Vector2d d = outline[(k + 1) % outline.size()].head<2>() - a;
+        inside = d.x() * (p.y() - a.y()) - d.y() * (p.x() - a.x()) >= 0.0;
+      }
+      if (!inside) continue;
+      const double height = middle.z() - normal.head<2>().dot(p - middle.head<2>()) / normal.z();
+      learn(&cell, height, variance, time);
+      learned = true;
+    }
+  }
+  if (learned) ++revision_;
+}
+
+int GroundMemory::put(const HeightMap& tile, bool forget, double time) {
+  int taken = 0;
+  const Grid& from = tile.grid();
+  const Eigen::Vector2d size = from.resolution * Eigen::Vector2d(from.columns, from.rows);
+  const Eigen::Vector2i first = grid_.cell(from.origin).cwiseMax(Eigen::Vector2i::Zero());
+  const Eigen::Vector2i last =
+      grid_.cell(from.origin + size).cwiseMin(Eigen::Vector2i(grid_.columns - 1, grid_.rows - 1));
+  for (int j = first.y(); j <= last.y(); ++j) {
+    for (int i = first.x(); i <= last.x(); ++i) {
+      const Eigen::Vector2i c = from.cell(grid_.centre(i, j));
+      if (!from.contains(c.x(), c.y())) continue;
+      const bool known = tile.known(c.x(), c.y());
+      if (!known && !forget) continue;
+      Cell cell;
+      if (known) {
+        ++taken;
+        cell.height = static_cast<float>(tile.height(c.x(), c.y()));
+        cell.variance = static_cast<float>(tile.variance(c.x(), c.y()));
+        cell.seen = static_cast<float>(time);
+      }
+      at(i, j) = cell;
+    }
+  }
+  ++revision_;
+  return taken;
+}
+
+HeightMap GroundMemory::map(double time) const {
+  Eigen::Vector2i first(grid_.columns, grid_.rows), last(-1, -1);
+  const double worst = rules_.unknown * rules_.unknown;
+  for (int j = 0; j < grid_.rows; ++j) {
+    for (int i = 0; i < grid_.columns; ++i) {
+      if (at(i, j).variance < 0.0F) continue;
+      first = first.cwiseMin(Eigen::Vector2i(i, j));
+      last = last.cwiseMax(Eigen::Vector2i(i, j));
+    }
+  }
+  if (last.x() < first.x()) return HeightMap(Grid{2, 2, grid_.resolution, grid_.origin});
+  Grid part = grid_;
+  part.columns = std::max(2, last.x() - first.x() + 1);
+  part.rows = std::max(2, last.y() - first.y() + 1);
+  part.origin = grid_.origin + grid_.resolution * first.cast<double>();
+  HeightMap raw(part);
+  for (int j = 0; j < part.rows; ++j) {
+    for (int i = 0; i < part.columns; ++i) {
+      if (!grid_.contains(i + first.x(), j + first.y())) continue;
+      const Cell& cell = at(i + first.x(), j + first.y());
+      if (cell.variance < 0.0F) continue;
+      const double variance = variance_at(cell, time);
+      if (variance < worst) raw.set(i, j, static_cast<double>(cell.height), variance);
+    }
+  }
+  struct Around {
+    double sum = 0.0, weight = 0.0, low = INFINITY, high = -INFINITY, worst = 0.0;
+    int known = 0;
+  };
+  // Of the cells beside (i, j), those whose height is within kLevel of `height` (NaN: all).
+  const auto around = [&part](const HeightMap& map, int i, int j, double height) {
+    Around a;
+    for (int v = std::max(0, j - 1); v <= std::min(part.rows - 1, j + 1); ++v) {
+      for (int u = std::max(0, i - 1); u <= std::min(part.columns - 1, i + 1); ++u) {
+        if ((u == i && v == j) || !map.known(u, v)) continue;
+        const double h = map.height(u, v);
+        if (std::abs(h - height) > kLevel) continue;
+        const double weight = 1.0 / std::max(1e-8, map.variance(u, v));
+        a.sum += weight * h;
+        a.weight += weight;
+        a.low = std::min(a.low, h);
+        a.high = std::max(a.high, h);
+        a.worst = std::max(a.worst, map.variance(u, v));
+        ++a.known;
+      }
+    }
+    return a;
+  };
+  for (int closing = 0; closing < kClosings; ++closing) {
+    HeightMap closed = raw;
+    for (int j = 0; j < part.rows; ++j) {
+      for (int i = 0; i < part.columns; ++i) {
+        if (raw.known(i, j)) continue;
+        const Around a = around(raw, i, j, HeightMap::kUnknown);
+        if (a.known >= kNeighbours && a.high - a.low < kLevel) {
+          closed.set(i, j, a.sum / a.weight, a.worst);
+        }
+      }
+    }
+    raw = std::move(closed);
+  }
+  HeightMap smooth = raw;
+  for (int j = 0; j < part.rows; ++j) {
+    for (int i = 0; i < part.columns; ++i) {
+      if (!raw.known(i, j)) continue;
+      const double h = raw.height(i, j);
+      const Around a = around(raw, i, j, h);
+      const double weight = 1.0 / std::max(1e-8, raw.variance(i, j));
+      smooth.set(i, j, (a.sum + weight * h) / (a.weight + weight), raw.variance(i, j));
+    }
+  }
+  return smooth;
+}
+
+}  // namespace gaitd::terrain

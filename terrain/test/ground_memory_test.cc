@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/terrain/ground_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+namespace gaitd::terrain {
+namespace {
+
+constexpr double kSigma = 0.008;  // m, of the points
+constexpr double kCommon = 1e-6;  // m^2
+
+// Points on level ground, with a step of `step` (m) up at x = 0.
+std::vector<SeenPoint> scan(double step, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> noise(0.0, kSigma);
+  std::vector<SeenPoint> points;
+  for (int i = -50; i < 50; ++i) {
+    for (int j = -30; j < 30; ++j) {
+      const double x = 0.012 * i + 0.003, y = 0.012 * j + 0.003;
+      points.push_back({{x, y, (x > 0.0 ? step : 0.0) + noise(engine)}, kSigma * kSigma});
+    }
+  }
+  return points;
+}
+
+TEST(GroundMemory, ManyScansAverageTheNoiseAndKeepTheEdge) {
+  GroundMemory memory;
+  memory.move_to({0.0, 0.0});
+  for (unsigned k = 0; k < 20; ++k) memory.see(scan(0.15, k), kCommon, 0.1 * k);
+  const HeightMap map = memory.map(2.0);
+  double worst = 0.0;
+  int known = 0;
+  for (int j = 0; j < map.grid().rows; ++j) {
+    for (int i = 0; i < map.grid().columns; ++i) {
+      if (!map.known(i, j)) continue;
+      ++known;
+      const double x = map.grid().centre(i, j).x();
+      worst = std::max(worst, std::abs(map.height(i, j) - (x > 0.0 ? 0.15 : 0.0)));
+      EXPECT_LT(map.variance(i, j), 0.004 * 0.004);
+    }
+  }
+  EXPECT_GT(known, 60 * 36 - 200);
+  EXPECT_LT(worst, 0.006);
+  EXPECT_FALSE(memory.map(1000.0).known_cells() > 0) << "old knowledge is no knowledge";
+}
+
+TEST(GroundMemory, OneWrongScanChangesNothingAndTwoAreBelieved) {
+  GroundMemory memory;
+  memory.move_to({0.0, 0.0});
+  for (unsigned k = 0; k < 5; ++k) memory.see(scan(0.0, k), kCommon, 0.1 * k);
+  const auto height = [&memory] {
+    const HeightMap map = memory.map(1.0);
+    return map.surface({0.2, 0.0})->height;
+  };
+  EXPECT_NEAR(height(), 0.0, 0.006);
+  memory.see(scan(0.2, 7), kCommon, 0.6);
+  EXPECT_NEAR(height(), 0.0, 0.006);
+  memory.see(scan(0.0, 8), kCommon, 0.7);
+  memory.see(scan(0.2, 9), kCommon, 0.8);
+  EXPECT_NEAR(height(), 0.0, 0.006) << "not in a row";
+  memory.see(scan(0.2, 10), kCommon, 0.9);
+  EXPECT_NEAR(height(), 0.2, 0.03);
+}
+
+TEST(GroundMemory, TheSquareMovesInWholeCellsAndForgetsWhatLeavesIt) {
+  GroundMemory memory({.size = 2.0});
+  memory.move_to({0.0, 0.0});
+  memory.see(scan(0.1, 1), kCommon, 0.0);
+  const double before = memory.map(0.0).surface({0.3, 0.1})->height;
+  memory.move_to({1.0, 0.013});
+  const HeightMap map = memory.map(0.0);
+  ASSERT_TRUE(map.surface({0.3, 0.1}));
+  EXPECT_NEAR(map.surface({0.3, 0.1})->height, before, 1e-9);
+  EXPECT_FALSE(map.surface({-0.3, 0.1}));
+}
+
+TEST(GroundMemory, WhereAFootStandsThereIsGroundUnlessSomethingElseIsKnown) {
+  GroundMemory memory;
+  memory.move_to({0.0, 0.0});
+  const std::array<Eigen::Vector3d, 4> sole = {
+      {{-0.1, -0.05, 0.3}, {0.1, -0.05, 0.32}, {0.1, 0.05, 0.32}, {-0.1, 0.05, 0.3}}};
+  memory.stand_on(sole, 1e-5, 0.0);
+  EXPECT_NEAR(memory.map(0.0).surface({0.02, 0.0})->height, 0.312, 1e-4);
+  EXPECT_FALSE(memory.map(0.0).surface({0.15, 0.0}));
+  const std::uint64_t revision = memory.revision();
+  memory.stand_on(sole, 1e-5, 1.0);
+  EXPECT_EQ(memory.revision(), revision);
+}
+
+TEST(GroundMemory, ATileTakesThePlaceOfWhatWasKnown) {
+  GroundMemory memory;
+  memory.move_to({0.0, 0.0});
+  memory.see(scan(0.0, 1), kCommon, 0.0);
+  HeightMap tile(Grid{10, 10, 0.02, {0.0, 0.0}});
+  for (int j = 0; j < 10; ++j) {
+    for (int i = 0; i < 5; ++i) tile.set(i, j, 0.5, 1e-6);
+  }
+  memory.put(tile, false, 1.0);
+  EXPECT_NEAR(memory.map(1.0).surface({0.04, 0.1})->height, 0.5, 1e-6);
+  EXPECT_TRUE(memory.map(1.0).surface({0.16, 0.1})) << "its unknown cells say nothing";
+  memory.put(tile, true, 1.0);
+  EXPECT_FALSE(memory.map(1.0).surface({0.16, 0.1}));
+  memory.clear();
+  EXPECT_EQ(memory.map(1.0).known_cells(), 0);
+}
+
+TEST(GroundMemory, PointsThatAreNoNumbersOrFarAwayAreLeftOut) {
+  GroundMemory memory;
+  memory.move_to({0.0, 0.0});
+  const std::vector<SeenPoint> wrong = {
+      {{NAN, 0, 0}, 1e-4}, {{0, 0, INFINITY}, 1e-4}, {{1e9, 0, 0}, 1e-4}, {{0, 0, 0}, 0.0}};
+  memory.see(wrong, kCommon, 0.0);
+  EXPECT_EQ(memory.map(0.0).known_cells(), 0);
+  EXPECT_EQ(memory.revision(), 0U);
+}
+
+}  // namespace
+}  // namespace gaitd::terrain
