@@ -47,7 +47,8 @@ struct LoopReport {
 // simulation has made the next sensors.
 class ControlLoop {
  public:
-  // What it brings together; all of it outlives the loop. The last five may be null.
+  // What it brings together; all of it outlives the loop. Pointers from `bridge` on
+  // may be null.
   struct Parts {
     const GaitdModel* model;
     Pipeline* pipeline;

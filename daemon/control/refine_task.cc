@@ -2,7 +2,6 @@
 #include "daemon/control/refine_task.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "daemon/control/plan_start.h"
 
@@ -49,9 +48,8 @@ bool RefineTask::step(const walking::GaitMachine& gait, bool wanted, Command* ou
                      (state.phase == GAITD_PHASE_SWING || state.transfer_final == 0);
   if (!steps || !wanted || !port_->live() || asked_) return false;
   const std::uint32_t step = state.commanded[0].id;
-  if (std::exchange(step_, step) == step && std::exchange(phase_, state.phase) == state.phase) {
-    return false;
-  }
+  if (step_ == step && phase_ == state.phase) return false;
+  step_ = step;
   phase_ = state.phase;
   ask(gait);
   return false;

@@ -16,9 +16,7 @@ namespace {
 
 // The control thread cannot wake anybody: requests are looked for.
 constexpr std::chrono::milliseconds kPoll{2};
-constexpr double kSamePlace = 0.02;    // m: a footstep is that one of the route
-constexpr double kSameHeight = 0.003;  // m, and
-constexpr double kSameTilt = 0.01;     // rad: a footstep stays as it is
+constexpr double kSamePlace = 0.02;  // m: a footstep is that one of the route
 
 constexpr double kMuchBetter = 0.85;  // of the cost of the way that was begun
 
@@ -28,11 +26,8 @@ void raise(double by, GaitdFootstep* step) {
 }
 
 bool same(const GaitdFootstep& a, const GaitdFootstep& b) {
-  const double height = a.pose.position[2] - b.pose.position[2];
-  return std::abs(height) < kSameHeight && a.swing_duration == b.swing_duration &&
-         a.transfer_duration == b.transfer_duration && a.swing_height == b.swing_height &&
-         sdk::quaternion(a.pose.orientation).angularDistance(sdk::quaternion(b.pose.orientation)) <
-             kSameTilt;
+  return footsteps::same_foothold(a.pose, b.pose) && a.swing_duration == b.swing_duration &&
+         a.transfer_duration == b.transfer_duration && a.swing_height == b.swing_height;
 }
 
 }  // namespace
@@ -97,25 +92,26 @@ footsteps::FootstepPlanner& PlanService::planner() {
 
 // A map that is made while the robot walks is higher or lower than its feet by what its sensor and
 // its estimator are off. What counts is the height from where it stands: plans are made in the
-// frame of the map, below the foot that stays.
+// frame of the map, below the foot that stays. m, by which that is above the map.
+double PlanService::above_map(const PlanRequest& request) const {
+  if (!parts_.ground->live()) return 0.0;
+  double sum = 0.0;
+  int count = 0;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    if (request.start.under_way && side == request.start.under_way->side) continue;
+    const GaitdPose& foot = request.start.feet[side];
+    if (const auto ground = planner_->ground_below(side, foot)) {
+      sum += foot.position[2] - *ground;
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : -request.height_offset;
+}
+
 footsteps::Plan PlanService::answer(const PlanRequest& request, bool* unchanged) {
   footsteps::FootstepPlanner& planner = this->planner();
+  const double bias = above_map(request);
   PlanRequest on_map = request;
-  double bias = 0.0;
-  if (parts_.ground->live()) {
-    bias = -request.height_offset;
-    const bool steps = request.start.under_way.has_value();
-    double sum = 0.0;
-    int count = 0;
-    for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-      if (steps && side == request.start.under_way->side) continue;
-      if (const auto ground = planner.ground_below(side, request.start.feet[side])) {
-        sum += request.start.feet[side].position[2] - *ground;
-        ++count;
-      }
-    }
-    if (count > 0) bias = sum / count;
-  }
   for (GaitdPose& foot : on_map.start.feet) foot.position[2] -= bias;
   if (on_map.start.under_way) raise(-bias, &*on_map.start.under_way);
   for (int i = 0; i < on_map.ahead_count; ++i) raise(-bias, &on_map.ahead[i]);
@@ -124,9 +120,7 @@ footsteps::Plan PlanService::answer(const PlanRequest& request, bool* unchanged)
     case PlanKind::kGoto:
       exhausted_.clear();
       plan = planner.plan(on_map.start, on_map.goal, on_map.parameters);
-      if (plan.refusal.empty()) {
-        route_ = plan;
-      }
+      if (plan.refusal.empty()) route_ = plan;
       break;
     case PlanKind::kRevise:
       on_map.goal.exhausted = exhausted_;

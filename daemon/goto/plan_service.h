@@ -40,6 +40,7 @@ class PlanService {
   void answer_all(PlanPort* port);
   void look_around();
   footsteps::FootstepPlanner& planner();
+  double above_map(const PlanRequest& request) const;
   footsteps::Plan answer(const PlanRequest& request, bool* unchanged);
   footsteps::Plan revise(const PlanRequest& request, bool* unchanged);
   void go_on(const PlanRequest& request, const footsteps::Plan& begun, footsteps::Plan* plan) const;

@@ -19,12 +19,12 @@ constexpr double kAsideCost = 40.0;    // steps per metre
 constexpr double kSameHeight = 0.003;  // m, and
 constexpr double kSameTilt = 0.01;     // rad: a foothold is where it was
 
-bool same(const GaitdPose& a, const GaitdPose& b) {
+}  // namespace
+
+bool same_foothold(const GaitdPose& a, const GaitdPose& b) {
   return (sdk::view(a.position) - sdk::view(b.position)).norm() < kSameHeight &&
          sdk::quaternion(a.orientation).angularDistance(sdk::quaternion(b.orientation)) < kSameTilt;
 }
-
-}  // namespace
 
 const char* reason(FootholdState state) {
   switch (state) {
@@ -111,7 +111,7 @@ std::vector<GaitdFootstep> MapPlanner::refine(const Start& start,
     const GaitdFootstep before = step;
     const bool put = steps_->footholds().has_map() &&
                      put_on_ground(feet[other_side(step.side)], feet[step.side], parameters, &step);
-    changed.push_back(put && !same(step.pose, before.pose));
+    changed.push_back(put && !same_foothold(step.pose, before.pose));
     if (!changed.back()) step = before;
     if (changed.back()) steps_->footholds().add_landing_region(&step);
     feet[step.side] = step.pose;

@@ -19,7 +19,12 @@ constexpr float kNothing = -INFINITY;
 GroundMemory::GroundMemory(const MemoryRules& rules) : rules_(rules) {
   const int cells = std::max(2, static_cast<int>(std::lround(rules.size / rules.resolution)));
   grid_ = Grid{cells, cells, rules.resolution, Eigen::Vector2d::Zero()};
-  const std::size_t count = static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
+}
+
+void GroundMemory::prepare() {
+  if (!cells_.empty()) return;
+  const std::size_t count =
+      static_cast<std::size_t>(grid_.columns) * static_cast<std::size_t>(grid_.rows);
   cells_.resize(count);
   highest_.assign(count, kNothing);
   sum_.assign(count, 0.0F);
@@ -47,7 +52,7 @@ void GroundMemory::move_to(const Eigen::Vector2d& middle) {
       ((origin - grid_.origin) / grid_.resolution).array().round().cast<int>();
   std::vector<Cell> before(cells_.size());
   before.swap(cells_);
-  for (int j = 0; j < grid_.rows; ++j) {
+  for (int j = 0; !cells_.empty() && j < grid_.rows; ++j) {
     for (int i = 0; i < grid_.columns; ++i) {
       if (!grid_.contains(i + by.x(), j + by.y())) continue;
       at(i, j) =
@@ -83,6 +88,7 @@ void GroundMemory::learn(Cell* cell, double height, double variance, double time
 }
 
 void GroundMemory::see(std::span<const SeenPoint> points, double common, double time) {
+  prepare();
   touched_.clear();
   const auto cell_of = [this](const SeenPoint& point) {
     const Eigen::Vector2i c = grid_.cell(point.p.head<2>());
@@ -120,6 +126,7 @@ void GroundMemory::see(std::span<const SeenPoint> points, double common, double 
 void GroundMemory::stand_on(std::span<const Eigen::Vector3d> outline, double variance,
                             double time) {
   if (outline.size() < 3) return;
+  prepare();
   Eigen::Vector2d low = outline[0].head<2>(), high = low;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < outline.size(); ++k) {
@@ -156,6 +163,7 @@ void GroundMemory::stand_on(std::span<const Eigen::Vector3d> outline, double var
 }
 
 int GroundMemory::put(const HeightMap& tile, bool forget, double time) {
+  prepare();
   int taken = 0;
   const Grid& from = tile.grid();
   const Eigen::Vector2d size = from.resolution * Eigen::Vector2d(from.columns, from.rows);
@@ -185,7 +193,7 @@ int GroundMemory::put(const HeightMap& tile, bool forget, double time) {
 HeightMap GroundMemory::map(double time) const {
   Eigen::Vector2i first(grid_.columns, grid_.rows), last(-1, -1);
   const double worst = rules_.unknown * rules_.unknown;
-  for (int j = 0; j < grid_.rows; ++j) {
+  for (int j = 0; !cells_.empty() && j < grid_.rows; ++j) {
     for (int i = 0; i < grid_.columns; ++i) {
       if (at(i, j).variance < 0.0F) continue;
       first = first.cwiseMin(Eigen::Vector2i(i, j));

@@ -13,16 +13,7 @@ double top_of(const BoxShape& box, double x, double y) {
   const Eigen::Vector3d p = box.R_WB.transpose() * (Eigen::Vector3d(x, y, 0.0) - box.center);
   const Eigen::Vector3d d = box.R_WB.row(2).transpose();
   double low = -INFINITY, high = INFINITY;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(d[axis]) < 1e-12) {
-      if (std::abs(p[axis]) > box.half[axis]) return HeightMap::kUnknown;
-      continue;
-    }
-    const double a = (-box.half[axis] - p[axis]) / d[axis];
-    const double b = (box.half[axis] - p[axis]) / d[axis];
-    low = std::max(low, std::min(a, b));
-    high = std::min(high, std::max(a, b));
-  }
+  clip_to_box(p, d, box.half, &low, &high);
   return low <= high ? high : HeightMap::kUnknown;
 }
 
@@ -55,6 +46,20 @@ std::optional<HeightMap::Surface> HeightMap::surface(const Eigen::Vector2d& p) c
   const double along_x = ((1 - v) * (b - a) + v * (d - c)) / grid_.resolution;
   const double along_y = ((1 - u) * (c - a) + u * (d - b)) / grid_.resolution;
   return Surface{h, Eigen::Vector3d(-along_x, -along_y, 1.0).normalized()};
+}
+
+void clip_to_box(const Eigen::Vector3d& p, const Eigen::Vector3d& d, const Eigen::Vector3d& half,
+                 double* low, double* high) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(d[axis]) < 1e-12) {
+      if (std::abs(p[axis]) > half[axis]) *high = -INFINITY;
+      continue;
+    }
+    const double a = (-half[axis] - p[axis]) / d[axis];
+    const double b = (half[axis] - p[axis]) / d[axis];
+    *low = std::max(*low, std::min(a, b));
+    *high = std::min(*high, std::max(a, b));
+  }
 }
 
 void add_boxes(const std::vector<BoxShape>& boxes, HeightMap* map) {

@@ -23,16 +23,7 @@ double cast_on(const Box& box, const Eigen::Vector3d& origin, const Eigen::Vecto
   const Eigen::Vector3d p = -(box.R_WB.transpose() * to);
   const Eigen::Vector3d d = box.R_WB.transpose() * direction;
   double in = 0.0, out = far;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(d[axis]) < 1e-12) {
-      if (std::abs(p[axis]) > box.half[axis]) return far;
-      continue;
-    }
-    const double a = (-box.half[axis] - p[axis]) / d[axis];
-    const double b = (box.half[axis] - p[axis]) / d[axis];
-    in = std::max(in, std::min(a, b));
-    out = std::min(out, std::max(a, b));
-  }
+  terrain::clip_to_box(p, d, box.half, &in, &out);
   return in <= out ? in : far;
 }
 

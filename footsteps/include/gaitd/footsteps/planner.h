@@ -68,6 +68,9 @@ class FootstepPlanner {
   virtual std::optional<double> ground_below(int side, const GaitdPose& sole) const = 0;
 };
 
+// Whether two poses of a sole are one foothold, but for the noise of a map.
+bool same_foothold(const GaitdPose& a, const GaitdPose& b);
+
 struct PlannerOptions {
   int expansions = 20000;  // at most, of the lattice
   bool explore = false;    // the map grows: plan to where it ends if the goal is beyond

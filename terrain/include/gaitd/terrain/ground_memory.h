@@ -73,6 +73,8 @@ class GroundMemory {
                   static_cast<std::size_t>(i)];
   }
   const Cell& at(int i, int j) const { return const_cast<GroundMemory*>(this)->at(i, j); }
+  // Takes the storage, with the first that is learned: most robots are never told anything.
+  void prepare();
   double variance_at(const Cell& cell, double time) const;
   void learn(Cell* cell, double height, double variance, double time) const;
 

@@ -71,6 +71,11 @@ struct BoxShape {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
 };
 
+// The part [low, high] of the line p + t d inside of a box of these half lengths around the origin,
+// all in its frame, of what is given; low > high: none.
+void clip_to_box(const Eigen::Vector3d& p, const Eigen::Vector3d& d, const Eigen::Vector3d& half,
+                 double* low, double* high);
+
 // Raises the cells of `map` to the tops of the boxes above them, as seen at their centres.
 void add_boxes(const std::vector<BoxShape>& boxes, HeightMap* map);
 
