@@ -123,6 +123,7 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
       {"slope-down", [](const Draws& draws) { return slope(draws, false); }},
       {"unknown-steps", unknown_steps},
       {"blocks", blocks},
+      {"partial", partial_footholds},
       {"drive", drive},
       {"push-walking", push_walking},
       {"push-standing", push_standing},

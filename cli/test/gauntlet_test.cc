@@ -117,14 +117,15 @@ class Range {
 };
 
 TEST(Gauntlet, TheSameSeedIsTheSameTextOnEveryMachine) {
-  std::map<int, std::string> all;  // drives (1) and worlds (2) apart: they came later
+  std::map<int, std::string>
+      all;  // drives (1), worlds (2) and half footholds (3) apart: they came later
   std::set<std::string> different;
   for (const std::string& kind : gauntlet_kinds()) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const std::string text = gauntlet_scenario(kind, seed);
       EXPECT_EQ(text, gauntlet_scenario(kind, seed));
       different.insert(text.substr(text.find("terrain:")));
-      all[kind == "drive" ? 1 : kind.starts_with("goto") ? 2 : 0] += text;
+      all[kind == "drive" ? 1 : kind.starts_with("goto") ? 2 : kind == "partial" ? 3 : 0] += text;
     }
   }
   EXPECT_EQ(different.size(), 20 * gauntlet_kinds().size());
@@ -132,6 +133,7 @@ TEST(Gauntlet, TheSameSeedIsTheSameTextOnEveryMachine) {
   EXPECT_EQ(hash_of(all[0]), 0x5f94b2a5a103e6bfULL);
   EXPECT_EQ(hash_of(all[1]), 0x871326e179adc25fULL);
   EXPECT_EQ(hash_of(all[2]), 0x38638c62b9913a6bULL);
+  EXPECT_EQ(hash_of(all[3]), 0xfee805db951847c3ULL);
 }
 
 // The robot has to see its way, there is room where it starts and where it goes to, and what is
@@ -250,6 +252,50 @@ TEST(Gauntlet, FeetStandFlatOnTheGroundOfEveryFoothold) {
       }
     });
   }
+}
+
+// Half of the sole hangs over a pit, or nothing of it; toes, heel, inner and outer half alike.
+TEST(Gauntlet, PartialFootholdsCarryHalfASole) {
+  std::map<std::string, int> lost;
+  int whole = 0;
+  for_each_drawn("partial", [&](const daemon::Scenario& scenario) {
+    for (const json& step : footsteps_of(scenario)) {
+      const double out = step["side"] == "left" ? 1.0 : -1.0;
+      int carried = 0;
+      Vector3d middle = Vector3d::Zero();  // of what is not
+      constexpr int kPoints = 10;
+      for (int i = 0; i < kPoints; ++i) {
+        for (int j = 0; j < kPoints; ++j) {
+          const Vector3d in_sole(0.26 * ((i + 0.5) / kPoints - 0.5),
+                                 0.128 * ((j + 0.5) / kPoints - 0.5), 0.0);
+          const Vector3d p = Vector3d(step["x"], step["y"], step["z"]) + in_sole;
+          const double above = height_above(scenario.terrain, p);
+          EXPECT_TRUE(std::abs(above) < 1e-3 || above > 0.1) << step.dump();
+          if (above < 0.05) {
+            ++carried;
+          } else {
+            middle += in_sole;
+          }
+        }
+      }
+      if (carried == kPoints * kPoints) {
+        ++whole;
+        continue;
+      }
+      EXPECT_EQ(carried, kPoints * kPoints / 2) << step.dump();
+      const bool along = std::abs(middle.x()) > std::abs(middle.y());
+      ++lost[along ? (middle.x() > 0.0 ? "toes" : "heel")
+                   : (middle.y() * out > 0.0 ? "outer" : "inner")];
+    }
+  });
+  int partial = 0;
+  for (const char* half : {"toes", "heel", "outer", "inner"}) {
+    EXPECT_GT(lost[half], kSeeds / 3) << half;
+    partial += lost[half];
+  }
+  EXPECT_EQ(lost.size(), 4u);
+  EXPECT_GT(partial, 2 * kSeeds);
+  EXPECT_GT(whole, 4 * kSeeds);
 }
 
 TEST(Gauntlet, StairsDropsAndSlopesAreWithinTheirRanges) {

@@ -303,6 +303,7 @@ void ControlLoop::report_changes() {
     telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
                            dropped_text(pipeline_->monitor(), i, text, sizeof(text)));
   }
+  report_feet();
   report_hands();
   if (d.payload.concluded) {
     telemetry_->push_event(
@@ -314,6 +315,18 @@ void ControlLoop::report_changes() {
   last_faults_ = d.faults;
   telemetry_->push_event(d.safety == SafetyState::kFault ? EventKind::kFault : EventKind::kState,
                          d.time.tick, d.time.time, state_text(*pipeline_, text, sizeof(text)));
+}
+
+// A foothold turns out not to carry as a whole; told once of each.
+void ControlLoop::report_feet() {
+  const TickData& d = pipeline_->data();
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const bool partial = d.bearing[side] < 1.0;
+    if (std::exchange(foot_partial_[side], partial) || !partial) continue;
+    char text[kMaxEventText];
+    telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
+                           bearing_text(side, d.bearing[side], text, sizeof(text)));
+  }
 }
 
 // A hand holds on or lets go; or a motion is over, and its hand is not where it should be.

@@ -99,6 +99,7 @@ class ControlLoop {
   void end(RunEnd how, const std::string& problem = "");
   void record();
   void report_changes();
+  void report_feet();
   void report_hands();
   void wait_for_next_period();
   void tell_overrun();
@@ -132,6 +133,7 @@ class ControlLoop {
   std::uint32_t last_faults_ = 0;
   JointMask last_dropped_ = 0;
   std::array<bool, GAITD_MAX_HANDS> hand_moved_{};
+  std::array<bool, GAITD_MAX_FEET> foot_partial_{};
 };
 
 }  // namespace gaitd::daemon

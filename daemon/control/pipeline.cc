@@ -222,6 +222,10 @@ bool Pipeline::control(double dt) {
   TickData& d = data_;
   gait_.update(dt, d.robot, d.plan, d.toe_off, d.adjustment);
   d.gait = gait_.state();
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    d.told[side] = gait_.told(side);
+    d.bearing[side] = gait_.contact(side).share();
+  }
   const walking::VelocityWalk& drive = gait_.velocity_walk();
   d.icp_margin =
       walking::support_region(model_, d.gait, d.robot).inside_distance(sdk::view(d.robot.icp));

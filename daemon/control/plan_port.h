@@ -42,8 +42,11 @@ struct Sight {
   bool has_truth = false;
   GaitdPose pelvis{}, true_pelvis{};
   double joints[GAITD_MAX_JOINTS]{}, true_joints[GAITD_MAX_JOINTS]{};
-  GaitdPose soles[GAITD_MAX_FEET]{};  // W, estimated
+  // Of feet that stand, as they are estimated to lie in W: what they were told to bear on, and what
+  // they do bear on.
+  GaitdFoothold told[GAITD_MAX_FEET]{}, soles[GAITD_MAX_FEET]{};
   bool stands[GAITD_MAX_FEET]{};
+  bool partial[GAITD_MAX_FEET]{};  // the two differ
 };
 
 // Where the control thread and the one that plans footsteps meet: wait-free rings. What was seen

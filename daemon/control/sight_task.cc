@@ -33,7 +33,10 @@ void SightTask::look(const GaitdModel& model, const TickData& data, std::int64_t
   std::copy_n(data.truth.joint_position, model.joint_count, sight.true_joints);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdFootState& foot = data.robot.feet[side];
-    sight.soles[side] = pose_of(foot.position, foot.orientation);
+    sight.told[side] = data.told[static_cast<std::size_t>(side)];
+    sight.soles[side] = data.gait.footholds[side];
+    sight.told[side].pose = sight.soles[side].pose = pose_of(foot.position, foot.orientation);
+    sight.partial[side] = data.bearing[static_cast<std::size_t>(side)] < 1.0;
     sight.stands[side] = data.gait.footholds[side].contact == GAITD_CONTACT_FULL &&
                          foot.normal_force > kCarries * model.total_mass * model.gravity;
   }

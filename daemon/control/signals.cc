@@ -175,6 +175,7 @@ void visit_foot(V& v, const TickData& d, int side) {
   const bool toe = d.gait.footholds[side].contact == GAITD_CONTACT_TOE;
   v.word(foot.contact == GAITD_CONTACT_NONE ? 0 : (toe ? 1 : 2), {"none", "toe", "full"}, "foot/",
          name, "/contact");
+  v.real(d.bearing[side], "", "foot/", name, "/bearing");
   const Eigen::Vector3d force =
       sdk::quaternion(foot.orientation) * sdk::view(foot.wrench).tail<3>();
   const Eigen::Vector3d moment =

@@ -104,6 +104,13 @@ std::string_view payload_text(const PayloadData& payload, const char* link, char
   return text.view();
 }
 
+std::string_view bearing_text(int side, double share, char* buffer, std::size_t size) {
+  Text text(buffer, size);
+  text.add(R"({"foot":"%s","what":"bears on %.0f %% of its foothold"})",
+           side == GAITD_LEFT ? "left" : "right", 100.0 * share);
+  return text.view();
+}
+
 std::string_view handhold_text(int hand, walking::Handholds::Change change, char* buffer,
                                std::size_t size) {
   constexpr const char* kTexts[] = {"",

@@ -22,6 +22,9 @@ const char* outcome_text(int outcome);
 std::string_view payload_text(const PayloadData& payload, const char* link, char* text,
                               std::size_t size);
 
+// How much of its foothold a foot bears on.
+std::string_view bearing_text(int side, double share, char* text, std::size_t size);
+
 // What became of a handhold.
 std::string_view handhold_text(int hand, walking::Handholds::Change change, char* text,
                                std::size_t size);

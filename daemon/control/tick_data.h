@@ -92,6 +92,9 @@ struct TickData {
   External external{};
   std::array<walking::Handholds::Change, GAITD_MAX_HANDS> handhold_changes{};  // in this tick
   GaitdGaitState gait{};
+  // What footholds were told to carry, and the share of it that their feet were seen to bear on.
+  std::array<GaitdFoothold, GAITD_MAX_FEET> told{};
+  std::array<double, GAITD_MAX_FEET> bearing{1.0, 1.0};
   GaitdMotions motions{};
   Drive drive{};
   // m, of the estimated ICP inside the support polygon, negative outside; NaN unless under control.

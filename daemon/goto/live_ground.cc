@@ -7,6 +7,7 @@
 
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/polygon.h"
+#include "gaitd/walking/support.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -22,6 +23,18 @@ constexpr double kGrazing = 0.1;
 constexpr double kExact = 1e-8;  // m^2, of a sensor without noise
 
 using terrain::HeightMap;
+
+// The loadable part, counter-clockwise, m, W.
+std::vector<Eigen::Vector3d> in_world(const GaitdFoothold& foothold) {
+  const walking::ConvexPolygon polygon = walking::polygon_of(foothold);
+  std::vector<Eigen::Vector3d> outline;
+  outline.reserve(static_cast<std::size_t>(polygon.size()));
+  for (int i = 0; i < polygon.size(); ++i) {
+    outline.push_back(
+        sdk::transform(foothold.pose, {polygon.vertex(i).x(), polygon.vertex(i).y(), 0.0}));
+  }
+  return outline;
+}
 
 // `base` with what is known of `over` in its place.
 std::shared_ptr<const HeightMap> overlaid(const HeightMap& base, const HeightMap& over) {
@@ -68,7 +81,7 @@ bool LiveGround::live() const {
 
 LiveGround::Known LiveGround::known() const {
   const std::scoped_lock lock(mutex_);
-  if (!told_ && !eye_) {
+  if (!told_ && !felt_ && !eye_) {
     known_ = {base_, memory_.revision()};
   } else if (known_.revision != memory_.revision() || known_time_ != time_) {
     // The time as well: what one asks for does not change what another one gets.
@@ -87,7 +100,7 @@ int LiveGround::put(const HeightMap& tile, bool forget) {
 
 void LiveGround::clear() {
   const std::scoped_lock lock(mutex_);
-  told_ = false;
+  told_ = felt_ = false;
   memory_.clear();
 }
 
@@ -95,8 +108,8 @@ void LiveGround::look(const Sight& sight) {
   const std::scoped_lock lock(mutex_);
   time_ = sight.time;
   memory_.move_to(sdk::view(sight.pelvis.position).head<2>());
-  if (!told_ && !eye_) return;
-  stand_on_soles(sight);
+  if (told_ || eye_) stand_on_soles(sight);
+  if (told_ || eye_ || base_) feel(sight);
   if (!eye_ || !sight.has_truth) return;
   const auto bodies = [this](const GaitdPose& pelvis, const double* joints) {
     kinematics_.update(sdk::view(pelvis.position), sdk::quaternion(pelvis.orientation),
@@ -122,34 +135,32 @@ void LiveGround::look(const Sight& sight) {
   memory_.see(seen_, kPose * kPose, sight.time);
 }
 
+void LiveGround::feel(const Sight& sight) {
+  const std::uint64_t before = memory_.revision();
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    if (!sight.stands[side] || !sight.partial[side]) continue;
+    memory_.sink(in_world(sight.told[side]), in_world(sight.soles[side]), sight.time);
+  }
+  felt_ = felt_ || memory_.revision() != before;
+}
+
 // Also between the soles: a robot that stands hides what is there.
 void LiveGround::stand_on_soles(const Sight& sight) {
   std::vector<Eigen::Vector3d> both;
   double low = INFINITY, high = -INFINITY;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     if (!sight.stands[side]) continue;
-    const GaitdFoot& foot = model_.feet[side];
-    std::vector<Eigen::Vector3d> sole;
-    for (int i = 0; i < foot.point_count; ++i) {
-      sole.push_back(
-          sdk::transform(sight.soles[side], {foot.points[i][0], foot.points[i][1], 0.0}));
-      low = std::min(low, sole.back().z());
-      high = std::max(high, sole.back().z());
+    const GaitdFoothold& foothold = sight.soles[side];
+    const std::vector<Eigen::Vector3d> sole =
+        in_world(sight.partial[side] ? foothold : walking::whole_sole(model_, side, foothold.pose));
+    for (const Eigen::Vector3d& p : sole) {
+      low = std::min(low, p.z());
+      high = std::max(high, p.z());
     }
     both.insert(both.end(), sole.begin(), sole.end());
-    walking::ConvexPolygon hull;
-    for (const Eigen::Vector3d& p : sole) hull.add(p.head<2>());
-    hull.make_hull();
-    std::vector<Eigen::Vector3d> outline;
-    for (int i = 0; i < hull.size(); ++i) {
-      const auto same = std::min_element(sole.begin(), sole.end(), [&](auto& a, auto& b) {
-        return (a.template head<2>() - hull.vertex(i)).squaredNorm() <
-               (b.template head<2>() - hull.vertex(i)).squaredNorm();
-      });
-      outline.push_back(*same);
-    }
-    memory_.stand_on(outline, kSole * kSole, sight.time);
+    memory_.stand_on(sole, kSole * kSole, sight.time);
   }
+  if (sight.partial[GAITD_LEFT] || sight.partial[GAITD_RIGHT]) return;
   if (!sight.stands[GAITD_LEFT] || !sight.stands[GAITD_RIGHT] || high - low > kLevel) return;
   walking::ConvexPolygon hull;
   for (const Eigen::Vector3d& p : both) hull.add(p.head<2>());

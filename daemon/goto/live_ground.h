@@ -37,7 +37,8 @@ class LiveGround {
   /// Forgets everything but what was known from the beginning.
   void clear();
 
-  /// Whether it changes: something sees, or has told something.
+  /// Whether it changes: something sees, or has told something. What feet find out in a map that was
+  /// known from the beginning counts for the next plan.
   bool live() const;
   struct Known {
     std::shared_ptr<const terrain::HeightMap> map;  ///< null: level ground
@@ -47,11 +48,13 @@ class LiveGround {
 
  private:
   void stand_on_soles(const Sight& sight);
+  // Of feet that stand half in the air.
+  void feel(const Sight& sight);
 
   const GaitdModel model_;
   const std::shared_ptr<const terrain::HeightMap> base_;
   mutable std::mutex mutex_;
-  bool told_ = false;
+  bool told_ = false, felt_ = false;
   double time_ = 0.0;  // s, of the last sight
   terrain::GroundMemory memory_;
   mutable Known known_;

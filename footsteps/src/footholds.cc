@@ -87,18 +87,7 @@ walking::ConvexPolygon shrunk(const std::vector<Vector3d>& part, const GaitdFoot
     for (int k = 0; k < foot.point_count; ++k) {
       reach = std::max(reach, -inwards.dot(R * Vector2d(foot.points[k])));
     }
-    walking::ConvexPolygon clipped;
-    for (int k = 0; k < result.size(); ++k) {
-      const Vector2d& p = result.vertex(k);
-      const Vector2d& q = result.vertex((k + 1) % result.size());
-      const double hp = inwards.dot(p - a) - reach;
-      const double hq = inwards.dot(q - a) - reach;
-      if (hp >= 0.0) clipped.add(p);
-      if ((hp > 0.0 && hq < 0.0) || (hp < 0.0 && hq > 0.0)) {
-        clipped.add(p + (q - p) * (hp / (hp - hq)));
-      }
-    }
-    result = clipped;
+    result = result.cut(-inwards, -inwards.dot(a) - reach);
   }
   return result;
 }

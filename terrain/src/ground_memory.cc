@@ -14,6 +14,16 @@ constexpr int kNeighbours = 5;   // of eight, that have to be known around a hol
 constexpr int kClosings = 2;     // cells, of half the width of a hole that is closed
 constexpr float kNothing = -INFINITY;
 
+// Seen from above; `outline` counter-clockwise.
+bool contains(std::span<const Eigen::Vector3d> outline, const Eigen::Vector2d& p) {
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Eigen::Vector2d a = outline[k].head<2>();
+    const Eigen::Vector2d d = outline[(k + 1) % outline.size()].head<2>() - a;
+    if (d.x() * (p.y() - a.y()) - d.y() * (p.x() - a.x()) < 0.0) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 GroundMemory::GroundMemory(const MemoryRules& rules) : rules_(rules) {
@@ -64,11 +74,13 @@ void GroundMemory::move_to(const Eigen::Vector2d& middle) {
 }
 
 double GroundMemory::variance_at(const Cell& cell, double time) const {
+  if (cell.doubts == kFelt) return static_cast<double>(cell.variance);
   const double age = std::max(0.0, time - static_cast<double>(cell.seen));
   return static_cast<double>(cell.variance) + rules_.drift * rules_.drift * age;
 }
 
 void GroundMemory::learn(Cell* cell, double height, double variance, double time) const {
+  if (cell->doubts == kFelt) return;
   const bool known = cell->variance >= 0.0F;
   const double before = known ? variance_at(*cell, time) : 0.0;
   const double off = height - static_cast<double>(cell->height);
@@ -123,8 +135,8 @@ void GroundMemory::see(std::span<const SeenPoint> points, double common, double 
   if (!touched_.empty()) ++revision_;
 }
 
-void GroundMemory::stand_on(std::span<const Eigen::Vector3d> outline, double variance,
-                            double time) {
+template <class Visit>
+void GroundMemory::visit(std::span<const Eigen::Vector3d> outline, const Visit& visit) {
   if (outline.size() < 3) return;
   prepare();
   Eigen::Vector2d low = outline[0].head<2>(), high = low;
@@ -141,24 +153,37 @@ void GroundMemory::stand_on(std::span<const Eigen::Vector3d> outline, double var
   const Eigen::Vector2i first = grid_.cell(low).cwiseMax(Eigen::Vector2i::Zero());
   const Eigen::Vector2i last =
       grid_.cell(high).cwiseMin(Eigen::Vector2i(grid_.columns - 1, grid_.rows - 1));
-  bool learned = false;
   for (int j = first.y(); j <= last.y(); ++j) {
     for (int i = first.x(); i <= last.x(); ++i) {
-      Cell& cell = at(i, j);
-      if (cell.variance >= 0.0F) continue;
       const Eigen::Vector2d p = grid_.centre(i, j);
-      bool inside = true;
-      for (std::size_t k = 0; k < outline.size() && inside; ++k) {
-        const Eigen::Vector2d a = outline[k].head<2>();
-        const Eigen::Vector2d d = outline[(k + 1) % outline.size()].head<2>() - a;
-        inside = d.x() * (p.y() - a.y()) - d.y() * (p.x() - a.x()) >= 0.0;
-      }
-      if (!inside) continue;
-      const double height = middle.z() - normal.head<2>().dot(p - middle.head<2>()) / normal.z();
-      learn(&cell, height, variance, time);
-      learned = true;
+      if (!contains(outline, p)) continue;
+      visit(at(i, j), p, middle.z() - normal.head<2>().dot(p - middle.head<2>()) / normal.z());
     }
   }
+}
+
+void GroundMemory::stand_on(std::span<const Eigen::Vector3d> outline, double variance,
+                            double time) {
+  bool learned = false;
+  visit(outline, [&](Cell& cell, const Eigen::Vector2d&, double height) {
+    if (cell.variance >= 0.0F) return;
+    learn(&cell, height, variance, time);
+    learned = true;
+  });
+  if (learned) ++revision_;
+}
+
+void GroundMemory::sink(std::span<const Eigen::Vector3d> outline,
+                        std::span<const Eigen::Vector3d> bears, double time) {
+  bool learned = false;
+  visit(outline, [&](Cell& cell, const Eigen::Vector2d& p, double height) {
+    if (cell.doubts == kFelt || contains(bears, p)) return;
+    cell.height = static_cast<float>(height - rules_.hollow);
+    cell.variance = 0.0F;
+    cell.seen = static_cast<float>(time);
+    cell.doubts = kFelt;
+    learned = true;
+  });
   if (learned) ++revision_;
 }
 

@@ -91,6 +91,37 @@ TEST(GroundMemory, WhereAFootStandsThereIsGroundUnlessSomethingElseIsKnown) {
   EXPECT_EQ(memory.revision(), revision);
 }
 
+TEST(GroundMemory, WhatDidNotCarryAFootStaysLowWhateverIsSeen) {
+  GroundMemory memory;
+  memory.move_to({0.0, 0.0});
+  for (unsigned k = 0; k < 5; ++k) memory.see(scan(0.0, k), kCommon, 0.1 * k);
+  const std::array<Eigen::Vector3d, 4> sole{
+      {{-0.3, -0.1, 0.0}, {0.0, -0.1, 0.0}, {0.0, 0.1, 0.0}, {-0.3, 0.1, 0.0}}};
+  const std::array<Eigen::Vector3d, 4> bears{
+      {{-0.3, -0.1, 0.0}, {-0.16, -0.1, 0.0}, {-0.16, 0.1, 0.0}, {-0.3, 0.1, 0.0}}};
+  const auto before = memory.revision();
+  memory.sink(sole, bears, 0.6);
+  EXPECT_GT(memory.revision(), before);
+  const auto again = memory.revision();
+  memory.sink(sole, bears, 0.7);
+  EXPECT_EQ(memory.revision(), again) << "nothing new";
+  for (unsigned k = 0; k < 5; ++k) memory.see(scan(0.0, 10 + k), kCommon, 0.8 + 0.1 * k);
+  const HeightMap map = memory.map(200.0);  // nor is it forgotten
+  const auto height = [](const HeightMap& map, double x) {
+    const Eigen::Vector2i c = map.grid().cell({x, 0.0});
+    return map.height(c.x(), c.y());
+  };
+  EXPECT_NEAR(height(map, -0.07), -memory.rules().hollow, 1e-6);
+  EXPECT_NEAR(height(map, -0.25), 0.0, 0.01);
+  EXPECT_NEAR(height(map, 0.1), 0.0, 0.01);
+  HeightMap tile(Grid{30, 10, 0.02, {-0.3, -0.1}});
+  for (int j = 0; j < 10; ++j) {
+    for (int i = 0; i < 30; ++i) tile.set(i, j, 0.05, 1e-6);
+  }
+  memory.put(tile, false, 2.0);
+  EXPECT_NEAR(height(memory.map(2.0), -0.07), 0.05, 1e-6) << "somebody knows better";
+}
+
 TEST(GroundMemory, ATileTakesThePlaceOfWhatWasKnown) {
   GroundMemory memory;
   memory.move_to({0.0, 0.0});

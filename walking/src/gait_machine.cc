@@ -88,7 +88,8 @@ void GaitMachine::reset(const GaitdRobotState& robot) {
     GaitdPose pose;
     sdk::view(pose.position) = sdk::view(robot.feet[side].position);
     sdk::store(sdk::quaternion(robot.feet[side].orientation), pose.orientation);
-    state_.footholds[side] = on_line(model_, side, whole_sole(model_, side, pose));
+    state_.footholds[side] = told_[side] = on_line(model_, side, whole_sole(model_, side, pose));
+    contacts_[side].reset();
   }
   begin_stand();
 }
@@ -179,7 +180,7 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   const Eigen::Vector3d missed =
       sdk::view(robot.feet[side].position) - sdk::view(landed.pose.position);
   sdk::view(landed.pose.position) = sdk::view(robot.feet[side].position);
-  state_.footholds[side] = bearing_of(model_, landed);
+  state_.footholds[side] = told_[side] = bearing_of(model_, landed);
   state_.early_contact = early ? 1 : 0;
   if (!recovering_) goals_[side] = {queue_[0], true};
   queue_.pop();
@@ -273,6 +274,18 @@ void GaitMachine::adjust(const GaitdStepAdjustment& adjustment) {
   publish_footsteps();
 }
 
+void GaitMachine::feel_ground(double dt, const GaitdRobotState& robot) {
+  const double weight = model_.total_mass * model_.gravity;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    GaitdFoothold& foothold = state_.footholds[side];
+    if (foothold.contact != GAITD_CONTACT_FULL || !rolls_foot(model_, side)) {
+      contacts_[side].reset();
+    } else if (contacts_[side].update(dt, robot.feet[side], weight, told_[side], foothold)) {
+      changed();
+    }
+  }
+}
+
 void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcpPlan& plan,
                          const GaitdToeOff& toe_off, const GaitdStepAdjustment& adjustment) {
   state_.time_in_phase += dt;
@@ -286,6 +299,7 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
     const bool toe = toe_off.active != 0 && toe_off.side == side && may_roll;
     foothold.contact = toe ? GAITD_CONTACT_TOE : GAITD_CONTACT_FULL;
   }
+  feel_ground(dt, robot);
   switch (state_.phase) {
     case GAITD_PHASE_STAND:
       apply_pending_mode();

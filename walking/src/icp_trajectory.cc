@@ -22,11 +22,7 @@ Eigen::Vector2d point_in_sole(const GaitdFoothold& foothold, int side, double x_
   };
   Eigen::Vector2d point(at(e.x_min, e.x_max, x_fraction),
                         at(e.y_min, e.y_max, -side_sign(side) * inwards_fraction));
-  ConvexPolygon polygon;
-  for (int i = 0; i < foothold.polygon_count; ++i) {
-    polygon.add({foothold.contact_polygon[i][0], foothold.contact_polygon[i][1]});
-  }
-  polygon.make_hull();
+  const ConvexPolygon polygon = polygon_of(foothold);
   if (polygon.inside_distance(point) < margin) point = polygon.inset(margin).closest_point(point);
   return sdk::transform(foothold.pose, {point.x(), point.y(), 0.0}).head<2>();
 }

@@ -80,24 +80,57 @@ Eigen::Vector2d ConvexPolygon::closest_point(const Eigen::Vector2d& p) const {
   return inside ? p : best;
 }
 
+ConvexPolygon ConvexPolygon::cut(const Eigen::Vector2d& normal, double offset) const {
+  // Sutherland and Hodgman.
+  ConvexPolygon result;
+  for (int i = 0; i < size_; ++i) {
+    const Eigen::Vector2d& p = vertices_[i];
+    const Eigen::Vector2d& q = vertices_[(i + 1) % size_];
+    const double hp = offset - normal.dot(p);
+    const double hq = offset - normal.dot(q);
+    if (hp >= 0.0) result.add(p);
+    if ((hp > 0.0 && hq < 0.0) || (hp < 0.0 && hq > 0.0)) {
+      result.add(p + (q - p) * (hp / (hp - hq)));
+    }
+  }
+  return result;
+}
+
+ConvexPolygon ConvexPolygon::reduced(int size) const {
+  ConvexPolygon result = *this;
+  while (result.size_ > size) {
+    int least = 0;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < result.size_; ++i) {
+      const Eigen::Vector2d& p = result.vertices_[i];
+      const Eigen::Vector2d& before = result.vertices_[(i + result.size_ - 1) % result.size_];
+      const Eigen::Vector2d& after = result.vertices_[(i + 1) % result.size_];
+      const double lost = cross(p - before, after - before);
+      if (lost >= smallest) continue;
+      smallest = lost;
+      least = i;
+    }
+    const auto at = result.vertices_.begin() + least;
+    std::copy(at + 1, result.vertices_.begin() + result.size_, at);
+    --result.size_;
+  }
+  return result;
+}
+
+double ConvexPolygon::area() const {
+  double twice = 0.0;
+  for (int i = 1; i + 1 < size_; ++i) {
+    twice += cross(vertices_[i] - vertices_[0], vertices_[i + 1] - vertices_[0]);
+  }
+  return 0.5 * twice;
+}
+
 ConvexPolygon ConvexPolygon::clipped(double margin) const {
   ConvexPolygon result = *this;
   for (int i = 0; i < size_ && !result.empty(); ++i) {
-    const Eigen::Vector2d& a = vertices_[i];
-    const Eigen::Vector2d d = (vertices_[(i + 1) % size_] - a).normalized();
-    // Clip by the half-plane left of the edge, moved inwards (Sutherland and Hodgman).
-    ConvexPolygon clipped;
-    for (int j = 0; j < result.size_; ++j) {
-      const Eigen::Vector2d& p = result.vertices_[j];
-      const Eigen::Vector2d& q = result.vertices_[(j + 1) % result.size_];
-      const double hp = cross(d, p - a) - margin;
-      const double hq = cross(d, q - a) - margin;
-      if (hp >= 0.0) clipped.add(p);
-      if ((hp > 0.0 && hq < 0.0) || (hp < 0.0 && hq > 0.0)) {
-        clipped.add(p + (q - p) * (hp / (hp - hq)));
-      }
-    }
-    result = clipped;
+    const Eigen::Vector2d along = (vertices_[(i + 1) % size_] - vertices_[i]).normalized();
+    const Eigen::Vector2d out(along.y(), -along.x());
+    result = result.cut(out, out.dot(vertices_[i]) - margin);
   }
   return result;
 }

@@ -12,6 +12,8 @@
 namespace gaitd::walking {
 namespace {
 
+// Of the width of what a foot bears on: it does not roll off nearer to a corner.
+constexpr double kToeBeside = 0.25;
 // Of a foot that its leg cannot roll: the part of its width that it is taken to bear on, and the
 // weights on it from which its CoP is believed.
 constexpr double kLineWidth = 0.15;
@@ -27,10 +29,18 @@ Eigen::Vector2d to_world(const GaitdPose& pose, double x, double y) {
 
 }  // namespace
 
+Eigen::Vector3d toe_of(const GaitdFoothold& foothold, const double (&toe_point)[3]) {
+  const SoleExtent e = sole_extent(foothold);
+  const double beside = kToeBeside * (e.y_max - e.y_min);
+  return {std::min(toe_point[0], e.x_max),
+          std::clamp(toe_point[1], e.y_min + beside, e.y_max - beside), toe_point[2]};
+}
+
 void add_foothold(const GaitdFoothold& foothold, const double (&toe_point)[3],
                   ConvexPolygon& polygon) {
   if (foothold.contact == GAITD_CONTACT_TOE) {
-    polygon.add(to_world(foothold.pose, toe_point[0], toe_point[1]));
+    const Eigen::Vector3d toe = toe_of(foothold, toe_point);
+    polygon.add(to_world(foothold.pose, toe.x(), toe.y()));
   } else if (foothold.contact == GAITD_CONTACT_FULL) {
     for (int i = 0; i < foothold.polygon_count; ++i) {
       polygon.add(
@@ -127,6 +137,15 @@ ConvexPolygon landing_region(const GaitdFootstep& footstep) {
   }
   region.make_hull();
   return region;
+}
+
+ConvexPolygon polygon_of(const GaitdFoothold& foothold) {
+  ConvexPolygon polygon;
+  for (int i = 0; i < foothold.polygon_count; ++i) {
+    polygon.add(sdk::view(foothold.contact_polygon[i]));
+  }
+  polygon.make_hull();
+  return polygon;
 }
 
 SoleExtent sole_extent(const GaitdFoothold& foothold) {

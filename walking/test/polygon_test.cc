@@ -194,5 +194,24 @@ TEST(ConvexPolygon, SweptByNothingIsItself) {
   for (int i = 0; i < p.size(); ++i) EXPECT_EQ(swept.vertex(i), p.vertex(i));
 }
 
+TEST(ConvexPolygon, ACutLeavesWhatIsNotBeyondTheLine) {
+  const ConvexPolygon half = rectangle(0.2, 0.1).cut({1.0, 0.0}, 0.03);
+  EXPECT_EQ(half.size(), 4);
+  EXPECT_NEAR(half.area(), 0.13 * 0.1, 1e-12);
+  EXPECT_EQ(rectangle(0.2, 0.1).cut({1.0, 0.0}, 0.2).size(), 4);
+  EXPECT_TRUE(rectangle(0.2, 0.1).cut({1.0, 0.0}, -0.2).empty());
+}
+
+TEST(ConvexPolygon, ReducedItLosesTheLeastAreaAndStaysInside) {
+  const ConvexPolygon whole = hull_of({{0, 0}, {1, -0.01}, {2, 0}, {2.2, 0.5}, {2, 1}, {0, 1}});
+  ASSERT_EQ(whole.size(), 6);
+  const ConvexPolygon five = whole.reduced(5);
+  ASSERT_EQ(five.size(), 5);
+  EXPECT_NEAR(whole.area() - five.area(), 0.01, 1e-12);
+  for (int i = 0; i < five.size(); ++i) EXPECT_GE(whole.inside_distance(five.vertex(i)), -1e-12);
+  EXPECT_EQ(whole.reduced(8).size(), 6);
+  EXPECT_EQ(whole.reduced(3).size(), 3);
+}
+
 }  // namespace
 }  // namespace gaitd::walking

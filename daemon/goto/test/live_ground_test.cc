@@ -13,6 +13,7 @@
 #include "daemon/goto/range_mount.h"
 #include "daemon/server/base64.h"
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
 #include "walking/test/atlas.h"
 
 namespace gaitd::daemon {
@@ -37,10 +38,12 @@ Sight standing(double time, double x = 0.0, double off = 0.0) {
   std::copy_n(robot.joint_position, GAITD_MAX_JOINTS, sight.true_joints);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     sight.stands[side] = true;
-    sdk::view(sight.soles[side].position) = sdk::view(robot.feet[side].position);
-    sight.soles[side].position[0] += x;
-    sight.soles[side].position[2] += off;
-    sight.soles[side].orientation[3] = 1.0;
+    sdk::view(sight.soles[side].pose.position) = sdk::view(robot.feet[side].position);
+    sight.soles[side].pose.position[0] += x;
+    sight.soles[side].pose.position[2] += off;
+    sight.soles[side].pose.orientation[3] = 1.0;
+    sight.soles[side] = walking::whole_sole(atlas(), side, sight.soles[side].pose);
+    sight.told[side] = sight.soles[side];
   }
   return sight;
 }
@@ -102,6 +105,49 @@ TEST(LiveGround, WithoutEyesItIsWhatWasKnownUntilSomebodyTellsMore) {
   EXPECT_NEAR(map->surface({1.2, 0.2})->height, 0.5, 1e-6);
   ground.clear();
   EXPECT_NEAR(ground.known().map->surface({0.95, 0.2})->height, 0.3, 1e-6);
+}
+
+// The left foot hangs over an edge behind the middle of its sole, which no map shows.
+Sight half_in_the_air(double time) {
+  Sight sight = standing(time);
+  for (double(&corner)[2] : sight.soles[GAITD_LEFT].contact_polygon) {
+    corner[0] = std::max(corner[0], 0.0);
+  }
+  sight.partial[GAITD_LEFT] = true;
+  return sight;
+}
+
+TEST(LiveGround, WhatDoesNotCarryAFootIsInTheMap) {
+  const GaitdPose foot = standing(0.0).soles[GAITD_LEFT].pose;
+  const Eigen::Vector2d heel(foot.position[0] - 0.08, foot.position[1]);
+  const Eigen::Vector2d toes(foot.position[0] + 0.08, foot.position[1]);
+  const double ground_z = foot.position[2];
+  const auto height = [](const LiveGround& ground, const Eigen::Vector2d& p) {
+    const auto map = ground.known().map;
+    const Eigen::Vector2i c = map->grid().cell(p);
+    return map->height(c.x(), c.y());
+  };
+
+  terrain::HeightMap base(terrain::Grid{100, 100, 0.02, {-1.0, -1.0}});
+  for (int j = 0; j < 100; ++j) {
+    for (int i = 0; i < 100; ++i) base.set(i, j, ground_z);
+  }
+  LiveGround known(atlas(), std::make_shared<const terrain::HeightMap>(base), std::nullopt);
+  known.look(half_in_the_air(0.1));
+  EXPECT_FALSE(known.live()) << "what was commanded was commanded by this map";
+  EXPECT_NEAR(height(known, toes), ground_z, 1e-6);
+  EXPECT_LT(height(known, heel), ground_z - 0.05);
+  known.clear();
+  EXPECT_NEAR(height(known, heel), ground_z, 1e-6);
+
+  LiveGround seen(atlas(), nullptr, eye_on_a_step("lidar"));
+  for (int k = 0; k < 15; ++k) seen.look(half_in_the_air(0.1 * k));
+  EXPECT_NEAR(height(seen, toes), ground_z, 0.02);
+  EXPECT_LT(height(seen, heel), ground_z - 0.05);
+
+  LiveGround level(atlas(), nullptr, std::nullopt);
+  level.look(half_in_the_air(0.1));
+  EXPECT_EQ(level.known().map, nullptr) << "nothing to learn it into";
 }
 
 class MapMethods : public ::testing::Test {

@@ -54,12 +54,6 @@ void IcpCriteria::reset() {
   state_.side = GAITD_BOTH;
 }
 
-Eigen::Vector3d IcpCriteria::toe_point(const GaitdFoothold& foothold, int side) const {
-  Eigen::Vector3d point = view(model_.feet[side].toe_point);
-  point.x() = std::min(point.x(), walking::sole_extent(foothold).x_max);
-  return point;
-}
-
 bool IcpCriteria::far_enough(const GaitdFoothold& trailing, const GaitdFoothold& leading) const {
   const double yaw = sdk::yaw_of(sdk::quaternion(trailing.pose.orientation));
   const Eigen::Vector3d d =
@@ -90,7 +84,7 @@ bool IcpCriteria::evaluate(const GaitdToeOffInput& in, const Candidate& c, Gaitd
   const GaitdFoot& foot = model_.feet[c.side];
   const GaitdFootState& measured = in.robot->feet[c.side];
   const GaitdFoothold& toe = in.gait->footholds[c.side];
-  const Eigen::Vector3d edge = toe_point(toe, c.side);
+  const Eigen::Vector3d edge = walking::toe_of(toe, foot.toe_point);
   const Eigen::Vector2d toe_world = sdk::transform(toe.pose, edge).head<2>();
   GaitdFoothold leading = c.leading;
   leading.contact = GAITD_CONTACT_FULL;
@@ -161,7 +155,9 @@ GaitdStatus IcpCriteria::process(const GaitdToeOffInput& in, GaitdToeOff& out) {
   state_.active = out.active;
   state_.side = out.active != 0 ? side : GAITD_BOTH;
   out.side = state_.side;
-  if (side != GAITD_BOTH) view(out.toe_point) = toe_point(gait.footholds[side], side);
+  if (side != GAITD_BOTH) {
+    view(out.toe_point) = walking::toe_of(gait.footholds[side], model_.feet[side].toe_point);
+  }
   return GAITD_OK;
 }
 

@@ -46,7 +46,6 @@ class IcpCriteria {
   };
   Candidate candidate(const GaitdGaitState& gait) const;
   // m, sole frame: the middle of the front edge, or of the part of the sole that stands on ground.
-  Eigen::Vector3d toe_point(const GaitdFoothold& foothold, int side) const;
   bool rolling_on(const GaitdRobotState& robot, const GaitdGaitState& gait) const;
   bool far_enough(const GaitdFoothold& trailing, const GaitdFoothold& leading) const;
   // Whether the CMP of the plan can do without the heel.

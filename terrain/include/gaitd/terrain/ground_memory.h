@@ -26,6 +26,7 @@ struct MemoryRules {
   double believable = 3.0;      // standard deviations of a height that fits to what was known
   double contradiction = 0.03;  // m, beyond these: another ground, or a wrong point
   int repeated = 2;             // scans in a row that have to say so until it is believed
+  double hollow = 0.1;          // m, below a sole, of ground that does not carry it
   double unknown = 0.03;        // m, standard deviation of what nobody should step on
 };
 
@@ -51,6 +52,12 @@ class GroundMemory {
   // (counter-clockwise, on the plane, m, W) of which nothing is known yet.
   void stand_on(std::span<const Eigen::Vector3d> outline, double variance, double time);
 
+  // What a foot has found out: its sole, `outline` (likewise), was carried inside of `bears` only.
+  // Whatever is seen there, the rest counts as lower by rules().hollow, until somebody puts
+  // something else.
+  void sink(std::span<const Eigen::Vector3d> outline, std::span<const Eigen::Vector3d> bears,
+            double time);
+
   // What another process knows: its known cells take the place of what is there, cell by cell of
   // this map. Where `forget`, its unknown ones do as well. How many cells became known.
   int put(const HeightMap& tile, bool forget, double time);
@@ -66,7 +73,7 @@ class GroundMemory {
     float height = 0.0F;  // m, W
     float variance = -1;  // m^2, at `seen`; < 0: unknown
     float seen = 0.0F;    // s
-    int doubts = 0;       // scans in a row that contradicted
+    int doubts = 0;       // scans in a row that contradicted; kFelt: nobody believes them
   };
   Cell& at(int i, int j) {
     return cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.columns) +
@@ -76,6 +83,11 @@ class GroundMemory {
   // Takes the storage, with the first that is learned: most robots are never told anything.
   void prepare();
   double variance_at(const Cell& cell, double time) const;
+  static constexpr int kFelt = -1;
+  // Cells of which the middle is inside of `outline`, seen from above, with the height of its
+  // plane. visit(cell, p, height): p (m, W) its middle, `height` (m) that of the plane.
+  template <class Visit>
+  void visit(std::span<const Eigen::Vector3d> outline, const Visit& visit);
   void learn(Cell* cell, double height, double variance, double time) const;
 
   MemoryRules rules_;

@@ -7,6 +7,7 @@
 #include "gaitd/abi/types.h"
 #include "gaitd/walking/capture_check.h"
 #include "gaitd/walking/commands.h"
+#include "gaitd/walking/foot_contact.h"
 #include "gaitd/walking/footsteps.h"
 #include "gaitd/walking/gait_scale.h"
 #include "gaitd/walking/refusal.h"
@@ -69,6 +70,9 @@ class GaitMachine {
               const GaitdToeOff& toe_off, const GaitdStepAdjustment& adjustment);
 
   const GaitdGaitState& state() const { return state_; }
+  // What a foothold was told to carry, and what the foot has found out of that.
+  const GaitdFoothold& told(int side) const { return told_[side]; }
+  const FootContact& contact(int side) const { return contacts_[side]; }
   // Swing: where the swing foot left the ground (W).
   const GaitdPose& lift_off() const { return lift_off_; }
   bool walking() const { return state_.phase != GAITD_PHASE_STAND; }
@@ -85,6 +89,8 @@ class GaitMachine {
   void time_step(const GaitdRobotState& robot);
   void begin_swing(const GaitdRobotState& robot);
   void begin_stand();
+  // Footholds carry what their feet are seen to bear on.
+  void feel_ground(double dt, const GaitdRobotState& robot);
   bool has_landed(double dt, const GaitdFootState& foot);
   void touch_down(const GaitdRobotState& robot, bool early);
   void apply_pending_mode();
@@ -149,6 +155,8 @@ class GaitMachine {
   Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();        // m, of the current swing's foothold
   Eigen::Vector3d path_offset_ = Eigen::Vector3d::Zero();  // m, of the next foothold after it
   double time_shift_ = 0.0;                                // s, of the current phase
+  std::array<FootContact, GAITD_MAX_FEET> contacts_{};
+  std::array<GaitdFoothold, GAITD_MAX_FEET> told_{};
   StepTiming timing_;
   TurnReach turn_reach_;
   SwingLimits swing_limits_;

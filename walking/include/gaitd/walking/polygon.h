@@ -31,6 +31,11 @@ class ConvexPolygon {
   // The polygon with every edge moved inwards by `margin` (m), or, where that leaves nothing, by
   // nearly as much as leaves something: of a narrow sole its line.
   ConvexPolygon inset(double margin) const;
+  // What of it is not beyond the line of all p with normal . p = offset (m); `normal` of length 1.
+  ConvexPolygon cut(const Eigen::Vector2d& normal, double offset) const;
+  // With at most `size` >= 3 vertices: those go first that take the least area with them.
+  ConvexPolygon reduced(int size) const;
+  double area() const;  // m^2
   // All places that the polygon covers on its way along `way` (m): its sum with a segment. Of a
   // polygon with at most kCapacity - 2 vertices.
   ConvexPolygon swept(const Eigen::Vector2d& way) const;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include "gaitd/abi/plugin.h"
+#include "gaitd/walking/flat_sole.h"
 
 namespace gaitd::walking {
 
@@ -36,8 +36,7 @@ class SoleRest {
   Eigen::Vector2d bearing_point(const Eigen::Vector2d& p) const;
 
  private:
-  Eigen::Quaterniond flat_ = Eigen::Quaterniond::Identity();  // sole in W
-  double time_loaded_ = 0.0;                                  // s
+  FlatSole lie_;
   double share_ = 0.0;
   Eigen::Vector3d way_back_ = Eigen::Vector3d::Zero();
   Eigen::Vector2d pivot_ = Eigen::Vector2d::Zero();

@@ -6,6 +6,10 @@
 
 namespace gaitd::walking {
 
+// m, axes of the sole: the point about which a foot rolls off `foothold`; that of the whole sole is
+// `toe_point`.
+Eigen::Vector3d toe_of(const GaitdFoothold& foothold, const double (&toe_point)[3]);
+
 // Part of the sole that a foothold may load, in W, seen from above. In toe contact only the toe
 // point; nothing when the foot is in the air.
 void add_foothold(const GaitdFoothold& foothold, const double (&toe_point)[3],
@@ -47,6 +51,8 @@ double bearing_line(const GaitdModel& model, int side, const GaitdFootState& foo
 // Where the footstep may land, in W, seen from above; empty: anywhere.
 ConvexPolygon landing_region(const GaitdFootstep& footstep);
 
+// The loadable part of a foothold in the sole frame (m).
+ConvexPolygon polygon_of(const GaitdFoothold& foothold);
 // Extent of the loadable part of a foothold in the sole frame (m).
 struct SoleExtent {
   double x_min, x_max, y_min, y_max;

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaitd/walking/foot_contact.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
+
+namespace gaitd::walking {
+namespace {
+
+constexpr double kLifted = 0.02;    // weights: the foot comes down anew
+constexpr double kTipped = 0.028;   // rad, of a sole that tips over an edge
+constexpr double kReturn = 0.1;     // rad/s, with which one comes back that needs no help
+constexpr double kCopTime = 0.008;  // s, time constant of the CoP on the edge
+// m, from the edge to what is relied on: the load turns the foot back with this lever.
+constexpr double kLever = 0.005;
+// Of the foothold, a loss that counts: a foot that tips over its own edge has its CoP somewhat
+// inside. And one more, of which the edge is known.
+constexpr double kLost = 0.15;
+constexpr double kLostMore = 0.03;
+constexpr double kRemains = 0.02;  // m, of a sole, however its CoP is measured
+// m and s, of a CoP that is where nothing should carry: it does carry after all.
+constexpr double kBeyond = 0.015;
+constexpr double kBeyondTime = 0.03;
+
+}  // namespace
+
+void FootContact::reset() {
+  lie_.reset();
+  share_ = 1.0;
+  pressed_ = false;
+  time_beyond_ = 0.0;
+}
+
+ConvexPolygon FootContact::bearing(const ConvexPolygon& sole, const Eigen::Vector2d& tilt) const {
+  const Eigen::Vector2d down = Eigen::Vector2d(tilt.y(), -tilt.x()).normalized();
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < sole.size(); ++i) least = std::min(least, down.dot(sole.vertex(i)));
+  return sole.cut(down, std::max(down.dot(cop_) - kLever, least + kRemains));
+}
+
+bool FootContact::update(double dt, const GaitdFootState& foot, double weight,
+                         const GaitdFoothold& told, GaitdFoothold& foothold) {
+  if (foot.wrench[5] < kLifted * weight) {
+    lie_.reset();
+    pressed_ = false;
+  }
+  lie_.update(dt, foot, foothold, weight);
+  if (!lie_.loaded() || foot.cop_valid == 0) return false;
+  const Eigen::Vector2d cop = sdk::view(foot.cop);
+  cop_ += (pressed_ ? std::min(1.0, dt / kCopTime) : 1.0) * (cop - cop_);
+  pressed_ = true;
+  if (!lie_.settled()) return false;
+  const ConvexPolygon& sole = lie_.sole();
+  ConvexPolygon now = sole;
+  const Eigen::Vector2d tilt = lie_.tilt(foot);
+  // A sole may also come to lie on ground that is tilted, or land tilted on flat ground: it tips
+  // over an edge where it leaves both how it lay and how it was told to lie.
+  const Eigen::Vector2d off = sdk::log_so3(sdk::quaternion(foothold.pose.orientation).conjugate() *
+                                           sdk::quaternion(foot.orientation))
+                                  .head<2>();
+  const bool tipped = tilt.norm() > kTipped && off.dot(tilt) > kTipped * tilt.norm();
+  const bool returns = lie_.rate(foot).dot(tilt) < -kReturn * tilt.norm();
+  const double whole = polygon_of(told).area();
+  if (tipped && !returns) {
+    const ConvexPolygon left = bearing(sole, tilt);
+    const double lost = sole.area() - left.area();
+    if (lost > (share_ < 1.0 ? kLostMore : kLost) * whole) now = left;
+  }
+  const bool beyond = share_ < 1.0 && lie_.still() && sole.inside_distance(cop_) < -kBeyond;
+  time_beyond_ = beyond ? time_beyond_ + dt : 0.0;
+  if (time_beyond_ > kBeyondTime) {
+    now.add(polygon_of(told).closest_point(cop_));
+    now.make_hull();
+  }
+  const double area = now.area();
+  if (area == sole.area() || now.size() < 3) return false;
+  now = now.reduced(GAITD_MAX_FOOT_POINTS);
+  share_ = std::min(1.0, area / whole);
+  foothold.polygon_count = now.size();
+  for (int i = 0; i < now.size(); ++i) sdk::view(foothold.contact_polygon[i]) = now.vertex(i);
+  return true;
+}
+
+}  // namespace gaitd::walking
