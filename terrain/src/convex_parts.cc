@@ -3,7 +3,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -19,12 +18,35 @@ constexpr double kOnEdge = 1e-9;  // cells
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
+// The first and the last cell of every column, from left to right, upwards: no others are extreme
+// in any direction.
+Cells ends_of_columns(const Cells& cells) {
+  int left = std::numeric_limits<int>::max(), right = std::numeric_limits<int>::min();
+  for (const Vector2i& cell : cells) {
+    left = std::min(left, cell.x());
+    right = std::max(right, cell.x());
+  }
+  struct Ends {
+    int low = std::numeric_limits<int>::max(), high = std::numeric_limits<int>::min();
+  };
+  std::vector<Ends> columns(cells.empty() ? 0 : static_cast<std::size_t>(right - left + 1));
+  for (const Vector2i& cell : cells) {
+    Ends& ends = columns[static_cast<std::size_t>(cell.x() - left)];
+    ends.low = std::min(ends.low, cell.y());
+    ends.high = std::max(ends.high, cell.y());
+  }
+  Cells result;
+  for (const Ends& ends : columns) {
+    const int x = left + static_cast<int>(&ends - columns.data());
+    if (ends.low <= ends.high) result.emplace_back(x, ends.low);
+    if (ends.low < ends.high) result.emplace_back(x, ends.high);
+  }
+  return result;
+}
+
 // Andrew's monotone chain.
 CellPolygon hull_of(const Cells& cells) {
-  Cells sorted = cells;
-  std::sort(sorted.begin(), sorted.end(), [](const Vector2i& a, const Vector2i& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
+  const Cells sorted = ends_of_columns(cells);
   CellPolygon hull;
   const auto add = [&hull](const Vector2i& cell, std::size_t kept) {
     const Vector2d p = cell.cast<double>();
@@ -65,13 +87,6 @@ double area_of(const CellPolygon& p) {
   return 0.5 * twice;
 }
 
-bool is_inside(const CellPolygon& p, const Vector2d& q) {
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    if (cross(p[(i + 1) % p.size()] - p[i], q - p[i]) < -kOnEdge) return false;
-  }
-  return true;
-}
-
 // Cells in the polygon that do not belong.
 Cells strangers_in(const CellPolygon& polygon, const std::function<bool(int i, int j)>& belongs) {
   Vector2d low = polygon[0], high = polygon[0];
@@ -79,10 +94,23 @@ Cells strangers_in(const CellPolygon& polygon, const std::function<bool(int i, i
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
+  struct Edge {
+    Vector2d start, way;
+  };
+  std::vector<Edge> edges;
+  edges.reserve(polygon.size());
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    edges.push_back({polygon[i], polygon[(i + 1) % polygon.size()] - polygon[i]});
+  }
+  const auto is_inside = [&edges](const Vector2d& q) {
+    return std::all_of(edges.begin(), edges.end(), [&q](const Edge& edge) {
+      return cross(edge.way, q - edge.start) >= -kOnEdge;
+    });
+  };
   Cells strangers;
   for (int j = static_cast<int>(low.y()); j <= static_cast<int>(high.y()); ++j) {
     for (int i = static_cast<int>(low.x()); i <= static_cast<int>(high.x()); ++i) {
-      if (!belongs(i, j) && is_inside(polygon, Vector2d(i, j))) strangers.emplace_back(i, j);
+      if (!belongs(i, j) && is_inside(Vector2d(i, j))) strangers.emplace_back(i, j);
     }
   }
   return strangers;
@@ -106,21 +134,24 @@ Cut best_cut(const Cells& cells, const Cells& strangers) {
   }
   const Eigen::Matrix2d axes =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvectors();
+  const Cells extreme = ends_of_columns(strangers);
   Cut best;
   for (const Vector2d& axis :
        {Vector2d(1, 0), Vector2d(0, 1), Vector2d(axes.col(0)), Vector2d(axes.col(1))}) {
-    for (const double sign : {1.0, -1.0}) {
-      const Vector2d direction = sign * axis;
-      double first = std::numeric_limits<double>::infinity();
-      for (const Vector2i& cell : strangers) {
-        first = std::min(first, direction.dot(cell.cast<double>()));
-      }
-      const auto clean = static_cast<std::size_t>(
-          std::count_if(cells.begin(), cells.end(), [&](const Vector2i& cell) {
-            return direction.dot(cell.cast<double>()) < first - kOnEdge;
-          }));
-      if (clean > best.clean) best = {direction, first - kOnEdge, clean};
+    double first = std::numeric_limits<double>::infinity(), last = -first;
+    for (const Vector2i& cell : extreme) {
+      const double place = axis.dot(cell.cast<double>());
+      first = std::min(first, place);
+      last = std::max(last, place);
     }
+    std::size_t before = 0, behind = 0;
+    for (const Vector2i& cell : cells) {
+      const double place = axis.dot(cell.cast<double>());
+      before += place < first - kOnEdge ? 1 : 0;
+      behind += place > last + kOnEdge ? 1 : 0;
+    }
+    if (before > best.clean) best = {axis, first - kOnEdge, before};
+    if (behind > best.clean) best = {-axis, -last - kOnEdge, behind};
   }
   if (best.clean == 0) return {axes.col(1), axes.col(1).dot(mean), 0};
   return best;

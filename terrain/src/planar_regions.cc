@@ -57,8 +57,12 @@ class Growing {
     result_.labels.assign(std::size_t{1} * grid_.columns * grid_.rows, -1);
     smooth_.assign(result_.labels.size(), 0);
     normals_.assign(result_.labels.size(), Vector3d::UnitZ());
+    heights_.reserve(result_.labels.size());
     for (int j = 0; j < grid_.rows; ++j) {
-      for (int i = 0; i < grid_.columns; ++i) look_around(i, j);
+      for (int i = 0; i < grid_.columns; ++i) heights_.push_back(map.height(i, j));
+    }
+    for (int j = kWindow; j < grid_.rows - kWindow; ++j) {
+      for (int i = kWindow; i < grid_.columns - kWindow; ++i) look_around(i, j);
     }
   }
 
@@ -76,29 +80,27 @@ class Growing {
   int& label(int i, int j) { return result_.labels[index(i, j)]; }
 
   void look_around(int i, int j) {
-    if (!grid_.contains(i - kWindow, j - kWindow) || !grid_.contains(i + kWindow, j + kWindow)) {
-      return;
-    }
     // Least squares over a square, whose moments are known.
     constexpr int kSide = 2 * kWindow + 1;
     constexpr double kMoment = kSide * kWindow * (kWindow + 1) * kSide / 3.0;
     Plane plane;
     plane.at = Eigen::Vector2d(i, j);
     for (int v = -kWindow; v <= kWindow; ++v) {
-      for (int u = -kWindow; u <= kWindow; ++u) {
-        const double height = map_.height(i + u, j + v);
-        if (!(height == height)) return;
-        plane.height += height / (kSide * kSide);
-        plane.slope += height / kMoment * Eigen::Vector2d(u, v);
+      const double* row = heights_.data() + index(i - kWindow, j + v);
+      for (int u = 0; u < kSide; ++u) {
+        plane.height += row[u] / (kSide * kSide);
+        plane.slope += row[u] / kMoment * Eigen::Vector2d(u - kWindow, v);
       }
     }
+    if (!(plane.height == plane.height)) return;  // something is unknown
     for (int v = j - kWindow; v <= j + kWindow; ++v) {
-      for (int u = i - kWindow; u <= i + kWindow; ++u) {
-        if (std::abs(map_.height(u, v) - plane.z(u, v)) > rules_.roughness) return;
+      const double* row = heights_.data() + index(i - kWindow, v);
+      for (int u = 0; u < kSide; ++u) {
+        if (std::abs(row[u] - plane.z(i - kWindow + u, v)) > rules_.roughness) return;
       }
     }
     normals_[index(i, j)] = plane.normal(grid_.resolution);
-    smooth_[index(i, j)] = normals_[index(i, j)].z() > std::cos(rules_.max_slope) ? 1 : 0;
+    smooth_[index(i, j)] = normals_[index(i, j)].z() > least_upright_ ? 1 : 0;
   }
 
   // Cells at the rims, where normals cannot be told, are taken by their distance alone.
@@ -106,7 +108,7 @@ class Growing {
     const int i = cell.x(), j = cell.y();
     if (!map_.known(i, j)) return false;
     if (std::abs(map_.height(i, j) - plane.z(i, j)) * normal.z() > rules_.distance) return false;
-    return smooth_[index(i, j)] == 0 || normals_[index(i, j)].dot(normal) > std::cos(rules_.angle);
+    return smooth_[index(i, j)] == 0 || normals_[index(i, j)].dot(normal) > least_alike_;
   }
 
   void grow(const Vector2i& seed) {
@@ -180,7 +182,10 @@ class Growing {
   const HeightMap& map_;
   const Grid grid_;
   const RegionRules rules_;
+  const double least_upright_ = std::cos(rules_.max_slope);
+  const double least_alike_ = std::cos(rules_.angle);
   PlanarRegions result_;
+  std::vector<double> heights_;  // m, by cell; NaN: unknown
   std::vector<char> smooth_;
   std::vector<Vector3d> normals_;
 };

@@ -14,15 +14,16 @@ constexpr double kLifted = 0.02;    // weights: the foot comes down anew
 constexpr double kTipped = 0.028;   // rad, of a sole that tips over an edge
 constexpr double kReturn = 0.1;     // rad/s, with which one comes back that needs no help
 constexpr double kCopTime = 0.008;  // s, time constant of the CoP on the edge
-// m, from the edge to what is relied on: the load turns the foot back with this lever.
-constexpr double kLever = 0.005;
 // Of the foothold, a loss that counts: a foot that tips over its own edge has its CoP somewhat
 // inside. And one more, of which the edge is known.
 constexpr double kLost = 0.15;
 constexpr double kLostMore = 0.03;
-constexpr double kRemains = 0.02;  // m, of a sole, however its CoP is measured
-// m and s, of a CoP that is where nothing should carry: it does carry after all.
-constexpr double kBeyond = 0.015;
+// Of the width of the foothold. From the edge to what is relied on: the load turns the foot back
+// with this lever. What remains of a sole, however its CoP is measured. How far the CoP is where
+// nothing should carry when it does carry after all, and for how long (s).
+constexpr double kLever = 0.04;
+constexpr double kRemains = 0.15;
+constexpr double kBeyond = 0.12;
 constexpr double kBeyondTime = 0.03;
 
 }  // namespace
@@ -30,29 +31,30 @@ constexpr double kBeyondTime = 0.03;
 void FootContact::reset() {
   lie_.reset();
   share_ = 1.0;
-  pressed_ = false;
+  time_pressed_ = 0.0;
   time_beyond_ = 0.0;
 }
 
-ConvexPolygon FootContact::bearing(const ConvexPolygon& sole, const Eigen::Vector2d& tilt) const {
+ConvexPolygon FootContact::bearing(const ConvexPolygon& sole, double width,
+                                   const Eigen::Vector2d& tilt) const {
   const Eigen::Vector2d down = Eigen::Vector2d(tilt.y(), -tilt.x()).normalized();
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < sole.size(); ++i) least = std::min(least, down.dot(sole.vertex(i)));
-  return sole.cut(down, std::max(down.dot(cop_) - kLever, least + kRemains));
+  return sole.cut(down, std::max(down.dot(cop_) - kLever * width, least + kRemains * width));
 }
 
 bool FootContact::update(double dt, const GaitdFootState& foot, double weight,
                          const GaitdFoothold& told, GaitdFoothold& foothold) {
-  if (foot.wrench[5] < kLifted * weight) {
-    lie_.reset();
-    pressed_ = false;
-  }
+  if (foot.wrench[5] < kLifted * weight) lie_.reset();
   lie_.update(dt, foot, foothold, weight);
-  if (!lie_.loaded() || foot.cop_valid == 0) return false;
+  if (!lie_.loaded() || foot.cop_valid == 0) {
+    time_pressed_ = 0.0;
+    return false;
+  }
   const Eigen::Vector2d cop = sdk::view(foot.cop);
-  cop_ += (pressed_ ? std::min(1.0, dt / kCopTime) : 1.0) * (cop - cop_);
-  pressed_ = true;
-  if (!lie_.settled()) return false;
+  cop_ += (time_pressed_ > 0.0 ? std::min(1.0, dt / kCopTime) : 1.0) * (cop - cop_);
+  time_pressed_ += dt;
+  if (!lie_.settled() || time_pressed_ < kCopTime) return false;
   const ConvexPolygon& sole = lie_.sole();
   ConvexPolygon now = sole;
   const Eigen::Vector2d tilt = lie_.tilt(foot);
@@ -64,12 +66,14 @@ bool FootContact::update(double dt, const GaitdFootState& foot, double weight,
   const bool tipped = tilt.norm() > kTipped && off.dot(tilt) > kTipped * tilt.norm();
   const bool returns = lie_.rate(foot).dot(tilt) < -kReturn * tilt.norm();
   const double whole = polygon_of(told).area();
+  const SoleExtent extent = sole_extent(told);
+  const double width = extent.y_max - extent.y_min;  // m
   if (tipped && !returns) {
-    const ConvexPolygon left = bearing(sole, tilt);
+    const ConvexPolygon left = bearing(sole, width, tilt);
     const double lost = sole.area() - left.area();
     if (lost > (share_ < 1.0 ? kLostMore : kLost) * whole) now = left;
   }
-  const bool beyond = share_ < 1.0 && lie_.still() && sole.inside_distance(cop_) < -kBeyond;
+  const bool beyond = share_ < 1.0 && lie_.still() && sole.inside_distance(cop_) < -kBeyond * width;
   time_beyond_ = beyond ? time_beyond_ + dt : 0.0;
   if (time_beyond_ > kBeyondTime) {
     now.add(polygon_of(told).closest_point(cop_));

@@ -27,13 +27,13 @@ class FootContact {
   double share() const { return share_; }
 
  private:
-  // Part of `sole` that a foot tipping to where `tilt` points still bears on.
-  ConvexPolygon bearing(const ConvexPolygon& sole, const Eigen::Vector2d& tilt) const;
+  // Part of `sole`, of a foothold of `width` (m), that a foot that is tipping by `tilt` bears on.
+  ConvexPolygon bearing(const ConvexPolygon& sole, double width, const Eigen::Vector2d& tilt) const;
 
   FlatSole lie_;
   double share_ = 1.0;
   Eigen::Vector2d cop_ = Eigen::Vector2d::Zero();  // m, axes of the sole, filtered
-  bool pressed_ = false;                           // cop_ is one
+  double time_pressed_ = 0.0;                      // s, for which it has been measured
   double time_beyond_ = 0.0;                       // s, of a CoP where nothing should carry
 };
 
