@@ -2,7 +2,6 @@
 #include "gaitd/walking/foot_contact.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
@@ -12,17 +11,19 @@ namespace {
 
 constexpr double kLifted = 0.02;    // weights: the foot comes down anew
 constexpr double kTipped = 0.028;   // rad, of a sole that tips over an edge
+constexpr double kAsTold = 0.06;    // rad, within which a sole lies as it was told
 constexpr double kReturn = 0.1;     // rad/s, with which one comes back that needs no help
 constexpr double kCopTime = 0.008;  // s, time constant of the CoP on the edge
 // Of the foothold, a loss that counts: a foot that tips over its own edge has its CoP somewhat
 // inside. And one more, of which the edge is known.
-constexpr double kLost = 0.15;
+constexpr double kLost = 0.3;
 constexpr double kLostMore = 0.03;
+// Of the foothold: on less a foot is better left to tip until it lies on something.
+constexpr double kRemains = 0.3;
 // Of the width of the foothold. From the edge to what is relied on: the load turns the foot back
-// with this lever. What remains of a sole, however its CoP is measured. How far the CoP is where
+// with this lever. How far the CoP is where
 // nothing should carry when it does carry after all, and for how long (s).
 constexpr double kLever = 0.04;
-constexpr double kRemains = 0.15;
 constexpr double kBeyond = 0.12;
 constexpr double kBeyondTime = 0.03;
 
@@ -38,15 +39,17 @@ void FootContact::reset() {
 ConvexPolygon FootContact::bearing(const ConvexPolygon& sole, double width,
                                    const Eigen::Vector2d& tilt) const {
   const Eigen::Vector2d down = Eigen::Vector2d(tilt.y(), -tilt.x()).normalized();
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < sole.size(); ++i) least = std::min(least, down.dot(sole.vertex(i)));
-  return sole.cut(down, std::max(down.dot(cop_) - kLever * width, least + kRemains * width));
+  return sole.cut(down, down.dot(cop_) - kLever * width);
 }
 
 bool FootContact::update(double dt, const GaitdFootState& foot, double weight,
                          const GaitdFoothold& told, GaitdFoothold& foothold) {
   if (foot.wrench[5] < kLifted * weight) lie_.reset();
   lie_.update(dt, foot, foothold, weight);
+  const Eigen::Vector2d off = sdk::log_so3(sdk::quaternion(foothold.pose.orientation).conjugate() *
+                                           sdk::quaternion(foot.orientation))
+                                  .head<2>();
+  if (!lie_.settled()) as_told_ = off.norm() < kAsTold;
   if (!lie_.loaded() || foot.cop_valid == 0) {
     time_pressed_ = 0.0;
     return false;
@@ -54,15 +57,12 @@ bool FootContact::update(double dt, const GaitdFootState& foot, double weight,
   const Eigen::Vector2d cop = sdk::view(foot.cop);
   cop_ += (time_pressed_ > 0.0 ? std::min(1.0, dt / kCopTime) : 1.0) * (cop - cop_);
   time_pressed_ += dt;
-  if (!lie_.settled() || time_pressed_ < kCopTime) return false;
+  // A sole that has not come to lie as it was told stands on ground that is not as it was told
+  // either: tilted, or with an edge right there, and it is better left to find its rest.
+  if (!lie_.settled() || !as_told_ || time_pressed_ < kCopTime) return false;
   const ConvexPolygon& sole = lie_.sole();
   ConvexPolygon now = sole;
   const Eigen::Vector2d tilt = lie_.tilt(foot);
-  // A sole may also come to lie on ground that is tilted, or land tilted on flat ground: it tips
-  // over an edge where it leaves both how it lay and how it was told to lie.
-  const Eigen::Vector2d off = sdk::log_so3(sdk::quaternion(foothold.pose.orientation).conjugate() *
-                                           sdk::quaternion(foot.orientation))
-                                  .head<2>();
   const bool tipped = tilt.norm() > kTipped && off.dot(tilt) > kTipped * tilt.norm();
   const bool returns = lie_.rate(foot).dot(tilt) < -kReturn * tilt.norm();
   const double whole = polygon_of(told).area();
@@ -71,7 +71,8 @@ bool FootContact::update(double dt, const GaitdFootState& foot, double weight,
   if (tipped && !returns) {
     const ConvexPolygon left = bearing(sole, width, tilt);
     const double lost = sole.area() - left.area();
-    if (lost > (share_ < 1.0 ? kLostMore : kLost) * whole) now = left;
+    const bool counts = lost > (share_ < 1.0 ? kLostMore : kLost) * whole;
+    if (counts && left.area() >= kRemains * whole) now = left;
   }
   const bool beyond = share_ < 1.0 && lie_.still() && sole.inside_distance(cop_) < -kBeyond * width;
   time_beyond_ = beyond ? time_beyond_ + dt : 0.0;

@@ -33,6 +33,7 @@ class FootContact {
   FlatSole lie_;
   double share_ = 1.0;
   Eigen::Vector2d cop_ = Eigen::Vector2d::Zero();  // m, axes of the sole, filtered
+  bool as_told_ = false;                           // it came to lie as it was told
   double time_pressed_ = 0.0;                      // s, for which it has been measured
   double time_beyond_ = 0.0;                       // s, of a CoP where nothing should carry
 };
