@@ -37,8 +37,8 @@ class LiveGround {
   /// Forgets everything but what was known from the beginning.
   void clear();
 
-  /// Whether it changes: something sees, or has told something. What feet find out in a map that was
-  /// known from the beginning counts for the next plan.
+  /// Whether it changes: something sees, or has told something. What feet find out in a map that
+  /// was known from the beginning counts for the next plan.
   bool live() const;
   struct Known {
     std::shared_ptr<const terrain::HeightMap> map;  ///< null: level ground

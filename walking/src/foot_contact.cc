@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLifted = 0.02;    // weights: the foot comes down anew
 constexpr double kTipped = 0.028;   // rad, of a sole that tips over an edge
-constexpr double kAsTold = 0.06;    // rad, within which a sole lies as it was told
+constexpr double kAsTold = 0.1;     // rad, within which a sole lies as it was told
 constexpr double kReturn = 0.1;     // rad/s, with which one comes back that needs no help
 constexpr double kCopTime = 0.008;  // s, time constant of the CoP on the edge
 // Of the foothold, a loss that counts: a foot that tips over its own edge has its CoP somewhat

@@ -33,7 +33,7 @@ constexpr double kReadyFor = 0.01;  // s, that it has to last: a measured ICP is
 constexpr double kHeldMargin = 0.01;
 
 // Heights of the CoM, by which ground may be off that is as it was told.
-constexpr double kAsTold = 0.015;
+constexpr double kAsTold = 0.008;
 
 // Back into the landing region of the footstep, where it has one.
 void keep_in_region(GaitdFootstep& step) {

@@ -128,9 +128,21 @@ double ConvexPolygon::area() const {
 ConvexPolygon ConvexPolygon::clipped(double margin) const {
   ConvexPolygon result = *this;
   for (int i = 0; i < size_ && !result.empty(); ++i) {
-    const Eigen::Vector2d along = (vertices_[(i + 1) % size_] - vertices_[i]).normalized();
-    const Eigen::Vector2d out(along.y(), -along.x());
-    result = result.cut(out, out.dot(vertices_[i]) - margin);
+    const Eigen::Vector2d& a = vertices_[i];
+    const Eigen::Vector2d d = (vertices_[(i + 1) % size_] - a).normalized();
+    // Clip by the half-plane left of the edge, moved inwards (Sutherland and Hodgman).
+    ConvexPolygon clipped;
+    for (int j = 0; j < result.size_; ++j) {
+      const Eigen::Vector2d& p = result.vertices_[j];
+      const Eigen::Vector2d& q = result.vertices_[(j + 1) % result.size_];
+      const double hp = cross(d, p - a) - margin;
+      const double hq = cross(d, q - a) - margin;
+      if (hp >= 0.0) clipped.add(p);
+      if ((hp > 0.0 && hq < 0.0) || (hp < 0.0 && hq > 0.0)) {
+        clipped.add(p + (q - p) * (hp / (hp - hq)));
+      }
+    }
+    result = clipped;
   }
   return result;
 }
