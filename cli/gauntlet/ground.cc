@@ -14,9 +14,13 @@ constexpr double kWidth = 2.0;        // m, of all ground, across
 constexpr double kBehind = 1.0;       // m of ground behind the robot
 constexpr double kAhead = 2.0;        // m of ground beyond the last foothold
 
-// Ground with its top at `height`, from one place to another.
+// Ground with its top at `height`, from one place to another, and as wide as between `right` and
+// `left`.
+Box ground(double from, double to, double right, double left, double height) {
+  return {0.5 * (from + to), 0.5 * (right + left), 0.5 * height, to - from, left - right, height};
+}
 Box platform(double from, double to, double height) {
-  return {0.5 * (from + to), 0.0, 0.5 * height, to - from, kWidth, height};
+  return ground(from, to, -0.5 * kWidth, 0.5 * kWidth, height);
 }
 
 class Footholds {
@@ -215,11 +219,10 @@ Story unknown_steps(const Draws& draws) {
 Story partial_footholds(const Draws& draws) {
   constexpr double kBase = 0.12;  // m, of the ground above the bottom of the pits
   constexpr double kHalfWidth = 0.5 * kWidth;
-  constexpr double kSlit = 0.02;  // m, beside a pit, that is left out
-  const auto lane = [](double from, double to, double out, double inner, double outer) {
-    return Box{0.5 * (from + to), 0.5 * out * (inner + outer),
-               0.5 * kBase,       to - from,
-               outer - inner,     kBase};
+  constexpr double kSlit = 0.02;   // m, beside a pit, that is left out
+  constexpr double kFirst = 0.32;  // m, to the first foothold
+  const auto lane = [](double from, double to, bool left, double inner, double outer) {
+    return left ? ground(from, to, inner, outer, kBase) : ground(from, to, -outer, -inner, kBase);
   };
   constexpr double kPit[] = {0.17, 0.12};   // m, of a half and around it
   constexpr double kSole[] = {0.40, 0.24};  // m, of a whole sole and around it
@@ -227,17 +230,18 @@ Story partial_footholds(const Draws& draws) {
   story.swing = draws.between("swing", 0.6, 0.8);
   story.transfer = draws.between("transfer", 0.25, 0.35);
   const double length = draws.between("length", 0.25, 0.40);
-  const int count = 9;
+  constexpr int kCount = 9;
   story.start_z = kBase;
   Footholds footholds(draws, &story);
   double beginning[] = {-kBehind, -kBehind};  // of the ground that is still to be laid, by side
-  for (int i = 0; i < count; ++i) {
-    const double x = 0.32 + length * i, y = footholds.y();
-    const double out = y > 0.0 ? 1.0 : -1.0;
-    double& from = beginning[footholds.left() ? 0 : 1];
+  for (int i = 0; i < kCount; ++i) {
+    const double x = kFirst + length * i, y = footholds.y();
+    const bool left = footholds.left();
+    const double out = left ? 1.0 : -1.0;
+    double& from = beginning[left ? 0 : 1];
     footholds.add(x, kBase);
     // Not the first one, nor where the feet come to stand.
-    if (i == 0 || i + 2 >= count || !draws.coin("partial", i)) continue;
+    if (i == 0 || i + 2 >= kCount || !draws.coin("partial", i)) continue;
     const int axis = draws.whole("axis", 0, 1, i);  // 0: heel or toe, 1: inner or outer half
     const double side = draws.sign("side", i);
     double middle[] = {x, y}, size[] = {kSole[0], kSole[1]};
@@ -246,14 +250,14 @@ Story partial_footholds(const Draws& draws) {
     const double near = middle[0] - 0.5 * size[0], far = middle[0] + 0.5 * size[0];
     const double inner = out * middle[1] - 0.5 * size[1];
     const double outer = out * middle[1] + 0.5 * size[1];
-    story.boxes.push_back(lane(from, near, out, 0.0, kHalfWidth));
-    if (inner > kSlit) story.boxes.push_back(lane(near, far, out, 0.0, inner));
-    story.boxes.push_back(lane(near, far, out, outer, kHalfWidth));
+    story.boxes.push_back(lane(from, near, left, 0.0, kHalfWidth));
+    if (inner > kSlit) story.boxes.push_back(lane(near, far, left, 0.0, inner));
+    story.boxes.push_back(lane(near, far, left, outer, kHalfWidth));
     from = far;
   }
   for (const int side : {0, 1}) {
-    const double end = 0.32 + length * (count - 1) + kAhead;
-    story.boxes.push_back(lane(beginning[side], end, side == 0 ? 1.0 : -1.0, 0.0, kHalfWidth));
+    const double end = kFirst + length * (kCount - 1) + kAhead;
+    story.boxes.push_back(lane(beginning[side], end, side == 0, 0.0, kHalfWidth));
   }
   footholds.end();
   return story;

@@ -36,10 +36,11 @@ Cells ends_of_columns(const Cells& cells) {
     ends.high = std::max(ends.high, cell.y());
   }
   Cells result;
+  int x = left;
   for (const Ends& ends : columns) {
-    const int x = left + static_cast<int>(&ends - columns.data());
     if (ends.low <= ends.high) result.emplace_back(x, ends.low);
     if (ends.low < ends.high) result.emplace_back(x, ends.high);
+    ++x;
   }
   return result;
 }

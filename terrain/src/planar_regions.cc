@@ -57,10 +57,6 @@ class Growing {
     result_.labels.assign(std::size_t{1} * grid_.columns * grid_.rows, -1);
     smooth_.assign(result_.labels.size(), 0);
     normals_.assign(result_.labels.size(), Vector3d::UnitZ());
-    heights_.reserve(result_.labels.size());
-    for (int j = 0; j < grid_.rows; ++j) {
-      for (int i = 0; i < grid_.columns; ++i) heights_.push_back(map.height(i, j));
-    }
     for (int j = kWindow; j < grid_.rows - kWindow; ++j) {
       for (int i = kWindow; i < grid_.columns - kWindow; ++i) look_around(i, j);
     }
@@ -86,17 +82,16 @@ class Growing {
     Plane plane;
     plane.at = Eigen::Vector2d(i, j);
     for (int v = -kWindow; v <= kWindow; ++v) {
-      const double* row = heights_.data() + index(i - kWindow, j + v);
-      for (int u = 0; u < kSide; ++u) {
-        plane.height += row[u] / (kSide * kSide);
-        plane.slope += row[u] / kMoment * Eigen::Vector2d(u - kWindow, v);
+      for (int u = -kWindow; u <= kWindow; ++u) {
+        const double height = map_.height(i + u, j + v);
+        plane.height += height / (kSide * kSide);
+        plane.slope += height / kMoment * Eigen::Vector2d(u, v);
       }
     }
     if (!(plane.height == plane.height)) return;  // something is unknown
     for (int v = j - kWindow; v <= j + kWindow; ++v) {
-      const double* row = heights_.data() + index(i - kWindow, v);
-      for (int u = 0; u < kSide; ++u) {
-        if (std::abs(row[u] - plane.z(i - kWindow + u, v)) > rules_.roughness) return;
+      for (int u = i - kWindow; u <= i + kWindow; ++u) {
+        if (std::abs(map_.height(u, v) - plane.z(u, v)) > rules_.roughness) return;
       }
     }
     normals_[index(i, j)] = plane.normal(grid_.resolution);
@@ -185,7 +180,6 @@ class Growing {
   const double least_upright_ = std::cos(rules_.max_slope);
   const double least_alike_ = std::cos(rules_.angle);
   PlanarRegions result_;
-  std::vector<double> heights_;  // m, by cell; NaN: unknown
   std::vector<char> smooth_;
   std::vector<Vector3d> normals_;
 };

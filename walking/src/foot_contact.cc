@@ -2,6 +2,7 @@
 #include "gaitd/walking/foot_contact.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
@@ -9,9 +10,11 @@
 namespace gaitd::walking {
 namespace {
 
-constexpr double kLifted = 0.02;    // weights: the foot comes down anew
-constexpr double kTipped = 0.028;   // rad, of a sole that tips over an edge
-constexpr double kAsTold = 0.1;     // rad, within which a sole lies as it was told
+constexpr double kLifted = 0.02;   // weights: the foot comes down anew
+constexpr double kTipped = 0.028;  // rad, of a sole that tips over an edge
+// Heights of the CoM and rad, within which a sole lies as it was told.
+constexpr double kHighAsTold = 0.008;
+constexpr double kFlatAsTold = 0.1;
 constexpr double kReturn = 0.1;     // rad/s, with which one comes back that needs no help
 constexpr double kCopTime = 0.008;  // s, time constant of the CoP on the edge
 // Of the foothold, a loss that counts: a foot that tips over its own edge has its CoP somewhat
@@ -29,6 +32,11 @@ constexpr double kBeyondTime = 0.03;
 
 }  // namespace
 
+void FootContact::land(double off) {
+  reset();
+  high_as_told_ = std::abs(off) < kHighAsTold;
+}
+
 void FootContact::reset() {
   lie_.reset();
   share_ = 1.0;
@@ -42,14 +50,18 @@ ConvexPolygon FootContact::bearing(const ConvexPolygon& sole, double width,
   return sole.cut(down, down.dot(cop_) - kLever * width);
 }
 
+// A sole that has not come to lie as it was told stands on ground that is not as it was told
+// either: higher, lower or tilted. Then nobody knows what is beside an edge, and it is better left
+// to find its rest.
 bool FootContact::update(double dt, const GaitdFootState& foot, double weight,
                          const GaitdFoothold& told, GaitdFoothold& foothold) {
+  if (!high_as_told_) return false;
   if (foot.wrench[5] < kLifted * weight) lie_.reset();
   lie_.update(dt, foot, foothold, weight);
   const Eigen::Vector2d off = sdk::log_so3(sdk::quaternion(foothold.pose.orientation).conjugate() *
                                            sdk::quaternion(foot.orientation))
                                   .head<2>();
-  if (!lie_.settled()) as_told_ = off.norm() < kAsTold;
+  if (!lie_.settled()) flat_as_told_ = off.norm() < kFlatAsTold;
   if (!lie_.loaded() || foot.cop_valid == 0) {
     time_pressed_ = 0.0;
     return false;
@@ -57,33 +69,36 @@ bool FootContact::update(double dt, const GaitdFootState& foot, double weight,
   const Eigen::Vector2d cop = sdk::view(foot.cop);
   cop_ += (time_pressed_ > 0.0 ? std::min(1.0, dt / kCopTime) : 1.0) * (cop - cop_);
   time_pressed_ += dt;
-  // A sole that has not come to lie as it was told stands on ground that is not as it was told
-  // either: tilted, or with an edge right there, and it is better left to find its rest.
-  if (!lie_.settled() || !as_told_ || time_pressed_ < kCopTime) return false;
-  const ConvexPolygon& sole = lie_.sole();
-  ConvexPolygon now = sole;
+  if (!lie_.settled() || !flat_as_told_ || time_pressed_ < kCopTime) return false;
   const Eigen::Vector2d tilt = lie_.tilt(foot);
   const bool tipped = tilt.norm() > kTipped && off.dot(tilt) > kTipped * tilt.norm();
   const bool returns = lie_.rate(foot).dot(tilt) < -kReturn * tilt.norm();
-  const double whole = polygon_of(told).area();
+  const bool tips = tipped && !returns;
+  if (!tips && share_ >= 1.0) {
+    time_beyond_ = 0.0;
+    return false;
+  }
+  const ConvexPolygon whole = polygon_of(told);
   const SoleExtent extent = sole_extent(told);
   const double width = extent.y_max - extent.y_min;  // m
-  if (tipped && !returns) {
+  const ConvexPolygon& sole = lie_.sole();
+  ConvexPolygon now = sole;
+  if (tips) {
     const ConvexPolygon left = bearing(sole, width, tilt);
     const double lost = sole.area() - left.area();
-    const bool counts = lost > (share_ < 1.0 ? kLostMore : kLost) * whole;
-    if (counts && left.area() >= kRemains * whole) now = left;
+    const bool counts = lost > (share_ < 1.0 ? kLostMore : kLost) * whole.area();
+    if (counts && left.area() >= kRemains * whole.area()) now = left;
   }
   const bool beyond = share_ < 1.0 && lie_.still() && sole.inside_distance(cop_) < -kBeyond * width;
   time_beyond_ = beyond ? time_beyond_ + dt : 0.0;
   if (time_beyond_ > kBeyondTime) {
-    now.add(polygon_of(told).closest_point(cop_));
+    now.add(whole.closest_point(cop_));
     now.make_hull();
   }
   const double area = now.area();
-  if (area == sole.area() || now.size() < 3) return false;
+  if (area == sole.area()) return false;
   now = now.reduced(GAITD_MAX_FOOT_POINTS);
-  share_ = std::min(1.0, area / whole);
+  share_ = std::min(1.0, area / whole.area());
   foothold.polygon_count = now.size();
   for (int i = 0; i < now.size(); ++i) sdk::view(foothold.contact_polygon[i]) = now.vertex(i);
   return true;

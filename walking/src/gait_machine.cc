@@ -32,9 +32,6 @@ constexpr double kReadyFor = 0.01;  // s, that it has to last: a measured ICP is
 // ICP closer than this to the edge of both feet is not held by them (m).
 constexpr double kHeldMargin = 0.01;
 
-// Heights of the CoM, by which ground may be off that is as it was told.
-constexpr double kAsTold = 0.008;
-
 // Back into the landing region of the footstep, where it has one.
 void keep_in_region(GaitdFootstep& step) {
   if (step.region_count < 3) return;
@@ -92,8 +89,7 @@ void GaitMachine::reset(const GaitdRobotState& robot) {
     sdk::view(pose.position) = sdk::view(robot.feet[side].position);
     sdk::store(sdk::quaternion(robot.feet[side].orientation), pose.orientation);
     state_.footholds[side] = told_[side] = on_line(model_, side, whole_sole(model_, side, pose));
-    contacts_[side].reset();
-    as_told_[side] = true;
+    contacts_[side].land(0.0);
   }
   begin_stand();
 }
@@ -182,7 +178,7 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   // The ground is where the foot met it: later footholds keep their heights relative to this one.
   const double height_error = robot.feet[side].position[2] - landed.pose.position[2];
   height_offset_ += height_error;
-  as_told_[side] = std::abs(height_error) < kAsTold * model_.nominal_com_height;
+  contacts_[side].land(height_error / model_.nominal_com_height);
   const Eigen::Vector3d missed =
       sdk::view(robot.feet[side].position) - sdk::view(landed.pose.position);
   sdk::view(landed.pose.position) = sdk::view(robot.feet[side].position);
@@ -284,11 +280,10 @@ void GaitMachine::feel_ground(double dt, const GaitdRobotState& robot) {
   const double weight = model_.total_mass * model_.gravity;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     GaitdFoothold& foothold = state_.footholds[side];
-    // What carries a foot that leaves does not matter any more. And where the ground is not as high
-    // as it was told, nobody knows what is beside an edge: a sole is better left to find its rest.
+    // What carries a foot that leaves does not matter any more.
     const bool leaves = state_.phase == GAITD_PHASE_TRANSFER && state_.transfer_final == 0 &&
                         state_.next_side == side;
-    if (leaves || !as_told_[side]) continue;
+    if (leaves) continue;
     if (foothold.contact != GAITD_CONTACT_FULL || !rolls_foot(model_, side)) {
       contacts_[side].reset();
     } else if (contacts_[side].update(dt, robot.feet[side], weight, told_[side], foothold)) {

@@ -19,6 +19,23 @@ Eigen::Vector2d closest_on_segment(const Eigen::Vector2d& a, const Eigen::Vector
   return a + t * d;
 }
 
+// Where the linear `height` is not negative (Sutherland and Hodgman).
+template <class Height>
+ConvexPolygon part_of(const ConvexPolygon& polygon, const Height& height) {
+  ConvexPolygon part;
+  for (int i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d& p = polygon.vertex(i);
+    const Eigen::Vector2d& q = polygon.vertex((i + 1) % polygon.size());
+    const double hp = height(p);
+    const double hq = height(q);
+    if (hp >= 0.0) part.add(p);
+    if ((hp > 0.0 && hq < 0.0) || (hp < 0.0 && hq > 0.0)) {
+      part.add(p + (q - p) * (hp / (hp - hq)));
+    }
+  }
+  return part;
+}
+
 }  // namespace
 
 void ConvexPolygon::make_hull() {
@@ -81,19 +98,7 @@ Eigen::Vector2d ConvexPolygon::closest_point(const Eigen::Vector2d& p) const {
 }
 
 ConvexPolygon ConvexPolygon::cut(const Eigen::Vector2d& normal, double offset) const {
-  // Sutherland and Hodgman.
-  ConvexPolygon result;
-  for (int i = 0; i < size_; ++i) {
-    const Eigen::Vector2d& p = vertices_[i];
-    const Eigen::Vector2d& q = vertices_[(i + 1) % size_];
-    const double hp = offset - normal.dot(p);
-    const double hq = offset - normal.dot(q);
-    if (hp >= 0.0) result.add(p);
-    if ((hp > 0.0 && hq < 0.0) || (hp < 0.0 && hq > 0.0)) {
-      result.add(p + (q - p) * (hp / (hp - hq)));
-    }
-  }
-  return result;
+  return part_of(*this, [&](const Eigen::Vector2d& p) { return offset - normal.dot(p); });
 }
 
 ConvexPolygon ConvexPolygon::reduced(int size) const {
@@ -130,19 +135,7 @@ ConvexPolygon ConvexPolygon::clipped(double margin) const {
   for (int i = 0; i < size_ && !result.empty(); ++i) {
     const Eigen::Vector2d& a = vertices_[i];
     const Eigen::Vector2d d = (vertices_[(i + 1) % size_] - a).normalized();
-    // Clip by the half-plane left of the edge, moved inwards (Sutherland and Hodgman).
-    ConvexPolygon clipped;
-    for (int j = 0; j < result.size_; ++j) {
-      const Eigen::Vector2d& p = result.vertices_[j];
-      const Eigen::Vector2d& q = result.vertices_[(j + 1) % result.size_];
-      const double hp = cross(d, p - a) - margin;
-      const double hq = cross(d, q - a) - margin;
-      if (hp >= 0.0) clipped.add(p);
-      if ((hp > 0.0 && hq < 0.0) || (hp < 0.0 && hq > 0.0)) {
-        clipped.add(p + (q - p) * (hp / (hp - hq)));
-      }
-    }
-    result = clipped;
+    result = part_of(result, [&](const Eigen::Vector2d& p) { return cross(d, p - a) - margin; });
   }
   return result;
 }

@@ -16,6 +16,8 @@ namespace gaitd::walking {
 // 2016, section III.
 class FootContact {
  public:
+  // The foot has come down `off` heights of the CoM above or below where it was told to.
+  void land(double off);
   // The foot is in the air or rolls on purpose: what was found out is over.
   void reset();
   // One tick of `dt` seconds of a foot that should lie flat on `foothold`, whose polygon becomes
@@ -33,7 +35,8 @@ class FootContact {
   FlatSole lie_;
   double share_ = 1.0;
   Eigen::Vector2d cop_ = Eigen::Vector2d::Zero();  // m, axes of the sole, filtered
-  bool as_told_ = false;                           // it came to lie as it was told
+  bool high_as_told_ = true;                       // it came down at the height that it was told,
+  bool flat_as_told_ = false;                      // and to lie as it was told
   double time_pressed_ = 0.0;                      // s, for which it has been measured
   double time_beyond_ = 0.0;                       // s, of a CoP where nothing should carry
 };

@@ -157,7 +157,6 @@ class GaitMachine {
   double time_shift_ = 0.0;                                // s, of the current phase
   std::array<FootContact, GAITD_MAX_FEET> contacts_{};
   std::array<GaitdFoothold, GAITD_MAX_FEET> told_{};
-  std::array<bool, GAITD_MAX_FEET> as_told_{};
   StepTiming timing_;
   TurnReach turn_reach_;
   SwingLimits swing_limits_;
