@@ -16,6 +16,10 @@ constexpr double kTryAgain = 0.5;  // s, between them
 constexpr double kNotThere = 0.2;  // m, of the middle of the feet from the goal
 constexpr double kBetter = 0.5;    // steps, of the cost of a plan that leads nearer
 constexpr int kMostStale = 30;     // plans
+// What was seen on the way may make it longer, by so much more than steps cost by chance; but not
+// for ever.
+constexpr double kSetback = 1.15;
+constexpr int kMostSetbacks = 20;
 
 }  // namespace
 
@@ -168,7 +172,12 @@ GotoTask::Step GotoTask::hand_over(const walking::GaitMachine& gait, Command* ou
 
 // Whether the plans of many steps were no better than one before: it goes back and forth.
 bool GotoTask::gets_nowhere() {
-  const bool better = plan_->refusal.empty() && plan_->cost < least_cost_ - kBetter;
+  const bool found = plan_->refusal.empty();
+  if (found && plan_->cost > kSetback * last_cost_ && ++setbacks_ <= kMostSetbacks) {
+    least_cost_ = plan_->cost + 2.0 * kBetter;
+  }
+  if (found) last_cost_ = plan_->cost;
+  const bool better = found && plan_->cost < least_cost_ - kBetter;
   if (better) least_cost_ = plan_->cost;
   stale_ = better ? 0 : stale_ + 1;
   return stale_ > kMostStale;
@@ -185,8 +194,8 @@ GotoTask::Step GotoTask::all_taken() {
   }
   if (first) {
     tell_done();
-    least_cost_ = plan_->cost;
-    stale_ = 0;
+    least_cost_ = last_cost_ = plan_->cost;
+    stale_ = setbacks_ = 0;
   }
   if (!port_->live()) {
     drop();

@@ -76,6 +76,8 @@ class GotoTask {
   bool partial_ = false;     // the footsteps ahead do not lead to the goal
   int tries_ = 0;            // standing, without a way on
   double least_cost_ = 0.0;  // of the plans so far
+  double last_cost_ = 0.0;   // of the last one
+  int setbacks_ = 0;         // plans that were dearer than the one before
   int stale_ = 0;            // plans since then that were no better
   std::uint32_t step_ = 0;   // id of the one at which it was asked
   std::array<char, 256> why_{};

@@ -24,6 +24,9 @@ constexpr double kRiser = 0.03;       // m, by which it is too high beside the s
 // Half of what a robot is wide, pelvis heights: its legs, and its arms at its sides.
 constexpr double kLegs = 0.26;
 constexpr double kArms = 0.54;
+// Pelvis heights, from the lower foot to what is beside the legs, and beside the arms.
+constexpr double kLegClearance = 0.4;
+constexpr double kArmClearance = 0.7;
 // Steps that a foothold is worse by: with edges all around it, as rough as allowed, as steep as
 // allowed.
 constexpr double kEdgeCost = 3.0;
@@ -223,12 +226,12 @@ double Footholds::highest_between(const GaitdPose& from, const GaitdPose& to) co
   return highest;
 }
 
-double Footholds::highest_near_legs(const Vector2d& p) const {
-  return map_ ? look_up(near_legs_, map_->grid(), p) : -INFINITY;
-}
-
-double Footholds::highest_near_arms(const Vector2d& p) const {
-  return map_ ? look_up(near_arms_, map_->grid(), p) : -INFINITY;
+bool Footholds::body_fits(const Vector2d& middle, double lower) const {
+  if (!map_) return true;
+  const double unit = model_.nominal_pelvis_height;
+  const terrain::Grid& grid = map_->grid();
+  return look_up(near_legs_, grid, middle) - lower <= kLegClearance * unit &&
+         look_up(near_arms_, grid, middle) - lower <= kArmClearance * unit;
 }
 
 // From the convex part in which the foothold is furthest from the edge. `free`: from any edge.

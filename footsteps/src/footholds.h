@@ -50,9 +50,9 @@ class Footholds {
   // m, W: the highest ground within the width of a foot of the way of a sole from `from` to `to`.
   // -infinity: nothing is known to be there.
   double highest_between(const GaitdPose& from, const GaitdPose& to) const;
-  // m, W: the highest ground around `p` as far as the legs reach to the side, or the arms.
-  double highest_near_legs(const Eigen::Vector2d& p) const;
-  double highest_near_arms(const Eigen::Vector2d& p) const;
+  // Whether nothing around `middle`, between the feet, is as high as the legs, or the arms, pass
+  // above the lower foot, which stands at height `lower` (m, W).
+  bool body_fits(const Eigen::Vector2d& middle, double lower) const;
 
   // Where the sole may be shifted and stay on the plane that it stands on; a footstep without edges
   // nearby gets none.

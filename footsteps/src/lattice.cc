@@ -21,12 +21,7 @@ using walking::Gait;
 using walking::other_side;
 using walking::side_sign;
 
-// Of the lattice, in pelvis heights.
-constexpr double kCell = 0.043;
-// Strides: ahead, and outwards beyond the distance of the feet in the nominal posture; pelvis
-// heights.
-constexpr double kAhead[] = {-0.22, -0.11, 0.0, 0.11, 0.22, 0.33, 0.43, 0.54};
-constexpr double kOutwards[] = {-0.02, 0.05, 0.13, 0.22};
+constexpr double kCell = 0.043;  // pelvis heights, of the lattice
 // What a pelvis height of uneven ground costs in the estimate.
 constexpr double kUneven = 8.0;
 // By which the estimate is inflated, search by search.
@@ -34,10 +29,9 @@ constexpr double kInflations[] = {3.0, 2.0, 1.5};
 // Once there is a way: so much more is spent on a better one, over what it took.
 constexpr int kImprove = 2;
 constexpr int kLeastImprove = 6000;
-constexpr double kLongestGoal = 0.45;  // pelvis heights, of the steps to the goal itself
 
-// Where the map ends: pelvis heights, by which a foothold that is not known has to be nearer to the
-// goal for the way to lead on there; and what that way costs over one on known ground.
+// Where the map ends: pelvis heights of level way, by which a foothold that is not known has to be
+// nearer to the goal to lead on there; and what that way costs over one on known ground.
 constexpr double kLeadsOn = 0.2;
 constexpr double kBeyond = 1.5;
 constexpr double kSameEnd =
@@ -48,27 +42,16 @@ double wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 }  // namespace
 
 Lattice::Lattice(std::shared_ptr<StepMaker> steps, const PlannerOptions& options)
-    : MapPlanner(std::move(steps)), options_(options) {
+    : MapPlanner(std::move(steps)),
+      strides_(make_strides(steps_->unit(), steps_->model().nominal_foot_separation)),
+      options_(options) {
   const double unit = steps_->unit();
-  const double apart = steps_->model().nominal_foot_separation;
-  for (const double ahead : kAhead) {
-    for (const double outwards : kOutwards) {
-      for (int turn = -1; turn <= 2; ++turn) {
-        // Long steps are straight ones.
-        if (std::abs(ahead) > 0.4 && (turn != 0 || outwards > 0.15)) continue;
-        if (std::abs(turn) > 1 && std::abs(ahead) > 0.25) continue;
-        strides_.push_back({ahead * unit, apart + outwards * unit, turn,
-                            stride_cost(ahead, outwards, std::abs(turn))});
-      }
-    }
-  }
   per_metre_ = std::numeric_limits<double>::infinity();
   for (const Stride& s : strides_) {
     if (s.ahead > 0.0) per_metre_ = std::min(per_metre_, s.cost / s.ahead);
   }
   if (steps_->footholds().has_map()) {
-    way_ =
-        std::make_unique<WayEstimate>(steps_->footholds().map(), unit, per_metre_, kUneven / unit);
+    way_ = std::make_unique<WayEstimate>(steps_->footholds(), unit, per_metre_, kUneven / unit);
   }
 }
 
@@ -92,6 +75,7 @@ class Lattice::Search {
   Plan run() {
     Plan plan;
     if (!find_goal(&plan.refusal)) return plan;
+    if (lattice_.way_) lattice_.way_->lead_to({goal_.x, goal_.y});
     int budget = lattice_.options_.expansions;
     for (const double inflation : kInflations) {
       if (!search(inflation, budget)) break;
@@ -133,8 +117,15 @@ class Lattice::Search {
     const double distance = std::hypot(end.x - p.x, end.y - p.y);
     const double turn = std::abs(wrapped(end.yaw - p.yaw));
     // Each step takes one foot on, past the other one; the turn goes on meanwhile.
-    const double way = lattice_.way_ ? lattice_.way_->between({p.x, p.y}, {end.x, end.y}) : 0.0;
-    return std::max({lattice_.per_metre_ * distance, way, turn / (1.5 * kHeading)});
+    return std::max(
+        {lattice_.per_metre_ * distance, way_from(node.side, p), turn / (1.5 * kHeading)});
+  }
+
+  // Of the middle of the feet, if the other one stood beside that one.
+  double way_from(int side, const Place& sole) const {
+    if (!lattice_.way_) return 0.0;
+    const Place middle = sole_beside(sole, other_side(side), steps_.model());
+    return lattice_.way_->from({middle.x, middle.y});
   }
 
   std::uint64_t key_of(int side, int i, int j, int heading) const {
@@ -258,7 +249,8 @@ class Lattice::Search {
     const int side = other_side(node.side);
     if (goal_known_) add_goal(at, side, inflation);
     if (node.goal) return;
-    bool leads_on = false;
+    std::optional<Place> onwards;  // over ground that is not known
+    double least = way_from(node.side, node.place) - kLeadsOn * steps_.unit() * lattice_.per_metre_;
     const double outwards = side_sign(side);
     const double c = std::cos(node.place.yaw), s = std::sin(node.place.yaw);
     for (const Stride& stride : lattice_.strides_) {
@@ -279,20 +271,27 @@ class Lattice::Search {
       if (found.state == FootholdState::kGood) {
         add({side, place, key, found, at, stride.cost, false}, inflation);
       }
-      leads_on = leads_on || (found.state == FootholdState::kUnknown &&
-                              std::hypot(x, v) < distance - kLeadsOn * steps_.unit());
+      if (found.state == FootholdState::kUnknown && lattice_.options_.explore) {
+        if (const double way = way_from(side, place); way < least) {
+          least = way;
+          onwards = place;
+        }
+      }
     }
-    if (leads_on && lattice_.options_.explore && !is_start(at)) add_beyond(at, inflation);
+    if (onwards && !is_start(at)) add_beyond(at, *onwards, inflation);
   }
 
-  // The way ends here for now, and goes on over ground that is seen from here.
-  void add_beyond(int at, double inflation) {
+  // The way ends here for now, and goes on over ground that is seen from here, best by who looks
+  // there: with its back to it the robot would see no more of it.
+  void add_beyond(int at, const Place& onwards, double inflation) {
     const Node& node = nodes_[at];
     const bool known = std::any_of(exhausted_.begin(), exhausted_.end(), [&](const auto& p) {
       return std::hypot(p.x() - node.place.x, p.y() - node.place.y) < kSameEnd * steps_.unit();
     });
     if (known) return;
-    const double there = estimate(node);
+    const double towards =
+        std::atan2(onwards.y - node.place.y, onwards.x - node.place.x) - node.place.yaw;
+    const double there = estimate(node) + std::abs(wrapped(towards)) / kHeading;
     Node beyond = node;
     beyond.key = (std::uint64_t{1} << 62) + static_cast<std::uint64_t>(at);
     beyond.parent = at;
@@ -315,10 +314,7 @@ class Lattice::Search {
     const double outwards =
         (side_sign(side) * (c * dy - s * dx) - steps_.model().nominal_foot_separation) / unit;
     const double turn = side_sign(side) * wrapped(place.yaw - node.place.yaw) / kHeading;
-    if (ahead < kAhead[0] || ahead > kLongestGoal || outwards < kOutwards[0] - 0.5 * kCell ||
-        outwards > std::end(kOutwards)[-1] || turn < -1.2 || turn > 2.2) {
-      return;
-    }
+    if (!is_goal_stride(ahead, outwards, turn)) return;
     const std::uint64_t key = node.goal ? ~std::uint64_t{0} - 2
                                         : (std::uint64_t{1} << 63) + static_cast<std::uint64_t>(at);
     add({side, place, key, goal_footholds_[static_cast<std::size_t>(side)], at,
@@ -370,12 +366,7 @@ class Lattice::Search {
   bool partial_ = false;                            // best_ ends where the map does
   std::optional<std::pair<double, int>> frontier_;  // rank and node, where the map ends
 
-  struct Later {
-    bool operator()(const Queued& a, const Queued& b) const {
-      return a.rank != b.rank ? a.rank > b.rank : a.order > b.order;
-    }
-  };
-  std::priority_queue<Queued, std::vector<Queued>, Later> queue_;
+  std::priority_queue<Queued> queue_;
   std::uint32_t order_ = 0;
   std::vector<Node> nodes_;  // that were expanded
   std::unordered_set<std::uint64_t> closed_;

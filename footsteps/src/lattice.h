@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "map_planner.h"
+#include "strides.h"
 #include "tally.h"
 #include "way_estimate.h"
 
@@ -27,13 +28,6 @@ class Lattice : public MapPlanner {
             const walking::GaitParameters& parameters) override;
 
  private:
-  // From one foot to where the other one may step, in the frame of the first as if it were the
-  // right one: outwards is to the left.
-  struct Stride {
-    double ahead, outwards;  // m
-    int turn;                // bins, outwards
-    double cost;             // steps
-  };
   // Where a sole is. Index `kExact`: not on the lattice but at the start or at the goal.
   struct Node {
     int side;
@@ -50,10 +44,13 @@ class Lattice : public MapPlanner {
     double rank;
     std::uint32_t order;  // of equals the first
     Node node;
+    bool operator<(const Queued& other) const {  // it comes later
+      return rank != other.rank ? rank > other.rank : order > other.order;
+    }
   };
   class Search;
 
-  std::vector<Stride> strides_;
+  const std::vector<Stride> strides_;
   double per_metre_;                  // least cost of a stride over what it leads on
   std::unique_ptr<WayEstimate> way_;  // null: without a map
   const PlannerOptions options_;

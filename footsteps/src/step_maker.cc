@@ -27,9 +27,6 @@ constexpr double kTouches = 0.012;     // m, by which the ground may be rough wh
 constexpr double kRaise = 0.04;        // pelvis heights, by which a swing is raised at a time
 constexpr int kRaises = 6;
 constexpr int kSamples = 24;  // of a swing
-// Pelvis heights, from the lower foot to what is beside the legs, and beside the arms.
-constexpr double kLegClearance = 0.4;
-constexpr double kArmClearance = 0.7;
 
 double tilt_of(const GaitdPose& pose) {
   const Eigen::Vector3d up = sdk::quaternion(pose.orientation) * Eigen::Vector3d::UnitZ();
@@ -76,10 +73,7 @@ StepState StepMaker::make(int side, const GaitdPose& pose, const GaitdPose& stan
   const Eigen::Vector2d middle =
       0.5 * (sdk::view(pose.position) + sdk::view(stance.position)).head<2>();
   const double lower = std::min(pose.position[2], stance.position[2]);
-  if (footholds_.highest_near_legs(middle) - lower > kLegClearance * unit_ ||
-      footholds_.highest_near_arms(middle) - lower > kArmClearance * unit_) {
-    return StepState::kBody;
-  }
+  if (!footholds_.body_fits(middle, lower)) return StepState::kBody;
   if (rules_.check(*step, stance, from, 1, parameters).refused()) return StepState::kReach;
   if (even) return StepState::kGood;
   const double usual = step->swing_height;

@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
 
 namespace gaitd::footsteps {
 namespace {
@@ -10,53 +14,156 @@ namespace {
 constexpr double kCell = 0.11;   // pelvis heights
 constexpr double kAround = 0.2;  // pelvis heights, within which level ground is level
 constexpr double kLevel = 0.02;  // m
+constexpr double kBeside = 0.6;  // pelvis heights
+// Of the cost of level ground, where the body does not pass: a map may be wrong by a cell, and the
+// robot may stand there already.
+constexpr double kBlocked = 60.0;
+constexpr double kHighestStep = 0.24;  // pelvis heights
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// By cell, the most (or the least) of the cells around it.
+template <class Better>
+std::vector<double> extreme(const terrain::Grid& grid, const std::vector<double>& values,
+                            int around, Better better) {
+  const auto along = [&](const std::vector<double>& from, bool rows) {
+    std::vector<double> to = from;
+    for (int j = 0; j < grid.rows; ++j) {
+      for (int i = 0; i < grid.columns; ++i) {
+        const int at = rows ? j : i, count = rows ? grid.rows : grid.columns;
+        const int stride = rows ? grid.columns : 1;
+        const int here = j * grid.columns + i;
+        double& result = to[static_cast<std::size_t>(here)];
+        for (int k = std::max(0, at - around); k <= std::min(count - 1, at + around); ++k) {
+          const double value = from[static_cast<std::size_t>(here + (k - at) * stride)];
+          if (better(value, result)) result = value;
+        }
+      }
+    }
+    return to;
+  };
+  return along(along(values, false), true);
+}
 
 }  // namespace
 
-WayEstimate::WayEstimate(const terrain::HeightMap& map, double unit, double level, double uneven) {
-  const terrain::Grid& fine = map.grid();
+// m, from a cell to the highest or lowest of those beside it, of what is known.
+double WayEstimate::drop(const std::vector<double>& ground, int i, int j) const {
+  double most = 0.0;
+  for (const auto& [u, v] : {std::pair{i - 1, j}, {i + 1, j}, {i, j - 1}, {i, j + 1}}) {
+    const double other = grid_.contains(u, v) ? ground[index(u, v)] : kInfinity;
+    const double apart = std::abs(other - ground[index(i, j)]);
+    if (std::isfinite(apart)) most = std::max(most, apart);
+  }
+  return most;
+}
+
+WayEstimate::WayEstimate(const Footholds& footholds, double unit, double level, double uneven)
+    : level_(level), uneven_(uneven) {
+  const terrain::Grid& fine = footholds.map().grid();
   const int ratio = std::max(1, static_cast<int>(std::lround(kCell * unit / fine.resolution)));
   grid_.resolution = ratio * fine.resolution;
   grid_.origin = fine.origin;
   grid_.columns = (fine.columns + ratio - 1) / ratio;
   grid_.rows = (fine.rows + ratio - 1) / ratio;
-  std::vector<double> low(std::size_t{1} * grid_.columns * grid_.rows, INFINITY);
-  std::vector<double> high(low.size(), -INFINITY);
+  set_weights(footholds, unit);
+}
+
+void WayEstimate::set_weights(const Footholds& footholds, double unit) {
+  const terrain::HeightMap& map = footholds.map();
+  const terrain::Grid& fine = map.grid();
+  const int ratio = static_cast<int>(std::lround(grid_.resolution / fine.resolution));
+  const std::size_t count = index(0, grid_.rows);
+  std::vector<double> low(count, kInfinity), high(count, -kInfinity);
   for (int j = 0; j < fine.rows; ++j) {
     for (int i = 0; i < fine.columns; ++i) {
       if (!map.known(i, j)) continue;
-      const std::size_t at = std::size_t{1} * (j / ratio) * grid_.columns + i / ratio;
+      const std::size_t at = index(i / ratio, j / ratio);
       low[at] = std::min(low[at], map.height(i, j));
       high[at] = std::max(high[at], map.height(i, j));
     }
   }
   const int around = static_cast<int>(std::ceil(kAround * unit / grid_.resolution));
+  const std::vector<double> least = extreme(grid_, low, around, std::less<>());
+  const std::vector<double> most = extreme(grid_, high, around, std::greater<>());
+  // What the feet stand on: a gap that they step over is as high as its edges.
+  const std::vector<double> ground =
+      extreme(grid_, extreme(grid_, high, 1, std::greater<>()), 1, std::less<>());
+  const int beside = static_cast<int>(std::ceil(kBeside * unit / grid_.resolution));
+  const std::vector<double> lowest = extreme(grid_, low, beside, std::less<>());
+  weights_.resize(count);
   for (int j = 0; j < grid_.rows; ++j) {
     for (int i = 0; i < grid_.columns; ++i) {
-      double least = INFINITY, most = -INFINITY;
-      for (int v = std::max(0, j - around); v <= std::min(grid_.rows - 1, j + around); ++v) {
-        for (int u = std::max(0, i - around); u <= std::min(grid_.columns - 1, i + around); ++u) {
-          const std::size_t at = std::size_t{1} * v * grid_.columns + u;
-          least = std::min(least, low[at]);
-          most = std::max(most, high[at]);
-        }
-      }
-      weights_.push_back(most - least < kLevel ? level : uneven);
+      const std::size_t at = index(i, j);
+      const bool known = std::isfinite(ground[at]);
+      // Where nothing is known the ground is as low as what is known beside it: walls have a back.
+      const double lower = known ? ground[at] : lowest[at];
+      const bool passes = std::isinf(lower) || (footholds.body_fits(grid_.centre(i, j), lower) &&
+                                                drop(ground, i, j) < kHighestStep * unit);
+      const bool level = known && most[at] - least[at] < kLevel;
+      weights_[at] = !passes ? kBlocked * level_ : level ? level_ : uneven_;
     }
   }
 }
 
-double WayEstimate::between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
-  const double way = (b - a).norm();
-  const int count = static_cast<int>(std::ceil(way / grid_.resolution)) + 1;
-  double sum = 0.0;
-  for (int k = 0; k < count; ++k) {
-    const Eigen::Vector2i cell = grid_.cell(a + (b - a) * (k + 0.5) / count);
-    const int i = std::clamp(cell.x(), 0, grid_.columns - 1);
-    const int j = std::clamp(cell.y(), 0, grid_.rows - 1);
-    sum += weights_[std::size_t{1} * j * grid_.columns + i];
+double WayEstimate::arrival(int i, int j) const {
+  const auto cost = [&](int u, int v) {
+    return grid_.contains(u, v) ? costs_[index(u, v)] : kInfinity;
+  };
+  const double across = std::min(cost(i - 1, j), cost(i + 1, j));
+  const double along = std::min(cost(i, j - 1), cost(i, j + 1));
+  const double step = weights_[index(i, j)] * grid_.resolution;
+  const double apart = std::abs(across - along);
+  if (!(apart < step)) return std::min(across, along) + step;
+  return 0.5 * (across + along + std::sqrt(2.0 * step * step - apart * apart));
+}
+
+void WayEstimate::lead_to(const Eigen::Vector2d& goal) {
+  if (goal == goal_) return;
+  goal_ = goal;
+  costs_.assign(weights_.size(), kInfinity);
+  using Front = std::pair<double, std::size_t>;
+  std::priority_queue<Front, std::vector<Front>, std::greater<>> front;
+  const auto reach = [&](int i, int j, double cost) {
+    double& known = costs_[index(i, j)];
+    if (!(cost < known)) return;
+    known = cost;
+    front.emplace(cost, index(i, j));
+  };
+  const Eigen::Vector2i at = grid_.cell(goal);
+  const bool inside = grid_.contains(at.x(), at.y());
+  // The cells around the goal, or from beside the map all of its border.
+  for (int j = 0; j < grid_.rows; ++j) {
+    for (int i = 0; i < grid_.columns; ++i) {
+      const bool border = i == 0 || j == 0 || i == grid_.columns - 1 || j == grid_.rows - 1;
+      const bool near = std::max(std::abs(i - at.x()), std::abs(j - at.y())) <= 1;
+      if (inside ? near : border)
+        reach(i, j, (inside ? level_ : uneven_) * (grid_.centre(i, j) - goal).norm());
+    }
   }
-  return sum * way / count;
+  while (!front.empty()) {
+    const auto [cost, cell] = front.top();
+    front.pop();
+    if (cost > costs_[cell]) continue;
+    const int i = static_cast<int>(cell % static_cast<std::size_t>(grid_.columns));
+    const int j = static_cast<int>(cell / static_cast<std::size_t>(grid_.columns));
+    for (const auto& [u, v] : {std::pair{i - 1, j}, {i + 1, j}, {i, j - 1}, {i, j + 1}}) {
+      if (grid_.contains(u, v)) reach(u, v, arrival(u, v));
+    }
+  }
+}
+
+double WayEstimate::from(const Eigen::Vector2d& p) const {
+  const Eigen::Vector2d q = (p - grid_.origin) / grid_.resolution - Eigen::Vector2d::Constant(0.5);
+  const Eigen::Vector2d last(grid_.columns - 1, grid_.rows - 1);
+  const Eigen::Vector2d on = q.cwiseMax(0.0).cwiseMin(last);
+  const int i = std::min(static_cast<int>(on.x()), std::max(grid_.columns - 2, 0));
+  const int j = std::min(static_cast<int>(on.y()), std::max(grid_.rows - 2, 0));
+  const int u = std::min(i + 1, grid_.columns - 1), v = std::min(j + 1, grid_.rows - 1);
+  const double x = on.x() - i, y = on.y() - j;
+  const double cost = (1.0 - y) * ((1.0 - x) * costs_[index(i, j)] + x * costs_[index(u, j)]) +
+                      y * ((1.0 - x) * costs_[index(i, v)] + x * costs_[index(u, v)]);
+  const double aside = (q - on).norm();
+  return cost + uneven_ * aside * grid_.resolution;
 }
 
 }  // namespace gaitd::footsteps

@@ -1,27 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the straight way to a goal costs, about: for the search to know what lies ahead.
+// What the way to a goal costs, about: for the search to know what lies ahead.
 #ifndef GAITD_FOOTSTEPS_WAY_ESTIMATE_H_
 #define GAITD_FOOTSTEPS_WAY_ESTIMATE_H_
 
 #include <Eigen/Core>
 #include <vector>
 
+#include "footholds.h"
 #include "gaitd/terrain/height_map.h"
 
 namespace gaitd::footsteps {
 
-// Over a coarse grid, cheap where it is level and dear where it is not.
+// Shortest ways of the middle of the feet over a coarse grid: cheap where it is level, dear where
+// it is not or where nothing is known, and around what the body does not pass. Fast marching
+// (Sethian, A fast marching level set method for monotonically advancing fronts, PNAS 1996).
 class WayEstimate {
  public:
-  // `unit`: m, height of the pelvis. `level` and `uneven`: cost of a metre.
-  WayEstimate(const terrain::HeightMap& map, double unit, double level, double uneven);
+  // `unit`: m, height of the pelvis. `level` and `uneven`: cost of a metre. `footholds` has a map.
+  WayEstimate(const Footholds& footholds, double unit, double level, double uneven);
 
-  // Cost of the straight way; beside the map that of the nearest cells.
-  double between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const;
+  // All ways end at `goal` (m, W) from now on; it may be beside the map.
+  void lead_to(const Eigen::Vector2d& goal);
+
+  // Cost of the way from `p` (m, W) to the goal.
+  double from(const Eigen::Vector2d& p) const;
 
  private:
+  std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.columns) +
+           static_cast<std::size_t>(i);
+  }
+  double drop(const std::vector<double>& ground, int i, int j) const;
+  void set_weights(const Footholds& footholds, double unit);
+  // Cost at a cell whose neighbours have theirs, as a front reaches it.
+  double arrival(int i, int j) const;
+
   terrain::Grid grid_;
+  const double level_, uneven_;  // cost of a metre
   std::vector<double> weights_;  // by cell, per metre
+  std::vector<double> costs_;    // by cell
+  Eigen::Vector2d goal_ = Eigen::Vector2d::Constant(terrain::HeightMap::kUnknown);
 };
 
 }  // namespace gaitd::footsteps

@@ -80,9 +80,21 @@ TEST(Footholds, TheWayOfASwingIsAsHighAsWhatItPasses) {
   };
   EXPECT_NEAR(map.highest_between(pose(0.0, 0.1), pose(1.0, 0.1)), 0.12, 1e-6);
   EXPECT_NEAR(map.highest_between(pose(0.0, -0.6), pose(1.0, -0.6)), 0.0, 1e-6);
-  EXPECT_NEAR(map.highest_near_legs({0.3, 0.0}), 0.12, 1e-6);
-  EXPECT_NEAR(map.highest_near_legs({0.0, 0.0}), 0.0, 1e-6);
-  EXPECT_NEAR(map.highest_near_arms({0.0, 0.0}), 0.12, 1e-6);
+}
+
+TEST(Footholds, TheBodyIsWiderUpWhereItsArmsAre) {
+  const auto wall = [](double height) {
+    return Footholds(atlas(), field({-1, -1}, {2, 1}, [height](double x, double) {
+                       return std::abs(x - 0.5) < 0.05 ? height : 0.0;
+                     }));
+  };
+  // The legs pass beside 0.6 m at 0.45 m, and beside 0.3 m anywhere; the arms pass above 0.6 m.
+  EXPECT_TRUE(wall(0.6).body_fits({0.0, 0.0}, 0.0));
+  EXPECT_FALSE(wall(0.6).body_fits({0.3, 0.0}, 0.0));
+  EXPECT_TRUE(wall(0.3).body_fits({0.3, 0.0}, 0.0));
+  EXPECT_FALSE(wall(1.0).body_fits({0.0, 0.0}, 0.0));
+  EXPECT_TRUE(wall(1.0).body_fits({-0.2, 0.0}, 0.0));
+  EXPECT_TRUE(wall(1.0).body_fits({0.5, 0.0}, 1.0));  // on top of it
 }
 
 TEST(Footholds, TheLandingRegionKeepsTheSoleOnItsBlock) {

@@ -163,6 +163,37 @@ TEST(Lattice, AWallIsWalkedAround) {
   EXPECT_GT(furthest, 0.75) << "the arms do not pass at less than their reach";
 }
 
+// A wall that is as wide as far, with sides: the straight way ends in it.
+double dead_end(double x, double y) {
+  const bool back = std::abs(x - 2.5) < 0.1 && std::abs(y) < 1.6;
+  const bool sides = x > 0.6 && x < 2.6 && std::abs(std::abs(y) - 1.5) < 0.1;
+  return back || sides ? 1.0 : 0.0;
+}
+
+TEST(Lattice, ADeadEndIsLeft) {
+  const auto map = field({-2, -4}, {5, 4}, dead_end);
+  const auto planner = make_planner("lattice", atlas(), map);
+  const auto gait = standing_gait(1.0, 0, 0);
+  const Plan plan = planner->plan(start_of(*gait), {4, 0, 0}, gait->parameters());
+  ASSERT_EQ(plan.refusal, "");
+  EXPECT_EQ(refusal_of(gait.get(), plan), "");
+  expect_on(*map, plan);
+  expect_at(middle_of(plan), {4, 0, 0}, 1e-6);
+}
+
+TEST(Lattice, WhereTheMapEndsTheRobotLooksOn) {
+  // Around the robot a metre is known; the goal is behind it.
+  const auto map = field({-3, -3}, {3, 3},
+                         [](double x, double y) { return std::hypot(x, y) < 1.0 ? 0.0 : NAN; });
+  const auto planner = make_planner("lattice", atlas(), map, {.explore = true});
+  const auto gait = standing_gait(0, 0, 0);
+  const Plan plan = planner->plan(start_of(*gait), {-2.5, 0, {}}, gait->parameters());
+  ASSERT_EQ(plan.refusal, "");
+  EXPECT_TRUE(plan.partial);
+  const double yaw = sdk::yaw_of(sdk::quaternion(plan.footsteps.back().pose.orientation));
+  EXPECT_LT(std::abs(std::remainder(yaw - M_PI, 2.0 * M_PI)), 1.1);
+}
+
 TEST(Lattice, AGapIsSteppedOverAndABarHasTheSwingGoHigher) {
   const auto gap = field({-1, -0.5}, {3, 0.5},
                          [](double x, double) { return std::abs(x - 1.0) < 0.1 ? -2.0 : 0.0; });

@@ -64,7 +64,8 @@ class FootstepPlanner {
                                             const walking::GaitParameters& parameters) = 0;
   static constexpr double kAside = 0.08;  // m
 
-  // m: the map at the middle of the sole of `side`; nothing where it is not known.
+  // m: the map at the middle of the sole of `side`; nothing where it is not known, or where the
+  // sole does not lie on it.
   virtual std::optional<double> ground_below(int side, const GaitdPose& sole) const = 0;
 };
 

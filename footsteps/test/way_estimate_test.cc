@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "way_estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "footsteps/test/fields.h"
+
+namespace gaitd::footsteps {
+namespace {
+
+using Eigen::Vector2d;
+using testing::atlas;
+using testing::field;
+
+constexpr double kLevel = 3.0, kUneven = 9.0;  // steps per metre
+
+WayEstimate to_goal(const std::function<double(double x, double y)>& height, const Vector2d& goal) {
+  const Footholds footholds(atlas(), field({-1, -3}, {5, 3}, height));
+  WayEstimate way(footholds, atlas().nominal_pelvis_height, kLevel, kUneven);
+  way.lead_to(goal);
+  return way;
+}
+
+double level(double /*x*/, double /*y*/) { return 0.0; }
+
+TEST(WayEstimate, OnLevelGroundAWayIsAsLongAsItIsFar) {
+  const WayEstimate way = to_goal(level, {4.0, 1.0});
+  for (const Vector2d& p : {Vector2d(0, 0), Vector2d(0, 1), Vector2d(4, -2), Vector2d(2.3, 2.1)}) {
+    const double distance = (p - Vector2d(4.0, 1.0)).norm();
+    EXPECT_NEAR(way.from(p), kLevel * distance, 0.05 * kLevel * distance) << p.transpose();
+  }
+  EXPECT_LT(way.from({4.0, 1.0}), 0.1 * kLevel);
+}
+
+TEST(WayEstimate, ItLeadsAroundWhatTheBodyDoesNotPass) {
+  // A wall from y = -3 to 1. The arms of Atlas need half a metre beside it.
+  const WayEstimate way = to_goal(
+      [](double x, double y) { return std::abs(x - 2.0) < 0.1 && y < 1.0 ? 1.2 : 0.0; }, {4, 0});
+  const double around = 2.0 * std::hypot(2.0, 1.5);
+  EXPECT_GT(way.from({0, 0}), kLevel * around);
+  EXPECT_LT(way.from({0, 0}), 1.15 * kLevel * around);
+  EXPECT_LT(way.from({2.0, 2.0}), way.from({0, 0}));
+  // Somebody who stands at the wall has a way, too.
+  EXPECT_TRUE(std::isfinite(way.from({1.8, -2.0})));
+}
+
+TEST(WayEstimate, GapsAndBarsAreSteppedOver) {
+  for (const double height : {-2.0, 0.15}) {
+    const WayEstimate way = to_goal(
+        [height](double x, double) { return std::abs(x - 2.0) < 0.08 ? height : 0.0; }, {4, 0});
+    EXPECT_GT(way.from({0, 0}), 4.2 * kLevel);
+    EXPECT_LT(way.from({0, 0}), 4.0 * kLevel + 1.0 * kUneven);
+  }
+}
+
+TEST(WayEstimate, BesideTheMapAndWhereNothingIsKnownGroundIsUneven) {
+  const WayEstimate beyond = to_goal(level, {8.0, 0.0});
+  EXPECT_NEAR(beyond.from({0, 0}), 5.0 * kLevel + 3.0 * kUneven, 0.5 * kLevel);
+  EXPECT_NEAR(beyond.from({-3, 0}), 6.0 * kLevel + 5.0 * kUneven, 0.5 * kUneven);
+  const WayEstimate unknown =
+      to_goal([](double x, double) { return x > 1.0 ? NAN : 0.0; }, {4.0, 0.0});
+  EXPECT_NEAR(unknown.from({0, 0}), 1.0 * kLevel + 3.0 * kUneven, kLevel);
+}
+
+TEST(WayEstimate, AWallHasABackAndACliffIsNoStep) {
+  // Nothing is known behind the front of a wall: it is no way through.
+  const WayEstimate wall = to_goal(
+      [](double x, double y) {
+        if (std::abs(y) > 1.5) return 0.0;
+        return x < 2.0 ? 0.0 : x < 2.05 ? 1.2 : NAN;
+      },
+      {4.0, 0.0});
+  EXPECT_GT(wall.from({0, 0}), kLevel * 2.0 * std::hypot(2.0, 1.5));
+  EXPECT_LT(wall.from({2.0, 2.2}), wall.from({0, 0}));
+  const auto edge = [](double x, double y) { return x < 2.0 && y < 1.0 ? 0.5 : 0.0; };
+  EXPECT_GT(to_goal(edge, {4.0, 0.0}).from({0, 0}), 20.0 * kLevel);
+}
+
+}  // namespace
+}  // namespace gaitd::footsteps
