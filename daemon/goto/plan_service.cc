@@ -18,11 +18,20 @@ namespace {
 constexpr std::chrono::milliseconds kPoll{2};
 constexpr double kSamePlace = 0.02;  // m: a footstep is that one of the route
 
+constexpr double kExact = 0.02;       // m, from the goal to a plan that ends there
 constexpr double kMuchBetter = 0.85;  // of the cost of the way that was begun
 
 void raise(double by, GaitdFootstep* step) {
   step->pose.position[2] += by;
   for (int i = 0; i < step->region_count; ++i) step->landing_region[i][2] += by;
+}
+
+// Whether the feet come to stand at the goal, and not beside a place that was not good yet.
+bool ends_there(const std::vector<GaitdFootstep>& steps, const footsteps::Goal& goal) {
+  if (steps.size() < 2) return true;
+  const double* a = steps.end()[-1].pose.position;
+  const double* b = steps.end()[-2].pose.position;
+  return std::hypot(0.5 * (a[0] + b[0]) - goal.x, 0.5 * (a[1] + b[1]) - goal.y) < kExact;
 }
 
 bool same(const GaitdFootstep& a, const GaitdFootstep& b) {
@@ -157,7 +166,7 @@ footsteps::Plan PlanService::revise(const PlanRequest& request, bool* unchanged)
   const auto found = left_of_route(request);
   footsteps::Goal goal = request.goal;
   const std::vector<GaitdFootstep> left = found.value_or(std::vector<GaitdFootstep>{});
-  const bool known = found && !route_.partial;
+  const bool known = found && !route_.partial && ends_there(left, goal);
   // It comes to the end of a plan that has not been taken further on the way there.
   if (found && left.empty() && route_.partial) {
     const double* end = request.start.under_way->pose.position;

@@ -32,6 +32,7 @@ constexpr double kArmClearance = 0.7;
 constexpr double kEdgeCost = 3.0;
 constexpr double kRoughnessCost = 1.0;
 constexpr double kSlopeCost = 1.5;
+constexpr double kCarries = 0.85;  // of what is below a sole, by height: that it stands on
 constexpr double kFree = 0.3;  // m, from a foothold to the edge of its plane, from which it is free
 
 // The highest value within `cells` of each, in both directions.
@@ -203,6 +204,21 @@ Foothold Footholds::at(int side, const Place& place, double max_tilt) const {
   return result;
 }
 
+std::optional<double> Footholds::below(int side, const GaitdPose& sole) const {
+  if (!map_) return std::nullopt;
+  std::vector<double> over;  // m, of the ground over the sole
+  over.reserve(soles_[side].points.size());
+  for (const Vector2d& p : soles_[side].points) {
+    const Vector3d point = sdk::transform(sole, Vector3d(p.x(), p.y(), 0.0));
+    const double h = height(point.head<2>());
+    if (!(h == h)) return std::nullopt;
+    over.push_back(h - point.z());
+  }
+  const auto high = over.begin() + static_cast<std::ptrdiff_t>(kCarries * (over.size() - 1.0));
+  std::nth_element(over.begin(), high, over.end());
+  return sole.position[2] + *high;
+}
+
 GaitdPose Footholds::pose_of(const Place& place, const Foothold& foothold) {
   GaitdPose pose;
   sdk::view(pose.position) = Vector3d(place.x, place.y, foothold.z);
@@ -226,12 +242,14 @@ double Footholds::highest_between(const GaitdPose& from, const GaitdPose& to) co
   return highest;
 }
 
-bool Footholds::body_fits(const Vector2d& middle, double lower) const {
-  if (!map_) return true;
-  const double unit = model_.nominal_pelvis_height;
-  const terrain::Grid& grid = map_->grid();
-  return look_up(near_legs_, grid, middle) - lower <= kLegClearance * unit &&
-         look_up(near_arms_, grid, middle) - lower <= kArmClearance * unit;
+bool Footholds::legs_fit(const Vector2d& middle, double lower) const {
+  return !map_ || look_up(near_legs_, map_->grid(), middle) - lower <=
+                      kLegClearance * model_.nominal_pelvis_height;
+}
+
+bool Footholds::arms_fit(const Vector2d& middle, double lower) const {
+  return !map_ || look_up(near_arms_, map_->grid(), middle) - lower <=
+                      kArmClearance * model_.nominal_pelvis_height;
 }
 
 // From the convex part in which the foothold is furthest from the edge. `free`: from any edge.

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -42,6 +43,9 @@ class Footholds {
 
   // `max_tilt`: rad, of roll and pitch of the sole.
   Foothold at(int side, const Place& place, double max_tilt) const;
+  // m, W: the middle of a sole that keeps its tilt and is put on the map below it, on the higher
+  // part: the rest may have turned out not to carry. Nothing where the map is not known.
+  std::optional<double> below(int side, const GaitdPose& sole) const;
   static GaitdPose pose_of(const Place& place, const Foothold& foothold);
 
   // m, W, at the cell of `p`; NaN: unknown, or no map.
@@ -50,9 +54,10 @@ class Footholds {
   // m, W: the highest ground within the width of a foot of the way of a sole from `from` to `to`.
   // -infinity: nothing is known to be there.
   double highest_between(const GaitdPose& from, const GaitdPose& to) const;
-  // Whether nothing around `middle`, between the feet, is as high as the legs, or the arms, pass
+  // Whether nothing around `middle`, between the feet, is too high for the legs, or for the arms,
   // above the lower foot, which stands at height `lower` (m, W).
-  bool body_fits(const Eigen::Vector2d& middle, double lower) const;
+  bool legs_fit(const Eigen::Vector2d& middle, double lower) const;
+  bool arms_fit(const Eigen::Vector2d& middle, double lower) const;
 
   // Where the sole may be shifted and stay on the plane that it stands on; a footstep without edges
   // nearby gets none.

@@ -130,12 +130,7 @@ std::vector<GaitdFootstep> MapPlanner::refine(const Start& start,
 
 std::optional<double> MapPlanner::ground_below(int side, const GaitdPose& sole) const {
   if (!steps_->footholds().has_map()) return std::nullopt;
-  // A sole that stands half in the air tells nothing: below that half the map is lower on purpose.
-  const Foothold foothold = steps_->footholds().at(side, place_of(sole), M_PI_2);
-  if (foothold.state == FootholdState::kUnknown || foothold.state == FootholdState::kRough) {
-    return std::nullopt;
-  }
-  return foothold.z;
+  return steps_->footholds().below(side, sole);
 }
 
 }  // namespace gaitd::footsteps

@@ -73,7 +73,9 @@ StepState StepMaker::make(int side, const GaitdPose& pose, const GaitdPose& stan
   const Eigen::Vector2d middle =
       0.5 * (sdk::view(pose.position) + sdk::view(stance.position)).head<2>();
   const double lower = std::min(pose.position[2], stance.position[2]);
-  if (!footholds_.body_fits(middle, lower)) return StepState::kBody;
+  if (!footholds_.legs_fit(middle, lower) || !footholds_.arms_fit(middle, lower)) {
+    return StepState::kBody;
+  }
   if (rules_.check(*step, stance, from, 1, parameters).refused()) return StepState::kReach;
   if (even) return StepState::kGood;
   const double usual = step->swing_height;

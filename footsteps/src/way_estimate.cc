@@ -15,9 +15,10 @@ constexpr double kCell = 0.11;   // pelvis heights
 constexpr double kAround = 0.2;  // pelvis heights, within which level ground is level
 constexpr double kLevel = 0.02;  // m
 constexpr double kBeside = 0.6;  // pelvis heights
-// Of the cost of level ground, where the body does not pass: a map may be wrong by a cell, and the
-// robot may stand there already.
+// Of the cost of level ground, where the legs do not pass, and where the arms do not: a map may be
+// wrong by a cell, the robot may stand there already, and a stride may pass a narrow place.
 constexpr double kBlocked = 60.0;
+constexpr double kNarrow = 20.0;
 constexpr double kHighestStep = 0.24;  // pelvis heights
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -97,10 +98,16 @@ void WayEstimate::set_weights(const Footholds& footholds, double unit) {
       const bool known = std::isfinite(ground[at]);
       // Where nothing is known the ground is as low as what is known beside it: walls have a back.
       const double lower = known ? ground[at] : lowest[at];
-      const bool passes = std::isinf(lower) || (footholds.body_fits(grid_.centre(i, j), lower) &&
-                                                drop(ground, i, j) < kHighestStep * unit);
+      const Eigen::Vector2d p = grid_.centre(i, j);
+      const bool any = std::isfinite(lower);
+      const bool legs =
+          !any || (footholds.legs_fit(p, lower) && drop(ground, i, j) < kHighestStep * unit);
+      const bool arms = !any || footholds.arms_fit(p, lower);
       const bool level = known && most[at] - least[at] < kLevel;
-      weights_[at] = !passes ? kBlocked * level_ : level ? level_ : uneven_;
+      weights_[at] = !legs   ? kBlocked * level_
+                     : !arms ? kNarrow * level_
+                     : level ? level_
+                             : uneven_;
     }
   }
 }

@@ -88,13 +88,13 @@ TEST(Footholds, TheBodyIsWiderUpWhereItsArmsAre) {
                        return std::abs(x - 0.5) < 0.05 ? height : 0.0;
                      }));
   };
-  // The legs pass beside 0.6 m at 0.45 m, and beside 0.3 m anywhere; the arms pass above 0.6 m.
-  EXPECT_TRUE(wall(0.6).body_fits({0.0, 0.0}, 0.0));
-  EXPECT_FALSE(wall(0.6).body_fits({0.3, 0.0}, 0.0));
-  EXPECT_TRUE(wall(0.3).body_fits({0.3, 0.0}, 0.0));
-  EXPECT_FALSE(wall(1.0).body_fits({0.0, 0.0}, 0.0));
-  EXPECT_TRUE(wall(1.0).body_fits({-0.2, 0.0}, 0.0));
-  EXPECT_TRUE(wall(1.0).body_fits({0.5, 0.0}, 1.0));  // on top of it
+  EXPECT_TRUE(wall(0.6).legs_fit({0.0, 0.0}, 0.0));
+  EXPECT_FALSE(wall(0.6).legs_fit({0.3, 0.0}, 0.0));
+  EXPECT_TRUE(wall(0.3).legs_fit({0.3, 0.0}, 0.0));
+  EXPECT_TRUE(wall(0.6).arms_fit({0.3, 0.0}, 0.0));
+  EXPECT_FALSE(wall(1.0).arms_fit({0.0, 0.0}, 0.0));
+  EXPECT_TRUE(wall(1.0).arms_fit({-0.2, 0.0}, 0.0));
+  EXPECT_TRUE(wall(1.0).legs_fit({0.5, 0.0}, 1.0));  // on top of it
 }
 
 TEST(Footholds, TheLandingRegionKeepsTheSoleOnItsBlock) {

@@ -64,8 +64,8 @@ class FootstepPlanner {
                                             const walking::GaitParameters& parameters) = 0;
   static constexpr double kAside = 0.08;  // m
 
-  // m: the map at the middle of the sole of `side`; nothing where it is not known, or where the
-  // sole does not lie on it.
+  // m: height of the middle of the sole of `side`, if it lay on the map; nothing where that is not
+  // known. What it stands on half in the air does not count.
   virtual std::optional<double> ground_below(int side, const GaitdPose& sole) const = 0;
 };
 
