@@ -31,8 +31,8 @@ std::vector<double> extreme(const terrain::Grid& grid, const std::vector<double>
     for (int j = 0; j < grid.rows; ++j) {
       for (int i = 0; i < grid.columns; ++i) {
         const int at = rows ? j : i, count = rows ? grid.rows : grid.columns;
-        const int stride = rows ? grid.columns : 1;
-        const int here = j * grid.columns + i;
+        const std::ptrdiff_t stride = rows ? grid.columns : 1;
+        const auto here = static_cast<std::ptrdiff_t>(j) * grid.columns + i;
         double& result = to[static_cast<std::size_t>(here)];
         for (int k = std::max(0, at - around); k <= std::min(count - 1, at + around); ++k) {
           const double value = from[static_cast<std::size_t>(here + (k - at) * stride)];
