@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <random>
 
 #include "footsteps/test/fields.h"
@@ -140,7 +140,9 @@ TEST(Lattice, TheSameProblemHasTheSameAnswerToTheBit) {
     ASSERT_EQ(other->footsteps.size(), a.footsteps.size());
     EXPECT_EQ(other->expansions, a.expansions);
     for (std::size_t i = 0; i < a.footsteps.size(); ++i) {
-      EXPECT_EQ(std::memcmp(&other->footsteps[i].pose, &a.footsteps[i].pose, sizeof(GaitdPose)), 0);
+      const GaitdPose &one = other->footsteps[i].pose, &two = a.footsteps[i].pose;
+      EXPECT_TRUE(std::ranges::equal(one.position, two.position));
+      EXPECT_TRUE(std::ranges::equal(one.orientation, two.orientation));
       EXPECT_EQ(other->footsteps[i].transfer_duration, a.footsteps[i].transfer_duration);
     }
   }
