@@ -16,8 +16,7 @@ namespace {
 
 // The control thread cannot wake anybody: requests are looked for.
 constexpr std::chrono::milliseconds kPoll{2};
-constexpr double kSamePlace = 0.02;  // m: a footstep is that one of the route
-
+constexpr double kSamePlace = 0.02;   // m: a footstep is that one of the route
 constexpr double kExact = 0.02;       // m, from the goal to a plan that ends there
 constexpr double kMuchBetter = 0.85;  // of the cost of the way that was begun
 
@@ -29,9 +28,8 @@ void raise(double by, GaitdFootstep* step) {
 // Whether the feet come to stand at the goal, and not beside a place that was not good yet.
 bool ends_there(const std::vector<GaitdFootstep>& steps, const footsteps::Goal& goal) {
   if (steps.size() < 2) return true;
-  const double* a = steps.end()[-1].pose.position;
-  const double* b = steps.end()[-2].pose.position;
-  return std::hypot(0.5 * (a[0] + b[0]) - goal.x, 0.5 * (a[1] + b[1]) - goal.y) < kExact;
+  const GaitdPose middle = walking::middle_pose(steps.end()[-1].pose, steps.end()[-2].pose);
+  return std::hypot(middle.position[0] - goal.x, middle.position[1] - goal.y) < kExact;
 }
 
 bool same(const GaitdFootstep& a, const GaitdFootstep& b) {

@@ -4,11 +4,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/polygon.h"
 #include "gaitd/walking/support.h"
+#include "window.h"
 
 namespace gaitd::footsteps {
 namespace {
@@ -35,33 +37,17 @@ constexpr double kSlopeCost = 1.5;
 constexpr double kCarries = 0.85;  // of what is below a sole, by height: that it stands on
 constexpr double kFree = 0.3;  // m, from a foothold to the edge of its plane, from which it is free
 
-// The highest value within `cells` of each, in both directions.
+// By cell, the highest ground within `cells` of it; -infinity: nothing is known there.
 std::vector<float> dilated(const terrain::HeightMap& map, int cells) {
   const terrain::Grid& grid = map.grid();
-  const auto index = [&](int i, int j) { return std::size_t{1} * j * grid.columns + i; };
-  std::vector<float> values(std::size_t{1} * grid.columns * grid.rows), rows = values;
+  std::vector<float> values;
+  values.reserve(std::size_t{1} * grid.columns * grid.rows);
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
-      values[index(i, j)] = map.known(i, j) ? static_cast<float>(map.height(i, j)) : -INFINITY;
+      values.push_back(map.known(i, j) ? static_cast<float>(map.height(i, j)) : -INFINITY);
     }
   }
-  for (int j = 0; j < grid.rows; ++j) {
-    for (int i = 0; i < grid.columns; ++i) {
-      const auto first = values.begin() + static_cast<std::ptrdiff_t>(index(0, j));
-      rows[index(i, j)] = *std::max_element(first + std::max(0, i - cells),
-                                            first + std::min(grid.columns, i + cells + 1));
-    }
-  }
-  for (int j = 0; j < grid.rows; ++j) {
-    for (int i = 0; i < grid.columns; ++i) {
-      float highest = -INFINITY;
-      for (int v = std::max(0, j - cells); v <= std::min(grid.rows - 1, j + cells); ++v) {
-        highest = std::max(highest, rows[index(i, v)]);
-      }
-      values[index(i, j)] = highest;
-    }
-  }
-  return values;
+  return best_around(grid, values, cells, std::greater<>());
 }
 
 float look_up(const std::vector<float>& values, const terrain::Grid& grid, const Vector2d& p) {

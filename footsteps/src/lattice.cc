@@ -45,13 +45,12 @@ Lattice::Lattice(std::shared_ptr<StepMaker> steps, const PlannerOptions& options
     : MapPlanner(std::move(steps)),
       strides_(make_strides(steps_->unit(), steps_->model().nominal_foot_separation)),
       options_(options) {
-  const double unit = steps_->unit();
   per_metre_ = std::numeric_limits<double>::infinity();
   for (const Stride& s : strides_) {
     if (s.ahead > 0.0) per_metre_ = std::min(per_metre_, s.cost / s.ahead);
   }
   if (steps_->footholds().has_map()) {
-    way_ = std::make_unique<WayEstimate>(steps_->footholds(), unit, per_metre_, kUneven / unit);
+    way_ = std::make_unique<WayEstimate>(*steps_, per_metre_, kUneven / steps_->unit());
   }
 }
 
@@ -249,8 +248,12 @@ class Lattice::Search {
     const int side = other_side(node.side);
     if (goal_known_) add_goal(at, side, inflation);
     if (node.goal) return;
+    const bool explore = lattice_.options_.explore && !is_start(at);
     std::optional<Place> onwards;  // over ground that is not known
-    double least = way_from(node.side, node.place) - kLeadsOn * steps_.unit() * lattice_.per_metre_;
+    double least = 0.0;            // of the ways on there
+    if (explore) {
+      least = way_from(node.side, node.place) - kLeadsOn * steps_.unit() * lattice_.per_metre_;
+    }
     const double outwards = side_sign(side);
     const double c = std::cos(node.place.yaw), s = std::sin(node.place.yaw);
     for (const Stride& stride : lattice_.strides_) {
@@ -271,14 +274,14 @@ class Lattice::Search {
       if (found.state == FootholdState::kGood) {
         add({side, place, key, found, at, stride.cost, false}, inflation);
       }
-      if (found.state == FootholdState::kUnknown && lattice_.options_.explore) {
+      if (found.state == FootholdState::kUnknown && explore) {
         if (const double way = way_from(side, place); way < least) {
           least = way;
           onwards = place;
         }
       }
     }
-    if (onwards && !is_start(at)) add_beyond(at, *onwards, inflation);
+    if (onwards) add_beyond(at, *onwards, inflation);
   }
 
   // The way ends here for now, and goes on over ground that is seen from here, best by who looks

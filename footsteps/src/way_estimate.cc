@@ -8,6 +8,8 @@
 #include <queue>
 #include <utility>
 
+#include "window.h"
+
 namespace gaitd::footsteps {
 namespace {
 
@@ -19,31 +21,7 @@ constexpr double kBeside = 0.6;  // pelvis heights
 // wrong by a cell, the robot may stand there already, and a stride may pass a narrow place.
 constexpr double kBlocked = 60.0;
 constexpr double kNarrow = 20.0;
-constexpr double kHighestStep = 0.24;  // pelvis heights
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// By cell, the most (or the least) of the cells around it.
-template <class Better>
-std::vector<double> extreme(const terrain::Grid& grid, const std::vector<double>& values,
-                            int around, Better better) {
-  const auto along = [&](const std::vector<double>& from, bool rows) {
-    std::vector<double> to = from;
-    for (int j = 0; j < grid.rows; ++j) {
-      for (int i = 0; i < grid.columns; ++i) {
-        const int at = rows ? j : i, count = rows ? grid.rows : grid.columns;
-        const std::ptrdiff_t stride = rows ? grid.columns : 1;
-        const auto here = static_cast<std::ptrdiff_t>(j) * grid.columns + i;
-        double& result = to[static_cast<std::size_t>(here)];
-        for (int k = std::max(0, at - around); k <= std::min(count - 1, at + around); ++k) {
-          const double value = from[static_cast<std::size_t>(here + (k - at) * stride)];
-          if (better(value, result)) result = value;
-        }
-      }
-    }
-    return to;
-  };
-  return along(along(values, false), true);
-}
 
 }  // namespace
 
@@ -58,18 +36,20 @@ double WayEstimate::drop(const std::vector<double>& ground, int i, int j) const 
   return most;
 }
 
-WayEstimate::WayEstimate(const Footholds& footholds, double unit, double level, double uneven)
+WayEstimate::WayEstimate(const StepMaker& steps, double level, double uneven)
     : level_(level), uneven_(uneven) {
-  const terrain::Grid& fine = footholds.map().grid();
-  const int ratio = std::max(1, static_cast<int>(std::lround(kCell * unit / fine.resolution)));
+  const terrain::Grid& fine = steps.footholds().map().grid();
+  const int ratio =
+      std::max(1, static_cast<int>(std::lround(kCell * steps.unit() / fine.resolution)));
   grid_.resolution = ratio * fine.resolution;
   grid_.origin = fine.origin;
   grid_.columns = (fine.columns + ratio - 1) / ratio;
   grid_.rows = (fine.rows + ratio - 1) / ratio;
-  set_weights(footholds, unit);
+  set_weights(steps);
 }
 
-void WayEstimate::set_weights(const Footholds& footholds, double unit) {
+void WayEstimate::set_weights(const StepMaker& steps) {
+  const Footholds& footholds = steps.footholds();
   const terrain::HeightMap& map = footholds.map();
   const terrain::Grid& fine = map.grid();
   const int ratio = static_cast<int>(std::lround(grid_.resolution / fine.resolution));
@@ -83,14 +63,14 @@ void WayEstimate::set_weights(const Footholds& footholds, double unit) {
       high[at] = std::max(high[at], map.height(i, j));
     }
   }
-  const int around = static_cast<int>(std::ceil(kAround * unit / grid_.resolution));
-  const std::vector<double> least = extreme(grid_, low, around, std::less<>());
-  const std::vector<double> most = extreme(grid_, high, around, std::greater<>());
+  const int around = static_cast<int>(std::ceil(kAround * steps.unit() / grid_.resolution));
+  const std::vector<double> least = best_around(grid_, low, around, std::less<>());
+  const std::vector<double> most = best_around(grid_, high, around, std::greater<>());
   // What the feet stand on: a gap that they step over is as high as its edges.
   const std::vector<double> ground =
-      extreme(grid_, extreme(grid_, high, 1, std::greater<>()), 1, std::less<>());
-  const int beside = static_cast<int>(std::ceil(kBeside * unit / grid_.resolution));
-  const std::vector<double> lowest = extreme(grid_, low, beside, std::less<>());
+      best_around(grid_, best_around(grid_, high, 1, std::greater<>()), 1, std::less<>());
+  const int beside = static_cast<int>(std::ceil(kBeside * steps.unit() / grid_.resolution));
+  const std::vector<double> lowest = best_around(grid_, low, beside, std::less<>());
   weights_.resize(count);
   for (int j = 0; j < grid_.rows; ++j) {
     for (int i = 0; i < grid_.columns; ++i) {
@@ -101,7 +81,7 @@ void WayEstimate::set_weights(const Footholds& footholds, double unit) {
       const Eigen::Vector2d p = grid_.centre(i, j);
       const bool any = std::isfinite(lower);
       const bool legs =
-          !any || (footholds.legs_fit(p, lower) && drop(ground, i, j) < kHighestStep * unit);
+          !any || (footholds.legs_fit(p, lower) && drop(ground, i, j) < steps.highest_step());
       const bool arms = !any || footholds.arms_fit(p, lower);
       const bool level = known && most[at] - least[at] < kLevel;
       weights_[at] = !legs   ? kBlocked * level_

@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "footholds.h"
 #include "gaitd/terrain/height_map.h"
+#include "step_maker.h"
 
 namespace gaitd::footsteps {
 
@@ -16,8 +16,8 @@ namespace gaitd::footsteps {
 // (Sethian, A fast marching level set method for monotonically advancing fronts, PNAS 1996).
 class WayEstimate {
  public:
-  // `unit`: m, height of the pelvis. `level` and `uneven`: cost of a metre. `footholds` has a map.
-  WayEstimate(const Footholds& footholds, double unit, double level, double uneven);
+  // `level` and `uneven`: cost of a metre. `steps` has a map.
+  WayEstimate(const StepMaker& steps, double level, double uneven);
 
   // All ways end at `goal` (m, W) from now on; it may be beside the map.
   void lead_to(const Eigen::Vector2d& goal);
@@ -31,7 +31,7 @@ class WayEstimate {
            static_cast<std::size_t>(i);
   }
   double drop(const std::vector<double>& ground, int i, int j) const;
-  void set_weights(const Footholds& footholds, double unit);
+  void set_weights(const StepMaker& steps);
   // Cost at a cell whose neighbours have theirs, as a front reaches it.
   double arrival(int i, int j) const;
 

@@ -97,6 +97,23 @@ TEST(Footholds, TheBodyIsWiderUpWhereItsArmsAre) {
   EXPECT_TRUE(wall(1.0).legs_fit({0.5, 0.0}, 1.0));  // on top of it
 }
 
+TEST(Footholds, ASoleIsAsHighAsWhatCarriesIt) {
+  // Half of it hangs over ground that is 10 cm lower.
+  const Footholds map(atlas(), field({-1, -1}, {2, 1}, [](double x, double) {
+                        return x < 0.5 ? 0.2 : x < 1.0 ? 0.1 : NAN;
+                      }));
+  const auto sole = [](double x) {
+    GaitdPose pose = Footholds::pose_of({x, 0.0, 0.3}, {});
+    pose.position[2] = 0.27;
+    return pose;
+  };
+  const auto all = map.below(GAITD_LEFT, sole(0.2)), half = map.below(GAITD_LEFT, sole(0.5));
+  ASSERT_TRUE(all && half);
+  EXPECT_NEAR(*all, 0.2, 1e-6);
+  EXPECT_NEAR(*half, 0.2, 1e-6);
+  EXPECT_FALSE(map.below(GAITD_LEFT, sole(1.0)));
+}
+
 TEST(Footholds, TheLandingRegionKeepsTheSoleOnItsBlock) {
   auto ground = field({-1, -1}, {1, 1}, [](double, double) { return 0.0; });
   const Eigen::Matrix3d turned =

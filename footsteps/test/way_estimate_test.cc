@@ -17,8 +17,8 @@ using testing::field;
 constexpr double kLevel = 3.0, kUneven = 9.0;  // steps per metre
 
 WayEstimate to_goal(const std::function<double(double x, double y)>& height, const Vector2d& goal) {
-  const Footholds footholds(atlas(), field({-1, -3}, {5, 3}, height));
-  WayEstimate way(footholds, atlas().nominal_pelvis_height, kLevel, kUneven);
+  const StepMaker steps(atlas(), field({-1, -3}, {5, 3}, height));
+  WayEstimate way(steps, kLevel, kUneven);
   way.lead_to(goal);
   return way;
 }

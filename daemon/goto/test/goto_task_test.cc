@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <memory>
 
 #include "daemon/control/plan_start.h"
@@ -213,6 +214,57 @@ TEST_F(GotoTaskTest, WhereThereIsNoWayOnItGivesUpAfterSomeTries) {
   EXPECT_EQ(std::string(task_.message()).find("goto: given up, 2.0"), 0U) << task_.message();
   EXPECT_NE(std::string(task_.message()).find("no way to (2.00, 0.50)"), std::string::npos);
   EXPECT_FALSE(task_.active());
+}
+
+// Plans on the spot, one at each step, until the goto ends or `count` plans were made.
+class GotoTaskOverPlans : public GotoTaskTest {
+ protected:
+  int walk(int count, const std::function<double(int plan)>& cost_of) {
+    port_.set_live(true);
+    begin();
+    footsteps::Plan plan;
+    plan.cost = cost_of(0);
+    for (int i = 0; i < 8; ++i) plan.footsteps.push_back(step_to(1 - i % 2, 0.0));
+    answer(plan);
+    int plans = 0;
+    for (int tick_count = 0; tick_count < 2000 * count && plans < count; ++tick_count) {
+      tick();
+      const GotoTask::Step step = task_.step(gait_, out_.get());
+      if (step == GotoTask::Step::kEnded || step == GotoTask::Step::kRefused) break;
+      if (step == GotoTask::Step::kFootsteps) {
+        const walking::Refusal refusal =
+            gait_.footsteps(out_->footsteps.data(), out_->footstep_count, true);
+        EXPECT_FALSE(refusal.refused()) << refusal.message;
+        task_.taken();
+      }
+      if (!task_.awaits_plan()) continue;
+      for (const footsteps::Plan* retired = nullptr; port_.next_retired(retired);) --lent_;
+      plan.cost = cost_of(++plans);
+      plan.footsteps.clear();
+      const int first = 1 - gait_.state().next_side;
+      for (int i = 0; i < 8; ++i)
+        plan.footsteps.push_back(step_to(i % 2 == 0 ? first : 1 - first, 0.0));
+      answer(plan);
+    }
+    task_.step(gait_, out_.get());  // takes the last one
+    return plans;
+  }
+};
+
+TEST_F(GotoTaskOverPlans, AWallThatComesInSightIsNoGoingBackAndForth) {
+  // A step costs about one. After three of them the way is four times as long.
+  EXPECT_EQ(walk(60, [](int plan) { return plan < 3 ? 20.0 - plan : 80.0 - plan; }), 60);
+  EXPECT_TRUE(task_.active());
+}
+
+TEST_F(GotoTaskOverPlans, PlansThatLeadNoNearerAreGivenUp) {
+  EXPECT_LT(walk(60, [](int) { return 20.0; }), 40);
+  EXPECT_NE(std::string(task_.message()).find("leads no nearer"), std::string::npos);
+}
+
+TEST_F(GotoTaskOverPlans, GoingBackAndForthIsGivenUpToo) {
+  EXPECT_LT(walk(150, [](int plan) { return plan % 2 == 0 ? 20.0 : 26.0; }), 100);
+  EXPECT_NE(std::string(task_.message()).find("leads no nearer"), std::string::npos);
 }
 
 TEST_F(GotoTaskTest, WithoutAPlannerItIsRefused) {
