@@ -30,7 +30,7 @@ damages=(
   "no_contact_ramp|scenario.straight-0.35 scenario.flat-0.35|$feet|s/(ObjectiveBuilder::load_share\(int side, const GaitdGaitState& gait\) const \{)/\$1\n  if (side < 2 || gait.phase < 0) return 1.0;/"
   "step_shift_mirrored|scenario.push-bent-outward scenario.push-bent-sideways|plugins/step_adjuster/step_plan/step_plan.cc|s/Eigen::Vector3d\(shift_\.x\(\), shift_\.y\(\), 0\.0\)/Eigen::Vector3d(shift_.x(), -shift_.y(), 0.0)/g"
   "friction_doubled|scenario.push-bent-slippery|$feet|s/c\.friction = parameters_\[Objective::kFriction\];/c.friction = 2.0 * parameters_[Objective::kFriction];/"
-  "partial_footholds_unseen|scenario.partial-straight scenario.partial-bent|walking/src/foot_contact.cc|s/if \(tipped && !returns\)/if (false)/"
+  "partial_footholds_unseen|scenario.partial-straight scenario.partial-bent|walking/src/foot_contact.cc|s/const bool tips = tipped && !returns;/const bool tips = false;/"
   "no_balance|scenario.estimators invariant_ekf.flat-0.35 nominal.straight-0.35|plugins/state_estimator/kinematic_inertial/kinematic_inertial_feet.cc|s/if \(total < kBalancedShare \* weight_\) return;/return;/|plugins/state_estimator/invariant_ekf/invariant_ekf.cc|s/ {4}observe_balance\(in, out\);\n//"
   "swing_apex_halved|scenario.blind-0.06 scenario.cinder-blocks|walking/src/swing_trajectory.cc|s/\+ to\.swing_height;/+ 0.5 * to.swing_height;/"
 )
