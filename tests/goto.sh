@@ -94,9 +94,11 @@ expect 0 gaitctl run blind-field-2 --set perception.sensor=depth_camera -v --log
 python3 -c "import sys; sys.exit(not 2 * float('$(error_of seeing.out)') < float('$(error_of blind.out)'))" ||
   fail "blind $(error_of blind.out), seeing $(error_of seeing.out)"
 
-# Where there is no way it stands and says why: a wall that cannot be seen from the start.
-sed 's/^terrain: .*/terrain: {ground_z: 0, boxes: [{center: [4, 0, 0.5], size: [0.2, 12, 1]}]}/; s/x: 2.3, y: 0.1, yaw: 0.0/x: 6, y: 0/;
-  s/^duration: .*/duration: 90/; s/^expect: .*/expect: {no_fall: true, final_pelvis: {x: 3, y: 0, tolerance: 6}}/' seen.yaml >wall.yaml
+# Where there is no way it looks for one, and then stands and says so: four walls around the goal.
+walls="{center: [1.8, 0, 0.5], size: [0.1, 1.6, 1]}, {center: [3.2, 0, 0.5], size: [0.1, 1.6, 1]}"
+walls+=", {center: [2.5, 0.75, 0.5], size: [1.4, 0.1, 1]}, {center: [2.5, -0.75, 0.5], size: [1.4, 0.1, 1]}"
+sed "s/^terrain: .*/terrain: {ground_z: 0, boxes: [$walls]}/; s/x: 2.3, y: 0.1, yaw: 0.0/x: 2.5, y: 0/;
+  s/^duration: .*/duration: 90/; s/^expect: .*/expect: {no_fall: true}/" seen.yaml >wall.yaml
 expect 0 gaitctl run wall.yaml --log wall.mcap
 gaitctl log info wall.mcap --json >info.json
 grep -q 'goto: given up' info.json || fail "nobody says that there is no way: $(grep goto info.json)"

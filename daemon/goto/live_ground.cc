@@ -82,12 +82,13 @@ bool LiveGround::live() const {
 LiveGround::Known LiveGround::known() const {
   const std::scoped_lock lock(mutex_);
   if (!told_ && !felt_ && !eye_) {
-    known_ = {base_, memory_.revision()};
+    known_ = {base_, memory_.revision(), cleared_};
   } else if (known_.revision != memory_.revision() || known_time_ != time_) {
     // The time as well: what one asks for does not change what another one gets.
     known_time_ = time_;
     auto map = std::make_shared<const HeightMap>(memory_.map(time_));
-    known_ = {base_ && !eye_ ? overlaid(*base_, *map) : std::move(map), memory_.revision()};
+    known_ = {base_ && !eye_ ? overlaid(*base_, *map) : std::move(map), memory_.revision(),
+              cleared_};
   }
   return known_;
 }
@@ -101,6 +102,7 @@ int LiveGround::put(const HeightMap& tile, bool forget) {
 void LiveGround::clear() {
   const std::scoped_lock lock(mutex_);
   told_ = felt_ = false;
+  ++cleared_;
   memory_.clear();
 }
 

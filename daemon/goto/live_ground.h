@@ -43,6 +43,7 @@ class LiveGround {
   struct Known {
     std::shared_ptr<const terrain::HeightMap> map;  ///< null: level ground
     std::uint64_t revision = 0;
+    int cleared = 0;  ///< how often clear() was called
   };
   Known known() const;
 
@@ -59,6 +60,7 @@ class LiveGround {
   terrain::GroundMemory memory_;
   mutable Known known_;
   mutable double known_time_ = 0.0;  // s
+  int cleared_ = 0;
   // Of the simulated sensor.
   std::optional<Eye> eye_;
   std::optional<sim::RangeSensor> sensor_;

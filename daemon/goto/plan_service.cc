@@ -89,9 +89,11 @@ void PlanService::answer_all(PlanPort* port) {
 footsteps::FootstepPlanner& PlanService::planner() {
   const LiveGround::Known known = parts_.ground->known();
   if (!planner_ || known.map != known_.map) {
+    if (known.cleared != known_.cleared) ways_->clear();
     known_ = known;
     footsteps::PlannerOptions options = parts_.options;
     options.explore = parts_.ground->live();
+    if (options.explore) options.ways = ways_;
     planner_ = footsteps::make_planner(parts_.planner, *parts_.model, known_.map, options);
   }
   return *planner_;

@@ -55,8 +55,9 @@ class PlanService {
   // Of that thread.
   LiveGround::Known known_;
   std::unique_ptr<footsteps::FootstepPlanner> planner_;  // on known_
-  footsteps::Plan route_;                                // of the last goto, as it was revised
-  std::vector<Eigen::Vector2d> exhausted_;               // m, W: Goal::exhausted of it
+  const std::shared_ptr<footsteps::WayMemory> ways_ = std::make_shared<footsteps::WayMemory>();
+  footsteps::Plan route_;                   // of the last goto, as it was revised
+  std::vector<Eigen::Vector2d> exhausted_;  // m, W: Goal::exhausted of it
 };
 
 }  // namespace gaitd::daemon

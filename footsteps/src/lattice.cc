@@ -50,7 +50,8 @@ Lattice::Lattice(std::shared_ptr<StepMaker> steps, const PlannerOptions& options
     if (s.ahead > 0.0) per_metre_ = std::min(per_metre_, s.cost / s.ahead);
   }
   if (steps_->footholds().has_map()) {
-    way_ = std::make_unique<WayEstimate>(*steps_, per_metre_, kUneven / steps_->unit());
+    way_ = std::make_unique<WayEstimate>(*steps_, per_metre_, kUneven / steps_->unit(),
+                                         options_.ways.get());
   }
 }
 

@@ -36,29 +36,46 @@ double WayEstimate::drop(const std::vector<double>& ground, int i, int j) const 
   return most;
 }
 
-WayEstimate::WayEstimate(const StepMaker& steps, double level, double uneven)
+WayEstimate::WayEstimate(const StepMaker& steps, double level, double uneven, WayMemory* memory)
     : level_(level), uneven_(uneven) {
   const terrain::Grid& fine = steps.footholds().map().grid();
   const int ratio =
       std::max(1, static_cast<int>(std::lround(kCell * steps.unit() / fine.resolution)));
   grid_.resolution = ratio * fine.resolution;
-  grid_.origin = fine.origin;
-  grid_.columns = (fine.columns + ratio - 1) / ratio;
-  grid_.rows = (fine.rows + ratio - 1) / ratio;
-  set_weights(steps);
+  grid_.origin = grid_.resolution * (fine.origin / grid_.resolution).array().floor().matrix();
+  const Eigen::Vector2i last = grid_.cell(fine.centre(fine.columns - 1, fine.rows - 1));
+  grid_.columns = last.x() + 1;
+  grid_.rows = last.y() + 1;
+  std::vector<Way> ways = ways_on_map(steps);
+  if (memory != nullptr) recall(steps.unit(), memory, &ways);
+  weights_.reserve(ways.size());
+  for (const Way way : ways) weights_.push_back(weight(way));
 }
 
-void WayEstimate::set_weights(const StepMaker& steps) {
+double WayEstimate::weight(Way way) const {
+  switch (way) {
+    case Way::kLevel:
+      return level_;
+    case Way::kNarrow:
+      return kNarrow * level_;
+    case Way::kBlocked:
+      return kBlocked * level_;
+    default:
+      return uneven_;
+  }
+}
+
+std::vector<Way> WayEstimate::ways_on_map(const StepMaker& steps) const {
   const Footholds& footholds = steps.footholds();
   const terrain::HeightMap& map = footholds.map();
   const terrain::Grid& fine = map.grid();
-  const int ratio = static_cast<int>(std::lround(grid_.resolution / fine.resolution));
   const std::size_t count = index(0, grid_.rows);
   std::vector<double> low(count, kInfinity), high(count, -kInfinity);
   for (int j = 0; j < fine.rows; ++j) {
     for (int i = 0; i < fine.columns; ++i) {
       if (!map.known(i, j)) continue;
-      const std::size_t at = index(i / ratio, j / ratio);
+      const Eigen::Vector2i cell = grid_.cell(fine.centre(i, j));
+      const std::size_t at = index(cell.x(), cell.y());
       low[at] = std::min(low[at], map.height(i, j));
       high[at] = std::max(high[at], map.height(i, j));
     }
@@ -71,24 +88,46 @@ void WayEstimate::set_weights(const StepMaker& steps) {
       best_around(grid_, best_around(grid_, high, 1, std::greater<>()), 1, std::less<>());
   const int beside = static_cast<int>(std::ceil(kBeside * steps.unit() / grid_.resolution));
   const std::vector<double> lowest = best_around(grid_, low, beside, std::less<>());
-  weights_.resize(count);
+  std::vector<Way> ways(count, Way::kUnknown);
   for (int j = 0; j < grid_.rows; ++j) {
     for (int i = 0; i < grid_.columns; ++i) {
       const std::size_t at = index(i, j);
       const bool known = std::isfinite(ground[at]);
       // Where nothing is known the ground is as low as what is known beside it: walls have a back.
       const double lower = known ? ground[at] : lowest[at];
+      if (!std::isfinite(lower)) continue;
       const Eigen::Vector2d p = grid_.centre(i, j);
-      const bool any = std::isfinite(lower);
-      const bool legs =
-          !any || (footholds.legs_fit(p, lower) && drop(ground, i, j) < steps.highest_step());
-      const bool arms = !any || footholds.arms_fit(p, lower);
-      const bool level = known && most[at] - least[at] < kLevel;
-      weights_[at] = !legs   ? kBlocked * level_
-                     : !arms ? kNarrow * level_
-                     : level ? level_
-                             : uneven_;
+      if (!footholds.legs_fit(p, lower) || drop(ground, i, j) >= steps.highest_step()) {
+        ways[at] = Way::kBlocked;
+      } else if (!footholds.arms_fit(p, lower)) {
+        ways[at] = Way::kNarrow;
+      } else if (known) {
+        ways[at] = most[at] - least[at] < kLevel ? Way::kLevel : Way::kUneven;
+      }
     }
+  }
+  return ways;
+}
+
+void WayEstimate::recall(double unit, WayMemory* memory, std::vector<Way>* ways) {
+  const terrain::Grid on_map = grid_;
+  const int beside = static_cast<int>(std::ceil(kBeside * unit / grid_.resolution));
+  memory->move_to(on_map.centre(on_map.columns / 2, on_map.rows / 2), on_map.resolution);
+  for (int j = 0; j < on_map.rows; ++j) {
+    for (int i = 0; i < on_map.columns; ++i) {
+      const Eigen::Vector2d p = on_map.centre(i, j);
+      const Way way = (*ways)[index(i, j)];
+      // What is in the way at the border of the map may have left it.
+      const bool border = std::min({i, j, on_map.columns - 1 - i, on_map.rows - 1 - j}) < beside;
+      if (way == Way::kUnknown || (border && way < memory->at(p))) continue;
+      memory->remember(p, way);
+    }
+  }
+  grid_ = memory->around(on_map);
+  ways->clear();
+  ways->reserve(index(0, grid_.rows));
+  for (int j = 0; j < grid_.rows; ++j) {
+    for (int i = 0; i < grid_.columns; ++i) ways->push_back(memory->at(grid_.centre(i, j)));
   }
 }
 

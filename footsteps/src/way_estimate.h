@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "gaitd/footsteps/way_memory.h"
 #include "gaitd/terrain/height_map.h"
 #include "step_maker.h"
 
@@ -16,8 +17,9 @@ namespace gaitd::footsteps {
 // (Sethian, A fast marching level set method for monotonically advancing fronts, PNAS 1996).
 class WayEstimate {
  public:
-  // `level` and `uneven`: cost of a metre. `steps` has a map.
-  WayEstimate(const StepMaker& steps, double level, double uneven);
+  // `level` and `uneven`: cost of a metre. `steps` has a map. `memory`: of the ways beside it,
+  // learns those on it; may be null.
+  WayEstimate(const StepMaker& steps, double level, double uneven, WayMemory* memory);
 
   // All ways end at `goal` (m, W) from now on; it may be beside the map.
   void lead_to(const Eigen::Vector2d& goal);
@@ -31,7 +33,11 @@ class WayEstimate {
            static_cast<std::size_t>(i);
   }
   double drop(const std::vector<double>& ground, int i, int j) const;
-  void set_weights(const StepMaker& steps);
+  // Of the cells of grid_ by the map.
+  std::vector<Way> ways_on_map(const StepMaker& steps) const;
+  // Takes those on the map into the memory, and grid_ and `ways` to all that it knows.
+  void recall(double unit, WayMemory* memory, std::vector<Way>* ways);
+  double weight(Way way) const;
   // Cost at a cell whose neighbours have theirs, as a front reaches it.
   double arrival(int i, int j) const;
 

@@ -18,7 +18,7 @@ constexpr double kLevel = 3.0, kUneven = 9.0;  // steps per metre
 
 WayEstimate to_goal(const std::function<double(double x, double y)>& height, const Vector2d& goal) {
   const StepMaker steps(atlas(), field({-1, -3}, {5, 3}, height));
-  WayEstimate way(steps, kLevel, kUneven);
+  WayEstimate way(steps, kLevel, kUneven, nullptr);
   way.lead_to(goal);
   return way;
 }
@@ -76,6 +76,55 @@ TEST(WayEstimate, AWallHasABackAndACliffIsNoStep) {
   EXPECT_LT(wall.from({2.0, 2.2}), wall.from({0, 0}));
   const auto edge = [](double x, double y) { return x < 2.0 && y < 1.0 ? 0.5 : 0.0; };
   EXPECT_GT(to_goal(edge, {4.0, 0.0}).from({0, 0}), 20.0 * kLevel);
+}
+
+TEST(WayEstimate, AWallThatLeftTheMapIsStillInTheWay) {
+  // From y = -6 to 6; the map of a robot that has walked along it ends at y = -4.
+  const auto wall = [](double x, double y) {
+    return std::abs(x - 2.0) < 0.1 && std::abs(y) < 6.0 ? 1.2 : 0.0;
+  };
+  const Vector2d goal(4.0, 0.0), corner(1.4, -6.4);
+  const StepMaker along(atlas(), field({-2, -7}, {3, 5}, wall));
+  const StepMaker end(atlas(), field({-2, -11}, {3, -4}, wall));
+  WayMemory memory;
+  const WayEstimate before(along, kLevel, kUneven, &memory);
+  WayEstimate forgetful(end, kLevel, kUneven, nullptr), knowing(end, kLevel, kUneven, &memory);
+  forgetful.lead_to(goal);
+  knowing.lead_to(goal);
+  EXPECT_GT(forgetful.from(corner), forgetful.from({1.4, -4.5})) << "back, past where it was";
+  EXPECT_LT(knowing.from(corner), knowing.from({1.4, -4.5})) << "around the end";
+  memory.clear();
+  WayEstimate anew(end, kLevel, kUneven, &memory);
+  anew.lead_to(goal);
+  EXPECT_NEAR(anew.from(corner), forgetful.from(corner), 1e-9);
+}
+
+TEST(WayMemory, MovesWithTheRobotAndForgetsWhatIsFar) {
+  WayMemory memory;
+  const Vector2d wall(3.05, 0.05);
+  memory.remember(wall, Way::kBlocked);
+  EXPECT_EQ(memory.at(wall), Way::kUnknown) << "it is nowhere yet";
+  memory.move_to({0.0, 0.0}, 0.1);
+  memory.remember(wall, Way::kBlocked);
+  for (const double x : {5.0, 12.0, 25.0}) {
+    memory.move_to({x, 0.0}, 0.1);
+    EXPECT_EQ(memory.at(wall), Way::kBlocked) << x;
+    EXPECT_EQ(memory.at(wall + Vector2d(0.1, 0.0)), Way::kUnknown) << x;
+  }
+  terrain::Grid map;
+  map.resolution = 0.1;
+  map.origin = {25.0, 1.0};
+  map.columns = map.rows = 10;
+  const terrain::Grid all = memory.around(map);
+  EXPECT_NEAR((all.centre(0, 0) - wall).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((all.centre(all.columns - 1, all.rows - 1) - map.centre(9, 9)).norm(), 0.0, 1e-9);
+  memory.move_to({60.0, 0.0}, 0.1);
+  EXPECT_EQ(memory.at(wall), Way::kUnknown);
+  memory.move_to({25.0, 0.0}, 0.1);
+  EXPECT_EQ(memory.at(wall), Way::kUnknown) << "gone is gone";
+  memory.remember({24.05, 0.0}, Way::kLevel);
+  memory.move_to({25.0, 0.0}, 0.2);
+  EXPECT_EQ(memory.at({24.05, 0.0}), Way::kUnknown) << "other cells";
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "gaitd/abi/types.h"
+#include "gaitd/footsteps/way_memory.h"
 #include "gaitd/terrain/height_map.h"
 #include "gaitd/walking/footsteps.h"
 
@@ -75,6 +76,8 @@ bool same_foothold(const GaitdPose& a, const GaitdPose& b);
 struct PlannerOptions {
   int expansions = 20000;  // at most, of the lattice
   bool explore = false;    // the map grows: plan to where it ends if the goal is beyond
+  // Of what has left it; null: nothing is remembered.
+  std::shared_ptr<WayMemory> ways{};
 };
 
 inline constexpr std::string_view kPlannerNames[] = {"auto", "lattice", "turn_walk_turn"};
