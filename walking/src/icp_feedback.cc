@@ -85,12 +85,16 @@ void IcpFeedback::update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& 
   const Eigen::Vector2d com = view(in.robot->com).head<2>();
   Eigen::Vector2d cmp = cmp_of(view(in.plan->ecmp) + feedback(in), com, state_.kappa);
   const ConvexPolygon region = cmp_region(*in.gait, *in.robot);
+  const bool standing = in.gait->phase == GAITD_PHASE_STAND;
+  Eigen::Vector2d beyond = Eigen::Vector2d::Zero();
   if (!region.empty()) {
     const Eigen::Vector2d inside = region.closest_point(cmp);
-    const Eigen::Vector2d beyond = cmp - inside;
+    beyond = cmp - inside;
     const double length = beyond.norm();
-    const double allowed = p_[Feedback::kExcursion];
-    cmp = inside + (length > allowed ? Eigen::Vector2d(beyond * (allowed / length)) : beyond);
+    const double allowed = standing ? p_[Feedback::kExcursionStanding] * model_.nominal_com_height
+                                    : p_[Feedback::kExcursion];
+    if (length > allowed) beyond *= allowed / length;
+    cmp = inside + beyond;
   }
   const Eigen::Vector2d ecmp = ecmp_of(cmp, com, state_.kappa);
   newest_ = (newest_ + 1) % kMaxOnTheirWay;
@@ -105,6 +109,11 @@ void IcpFeedback::update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& 
   const double omega = in.gait->omega;
   const double mass = sdk::total_mass(model_, in.robot->loads);
   view(out.linear_momentum_rate) = mass * omega * omega * (com - ecmp);
+  if (standing && !beyond.isZero(0.0)) {
+    view(out.angular_momentum_rate) =
+        mass * model_.gravity * Eigen::Vector3d(-beyond.y(), beyond.x(), 0.0);
+    out.angular_momentum_mask = 0b011;
+  }
 }
 
 }  // namespace gaitd::walking

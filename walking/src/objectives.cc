@@ -29,6 +29,7 @@ constexpr double kShortStep = 0.2;    // leg lengths: a longer one ahead has toe
 // Of the tasks: the height and the pelvis come to rest without an overshoot.
 constexpr double kHeightDamping = 1.0;
 constexpr double kTrunkDamping = 0.8;
+constexpr double kAngularFull = 0.05;  // leg lengths, of an excursion of the CMP that weighs fully
 constexpr double kHeightAcceleration = 0.5;  // g, that the height may ask for: feet keep their grip
 constexpr double kAccelerationWeight = 0.05;  // what no task decides stays where it is
 // While a touchdown is overdue the pelvis may turn so far towards the foot, rad.
@@ -184,14 +185,18 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
   const double wanted =
       height_.acceleration() + stiffness * (height_.value() - robot.com[2]) +
       damping(stiffness, kHeightDamping) * (height_.velocity() - robot.com_velocity[2]);
-  for (int i = 0; i < 3; ++i) out.momentum_rate[i] = adjustment.angular_momentum_rate[i];
+  view(out.momentum_rate).head<3>() = view(adjustment.angular_momentum_rate);
   // Of the ground, as the adjuster asks, and of what pulls beside it.
   const Eigen::Vector2d pull = lean(view(robot.external_wrench), mass, model_.gravity, gait.omega);
   view(out.momentum_rate).segment<2>(3) =
       view(adjustment.linear_momentum_rate) + mass * gait.omega * gait.omega * pull;
   out.momentum_rate[5] = mass * std::clamp(wanted, -limit, limit);
-  for (double& weight : out.momentum_weight) {
-    weight = parameters_[Objective::kMomentumWeight] / (mass * mass);
+  // A little angular momentum weighs little: torques would jump whenever some is asked for.
+  const double asked = view(adjustment.angular_momentum_rate).norm() / (weight_ * leg_length_);
+  const double angular = std::min(1.0, asked / kAngularFull) / (leg_length_ * leg_length_);
+  for (int i = 0; i < 6; ++i) {
+    out.momentum_weight[i] =
+        (i < 3 ? angular : 1.0) * parameters_[Objective::kMomentumWeight] / (mass * mass);
   }
   out.momentum_mask =
       (static_cast<std::uint32_t>(adjustment.angular_momentum_mask) & kAngularRows) |

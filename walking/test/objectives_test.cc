@@ -42,6 +42,7 @@ class WalkWithObjectives : public SyntheticWalk {
     wanted.linear_momentum_rate[0] = 12.0;
     wanted.linear_momentum_rate[1] = -7.0;
     wanted.angular_momentum_mask = angular_mask;
+    wanted.angular_momentum_rate[1] = angular_rate;
     std::copy_n(robot.com, 2, robot.pelvis_position);
     const int before = testing::allocation_count();
     builder.update(dt, robot, g, machine.lift_off(), wanted, toe, *objectives);
@@ -66,6 +67,7 @@ class WalkWithObjectives : public SyntheticWalk {
   double time_on_toe = 0.0;  // s
   bool with_toe_off = false;
   int angular_mask = 0;
+  double angular_rate = 0.0;  // N m, pitch
   int allocations = 0;
   std::function<void(const GaitdObjectives&)> check;
 };
@@ -257,6 +259,22 @@ TEST(ObjectiveBuilder, AngularMomentumIsCommandedOnlyWhenTheAdjusterAsksForIt) {
   EXPECT_FALSE(w.machine.set_mode(GAITD_MODE_WALK_STRAIGHT).refused());
   w.run_for(0.01);
   EXPECT_EQ(w.objectives->momentum_mask, 0b011011u);
+}
+
+TEST(ObjectiveBuilder, AngularMomentumWeighsMoreTheMoreOfItIsWanted) {
+  WalkWithObjectives w;
+  w.angular_mask = 0b11;
+  double last = -1.0;
+  for (const double rate : {0.0, 10.0, 30.0, 60.0, 200.0}) {
+    w.angular_rate = rate;
+    w.run_for(0.01);
+    const GaitdObjectives& o = *w.objectives;
+    EXPECT_EQ(o.momentum_rate[1], rate);
+    EXPECT_GE(o.momentum_weight[1], last) << rate;
+    last = o.momentum_weight[1];
+    EXPECT_EQ(last == 0.0, rate == 0.0);
+  }
+  EXPECT_GT(last, 0.5 * w.objectives->momentum_weight[3]);
 }
 
 TEST(ObjectiveBuilder, TheHeightTargetHasNoLargeStepsOverAWalkOnFlatGround) {

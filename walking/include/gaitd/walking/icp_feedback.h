@@ -19,13 +19,14 @@ enum class Feedback {
   kDirectionSpeed,
   kMargin,
   kExcursion,
+  kExcursionStanding,
   kKappaMin,
   kKappaMax,
   kKappaFilter,
   kDelay,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 12> kFeedbackParameters = {
+inline constexpr std::array<GaitdParameter, 13> kFeedbackParameters = {
     sdk::real_parameter("gain_parallel", "1/s", 0, 30, 4, "ICP feedback along its motion"),
     sdk::real_parameter("gain_orthogonal", "1/s", 0, 30, 3, "ICP feedback across its motion"),
     sdk::real_parameter("gain_standing", "1/s", 0, 30, 3, "ICP feedback when standing"),
@@ -36,7 +37,10 @@ inline constexpr std::array<GaitdParameter, 12> kFeedbackParameters = {
                         "slower references keep the last direction"),
     sdk::real_parameter("margin", "m", 0, 0.05, 0.01, "of the CMP to the edge of the polygon"),
     sdk::real_parameter("excursion", "m", 0, 0.3, 0.03,
-                        "of the CMP out of the polygon, paid with angular momentum"),
+                        "of the CMP out of the polygon, paid with angular momentum, in a walk"),
+    sdk::real_parameter("excursion_standing", "", 0, 0.3, 0.1,
+                        "likewise when standing, in heights of the CoM; low: a push costs a step, "
+                        "high: trunk and arms swing far"),
     sdk::real_parameter("kappa_min", "", 0.3, 1, 0.8, "clamp of kappa (theory section 1)"),
     sdk::real_parameter("kappa_max", "", 1, 3, 1.4, "clamp of kappa"),
     sdk::real_parameter("kappa_filter", "Hz", 0.1, 500, 10, "low-pass of kappa"),
@@ -61,7 +65,9 @@ inline Eigen::Vector2d planned_cmp(const Eigen::Vector2d& start, const Eigen::Ve
 
 // Tracks the ICP reference by moving the CMP (theory section 3):
 //   r_eCMP = r_ref + (1 + k/w) (xi - xi_ref), k along and across the motion of the reference
-// The CMP that follows is kept inside the support polygon plus a bounded excursion. What is
+// The CMP that follows is kept inside the support polygon plus a bounded excursion e, which takes
+// angular momentum, when standing asked for as such: L' = m g (-e_y, e_x, 0) (theory section 1).
+// Stepping, the next foothold is the better answer, and a trunk that swings disturbs it. What is
 // commanded acts a known delay later: the error is the one of then, predicted with what is on its
 // way.
 class IcpFeedback {
