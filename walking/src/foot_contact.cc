@@ -71,7 +71,10 @@ bool FootContact::update(double dt, const GaitdFootState& foot, double weight,
   time_pressed_ += dt;
   if (!lie_.settled() || !flat_as_told_ || time_pressed_ < kCopTime) return false;
   const Eigen::Vector2d tilt = lie_.tilt(foot);
-  const bool tipped = tilt.norm() > kTipped && off.dot(tilt) > kTipped * tilt.norm();
+  // Who tells a tilt has measured it, and may be off by as much.
+  const Eigen::Vector3d normal = sdk::quaternion(told.pose.orientation) * Eigen::Vector3d::UnitZ();
+  const double most = kTipped + std::atan2(normal.head<2>().norm(), normal.z());
+  const bool tipped = tilt.norm() > most && off.dot(tilt) > most * tilt.norm();
   const bool returns = lie_.rate(foot).dot(tilt) < -kReturn * tilt.norm();
   const bool tips = tipped && !returns;
   if (!tips && share_ >= 1.0) {

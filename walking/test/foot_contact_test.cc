@@ -44,11 +44,11 @@ struct Foot {
     return changed;
   }
   // Lands flat; then the CoP comes to the edge, and the foot tips over it.
-  void tip(double edge, double hangs) {
+  void tip(double edge, double hangs, double most = 0.035) {
     press(0.5 * edge, 0.01);
     run_for(0.1);
     press(edge, 0.01);
-    for (double angle = 0.0; angle < 0.035; angle += kDt) {
+    for (double angle = 0.0; angle < most; angle += kDt) {
       pitch(hangs * angle, hangs * 1.0);
       run_for(kDt * 1.5);
     }
@@ -79,6 +79,20 @@ TEST(FootContact, WhatIsBeyondTheEdgeThatAFootTipsOverDoesNotCarry) {
   heel.tip(-0.03, -1.0);
   EXPECT_NEAR(heel.extent().x_min, -0.03, 0.008);
   EXPECT_EQ(heel.extent().x_max, kLength);
+}
+
+// On the ridge of a seen ramp a sole comes to rest on the one side or the other.
+TEST(FootContact, ATiltThatWasToldMayBeOffByAsMuch) {
+  const auto share = [](double told, double tips) {
+    Foot foot;
+    sdk::store(sdk::exp_so3(Eigen::Vector3d(0.0, told, 0.0)), foot.told.pose.orientation);
+    foot.foothold = foot.told;
+    foot.tip(0.02, 1.0, tips);
+    return foot.contact.share();
+  };
+  EXPECT_LT(share(0.0, 0.035), 1.0);
+  EXPECT_EQ(share(-0.05, 0.06), 1.0);
+  EXPECT_LT(share(-0.05, 0.09), 1.0);
 }
 
 TEST(FootContact, AFootThatTipsOverItsOwnEdgeLosesNothing) {
