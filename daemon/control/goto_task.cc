@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "daemon/control/plan_start.h"
+#include "gaitd/walking/footsteps.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -80,6 +81,19 @@ GotoTask::Step GotoTask::end(Step how, const char* why) {
   return how;
 }
 
+// m, of the middle of the feet.
+double GotoTask::off_goal(const walking::GaitMachine& gait) const {
+  const GaitdFoothold* feet = gait.state().footholds;
+  const GaitdPose middle = walking::middle_pose(feet[GAITD_LEFT].pose, feet[GAITD_RIGHT].pose);
+  return std::hypot(middle.position[0] - command_.target.x, middle.position[1] - command_.target.y);
+}
+
+GotoTask::Step GotoTask::give_up(const walking::GaitMachine& gait, const char* why) {
+  char text[256];
+  std::snprintf(text, sizeof(text), "goto: given up, %.2f m off: %.200s", off_goal(gait), why);
+  return end(Step::kEnded, text);
+}
+
 void GotoTask::tell_done() {
   double time = 0.0;
   for (const GaitdFootstep& step : plan_->footsteps) {
@@ -123,19 +137,14 @@ GotoTask::Step GotoTask::watch(const walking::GaitMachine& gait) {
     return Step::kWait;
   }
   if (state.phase != GAITD_PHASE_STAND || state.footstep_count > 0) return Step::kWait;
-  const double* left = state.footholds[GAITD_LEFT].pose.position;
-  const double* right = state.footholds[GAITD_RIGHT].pose.position;
-  const double off = std::hypot(0.5 * (left[0] + right[0]) - command_.target.x,
-                                0.5 * (left[1] + right[1]) - command_.target.y);
+  const double off = off_goal(gait);
   if (!partial_ && off < kNotThere) {
     std::snprintf(why_.data(), why_.size(), "goto: arrived, %.3f m off", off);
     return end(Step::kEnded, why_.data());
   }
   if (state.time_in_phase < kTryAgain * (tries_ + 1)) return Step::kWait;
   if (++tries_ > kMostTries) {
-    char text[256];
-    std::snprintf(text, sizeof(text), "goto: given up, %.2f m off: %.200s", off, why_.data());
-    return end(Step::kEnded, text);
+    return give_up(gait, why_.data());
   }
   attempts_ = 0;
   ask(gait, PlanKind::kRevise);
@@ -149,8 +158,7 @@ GotoTask::Step GotoTask::hand_over(const walking::GaitMachine& gait, Command* ou
   if (refused && !under_way_) return end(Step::kRefused, plan_->refusal.c_str());
   if (commands_ == 0 && !still_fits(start_, plan_start(gait))) return ask_again(gait);
   if (commands_ == 0 && under_way_ && gets_nowhere()) {
-    return end(Step::kEnded,
-               "goto: given up, the way changes at every step and leads no nearer to the goal");
+    return give_up(gait, "the way changes at every step and leads no nearer to the goal");
   }
   if (count == 0 && !refused && !under_way_) {
     return end(Step::kDone, "nothing to do: the robot stands there");

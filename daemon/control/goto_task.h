@@ -55,6 +55,8 @@ class GotoTask {
   void take_answers();
   void release_plan();
   Step end(Step how, const char* why);
+  double off_goal(const walking::GaitMachine& gait) const;
+  Step give_up(const walking::GaitMachine& gait, const char* why);
   void tell_done();
 
   PlanPort* port_;
