@@ -48,8 +48,8 @@ struct Foot {
     press(0.5 * edge, 0.01);
     run_for(0.1);
     press(edge, 0.01);
-    for (double angle = 0.0; angle < most; angle += kDt) {
-      pitch(hangs * angle, hangs * 1.0);
+    for (int i = 0; i * kDt < most; ++i) {
+      pitch(hangs * i * kDt, hangs * 1.0);
       run_for(kDt * 1.5);
     }
   }
@@ -121,8 +121,8 @@ TEST(FootContact, AFootWithoutLoadTellsNothing) {
 TEST(FootContact, AFootThatLandsTiltedIsNotTipping) {
   Foot foot;
   foot.press(-kLength, 0.0);
-  for (double angle = -0.08; angle < 0.0; angle += 0.001) {
-    foot.pitch(angle, 1.0);
+  for (int i = -80; i < 0; ++i) {
+    foot.pitch(1e-3 * i, 1.0);
     foot.run_for(2.0 * kDt);
   }
   EXPECT_EQ(foot.contact.share(), 1.0);
