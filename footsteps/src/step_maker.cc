@@ -28,11 +28,6 @@ constexpr double kRaise = 0.04;        // pelvis heights, by which a swing is ra
 constexpr int kRaises = 6;
 constexpr int kSamples = 24;  // of a swing
 
-double tilt_of(const GaitdPose& pose) {
-  const Eigen::Vector3d up = sdk::quaternion(pose.orientation) * Eigen::Vector3d::UnitZ();
-  return std::acos(std::clamp(up.z(), -1.0, 1.0));
-}
-
 }  // namespace
 
 Place place_of(const GaitdPose& sole) {
@@ -64,7 +59,7 @@ StepState StepMaker::make(int side, const GaitdPose& pose, const GaitdPose& stan
   const double lower_end = std::min(pose.position[2], from.position[2]);
   const bool even = footholds_.highest_between(from, pose) < lower_end + kEven;
   const bool level = std::abs(height) < kLevel && std::abs(rise) < kLevel && even &&
-                     tilt_of(pose) < kSteep && tilt_of(stance) < kSteep;
+                     walking::tilt_of(pose) < kSteep && walking::tilt_of(stance) < kSteep;
   const double way = (sdk::view(pose.position) - sdk::view(from.position)).head<2>().norm();
   if (!level && way > longest_way()) return StepState::kReach;
   step->swing_duration = parameters[Gait::kSwingDuration] * (level ? 1.0 : kSlowSwing);

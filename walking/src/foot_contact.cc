@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/footsteps.h"
 #include "gaitd/walking/support.h"
 
 namespace gaitd::walking {
@@ -72,8 +73,7 @@ bool FootContact::update(double dt, const GaitdFootState& foot, double weight,
   if (!lie_.settled() || !flat_as_told_ || time_pressed_ < kCopTime) return false;
   const Eigen::Vector2d tilt = lie_.tilt(foot);
   // Who tells a tilt has measured it, and may be off by as much.
-  const Eigen::Vector3d normal = sdk::quaternion(told.pose.orientation) * Eigen::Vector3d::UnitZ();
-  const double most = kTipped + std::atan2(normal.head<2>().norm(), normal.z());
+  const double most = kTipped + tilt_of(told.pose);
   const bool tipped = tilt.norm() > most && off.dot(tilt) > most * tilt.norm();
   const bool returns = lie_.rate(foot).dot(tilt) < -kReturn * tilt.norm();
   const bool tips = tipped && !returns;

@@ -66,6 +66,11 @@ GaitdPose middle_pose(const GaitdPose& a, const GaitdPose& b) {
   return m;
 }
 
+double tilt_of(const GaitdPose& pose) {
+  const Eigen::Vector3d up = sdk::quaternion(pose.orientation) * Eigen::Vector3d::UnitZ();
+  return std::atan2(up.head<2>().norm(), up.z());
+}
+
 Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
                        int number, const StepLimits& limits) {
   const char* side = step.side == GAITD_LEFT ? "left" : "right";

@@ -78,6 +78,9 @@ GaitdPose moved(const GaitdPose& pose, double x, double y, double yaw);
 // Pose half-way between two soles: mean position and height, mean yaw, level.
 GaitdPose middle_pose(const GaitdPose& a, const GaitdPose& b);
 
+// rad, of a sole out of the level.
+double tilt_of(const GaitdPose& pose);
+
 // Whether `step` can be taken from `stance`, the pose of the other foot, by the foot that stands at
 // `from` before. `number` names the footstep in the message, from 1.
 Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
