@@ -19,8 +19,6 @@ using Eigen::Vector2d;
 using testing::atlas;
 using testing::SyntheticWalk;
 
-constexpr double kStandingExcursion = 0.08;  // heights of the CoM
-
 // A layer whose feedback is proportional only and whose kappa follows at once.
 class Adjuster {
  public:
@@ -34,7 +32,6 @@ class Adjuster {
     testing::set_parameter(layer, "gain_standing", 3.0);
     testing::set_parameter(layer, "margin", 0.01);
     testing::set_parameter(layer, "excursion", 0.03);
-    testing::set_parameter(layer, "excursion_standing", kStandingExcursion);
     testing::set_parameter(layer, "delay", 0.0);
   }
   GaitdStepAdjustment process(const SyntheticWalk& w, int ticks = 30) {
@@ -213,7 +210,9 @@ TEST(FixedSteps, TheCmpStaysInTheShrunkPolygonPlusTheExcursionWhateverTheError) 
       const walking::ConvexPolygon region = polygon.inset(0.01);
       const Vector2d beyond =
           Vector2d(sdk::view(out.cmp)) - region.closest_point(sdk::view(out.cmp));
-      const double most = w == &standing ? kStandingExcursion * atlas().nominal_com_height : 0.03;
+      const double most =
+          w == &standing ? walking::IcpFeedback::kStandingExcursion * atlas().nominal_com_height
+                         : 0.03;
       EXPECT_LE(beyond.norm(), most + 1e-9);
       limited += beyond.norm() > most - 1e-4 ? 1 : 0;
       // Angular momentum is asked for as such where no step answers.

@@ -91,8 +91,8 @@ void IcpFeedback::update(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& 
     const Eigen::Vector2d inside = region.closest_point(cmp);
     beyond = cmp - inside;
     const double length = beyond.norm();
-    const double allowed = standing ? p_[Feedback::kExcursionStanding] * model_.nominal_com_height
-                                    : p_[Feedback::kExcursion];
+    const double allowed =
+        standing ? kStandingExcursion * model_.nominal_com_height : p_[Feedback::kExcursion];
     if (length > allowed) beyond *= allowed / length;
     cmp = inside + beyond;
   }

@@ -96,7 +96,8 @@ typedef struct GaitdStepAdjustment {
   double cmp[2];                   /* m, desired, inside the support polygon plus excursion */
   double kappa;                    /* that was used between the two */
   double linear_momentum_rate[2];  /* N, desired */
-  double angular_momentum_rate[3]; /* N m, about the CoM; only rows in the mask are wanted */
+  double angular_momentum_rate[3]; /* N m, about the CoM; only rows in the mask; small ones weigh
+                                      little */
   int32_t angular_momentum_mask;
   int32_t reserved;
 } GaitdStepAdjustment;

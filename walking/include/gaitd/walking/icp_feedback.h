@@ -19,14 +19,13 @@ enum class Feedback {
   kDirectionSpeed,
   kMargin,
   kExcursion,
-  kExcursionStanding,
   kKappaMin,
   kKappaMax,
   kKappaFilter,
   kDelay,
   kCount
 };
-inline constexpr std::array<GaitdParameter, 13> kFeedbackParameters = {
+inline constexpr std::array<GaitdParameter, 12> kFeedbackParameters = {
     sdk::real_parameter("gain_parallel", "1/s", 0, 30, 4, "ICP feedback along its motion"),
     sdk::real_parameter("gain_orthogonal", "1/s", 0, 30, 3, "ICP feedback across its motion"),
     sdk::real_parameter("gain_standing", "1/s", 0, 30, 3, "ICP feedback when standing"),
@@ -38,9 +37,6 @@ inline constexpr std::array<GaitdParameter, 13> kFeedbackParameters = {
     sdk::real_parameter("margin", "m", 0, 0.05, 0.01, "of the CMP to the edge of the polygon"),
     sdk::real_parameter("excursion", "m", 0, 0.3, 0.03,
                         "of the CMP out of the polygon, paid with angular momentum, in a walk"),
-    sdk::real_parameter("excursion_standing", "", 0, 0.3, 0.1,
-                        "likewise when standing, in heights of the CoM; low: a push costs a step, "
-                        "high: trunk and arms swing far"),
     sdk::real_parameter("kappa_min", "", 0.3, 1, 0.8, "clamp of kappa (theory section 1)"),
     sdk::real_parameter("kappa_max", "", 1, 3, 1.4, "clamp of kappa"),
     sdk::real_parameter("kappa_filter", "Hz", 0.1, 500, 10, "low-pass of kappa"),
@@ -72,6 +68,7 @@ inline Eigen::Vector2d planned_cmp(const Eigen::Vector2d& start, const Eigen::Ve
 // way.
 class IcpFeedback {
  public:
+  static constexpr double kStandingExcursion = 0.1;  // heights of the CoM
   explicit IcpFeedback(const GaitdModel& model) : model_(model) { reset(); }
 
   void set_parameter(int index, double value) { p_.set(index, value); }
