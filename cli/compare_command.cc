@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-struct Arguments {
+struct CompareArguments {
   std::string scenario;
   std::vector<std::string> overlays;
   std::string folder;
@@ -73,7 +73,7 @@ std::string change(double a, double b, const std::string& unit) {
 
 using Runs = std::array<RunReport, 2>;
 
-std::string text_of(const Arguments& arguments, const Runs& runs) {
+std::string text_of(const CompareArguments& arguments, const Runs& runs) {
   const std::string names[] = {fs::path(arguments.overlays[0]).stem().string(),
                                fs::path(arguments.overlays[1]).stem().string()};
   std::vector<std::vector<std::string>> rows;
@@ -94,7 +94,7 @@ std::string text_of(const Arguments& arguments, const Runs& runs) {
   return table({arguments.scenario, names[0], names[1], "change"}, rows);
 }
 
-json json_of(const Arguments& arguments, const Runs& runs) {
+json json_of(const CompareArguments& arguments, const Runs& runs) {
   json figures;
   for (const daemon::Figure& figure : runs[0].verdict->figures) {
     const double other = runs[1].verdict->figure(figure.name);
@@ -107,7 +107,7 @@ json json_of(const Arguments& arguments, const Runs& runs) {
           {"runs", {report_json(runs[0]), report_json(runs[1])}}};
 }
 
-int compare(const Context& context, const Arguments& arguments) {
+int compare(const Context& context, const CompareArguments& arguments) {
   Runs runs;
   for (int i = 0; i < 2; ++i) {
     const std::string& overlay = arguments.overlays[i];
@@ -147,7 +147,7 @@ void add_compare_command(CLI::App* app, Context* context) {
       "  schema: gaitd.config/1\n"
       "  step_adjuster: {variant: fixed_steps}\n"
       "Exit code 0 if both were played, whatever their verdicts; 4 if a log is damaged.");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CompareArguments>();
   const auto* scenario =
       command->add_option("SCENARIO", arguments->scenario, "Name of a scenario, or its file")
           ->required()

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kNames = 24;      // columns of the names
 constexpr std::size_t kMostWords = 40;  // characters of the words to choose from
 constexpr std::size_t kUsual = 80;      // where there is no terminal
-constexpr std::size_t kLongest = 100;   // a longer line is hard to read
+constexpr std::size_t kWidest = 100;   // a longer line is hard to read
 
 struct Group {
   const char* title;
@@ -113,7 +113,7 @@ void add_examples(CLI::App* app, const std::string& before) {
 
 std::size_t help_columns() {
   const std::size_t columns = output_columns();
-  return columns == 0 ? kUsual : std::clamp(columns, kNames + 16, kLongest);
+  return columns == 0 ? kUsual : std::clamp(columns, kNames + 16, kWidest);
 }
 
 // Lines that follow each other as one paragraph; those that begin with a blank stay as they are.

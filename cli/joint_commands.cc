@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Arguments {
+struct JointArguments {
   std::string joint;
   double amplitude = 0.05;  // rad
   double duration = 2.0;    // s
@@ -71,7 +71,7 @@ int list(const Context& context) {
 }
 
 // Watches the joint until the test is over: how far it went, and with which torque.
-int test(const Context& context, const Arguments& arguments) {
+int test(const Context& context, const JointArguments& arguments) {
   using std::chrono::milliseconds;
   const std::string command = "joint test";
   const auto client = connect(context, command, daemon::Role::kAdminister);
@@ -124,7 +124,7 @@ void add_joint_commands(CLI::App* app, Context* context) {
 
   auto* command = joint->add_subcommand(
       "test", "Move one joint a little and back, the others off; the robot hangs, disarmed");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<JointArguments>();
   const auto* name =
       command->add_option("NAME", arguments->joint, "Joint of the robot")->required();
   context->values[name] = [](const auto&) { return joint_names(); };

@@ -32,7 +32,7 @@ using daemon::CheckVerdict;
 using daemon::PluginReport;
 using nlohmann::json;
 
-struct Arguments {
+struct PluginArguments {
   std::string file;
   std::string robot = "atlas";
   double timeout = 60.0;  // s
@@ -81,7 +81,7 @@ std::string report_text(const PluginReport& report) {
   return out.str();
 }
 
-int check(const Context& context, const Arguments& arguments) {
+int check(const Context& context, const PluginArguments& arguments) {
   const daemon::Paths paths = daemon::Paths::detect();
   const auto robot_file = paths.robot(arguments.robot);
   if (!robot_file) {
@@ -161,7 +161,7 @@ void add_plugin_commands(CLI::App* app, Context* context) {
   command->footer(
       "The library is loaded and called in child processes; no daemon is needed. Exit code 0 only "
       "if nothing failed; warnings do not fail.");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PluginArguments>();
   command->add_option("FILE", arguments->file, "The library, e.g. build/toe_off/my_variant.so")
       ->required();
   const auto* robot = command

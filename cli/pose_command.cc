@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Arguments {
+struct PoseArguments {
   std::string part;
   json where = json::object();   // what `pose` gets under the name of the part
   std::shared_ptr<json> params;  // the rest
@@ -57,7 +57,7 @@ bool read_joint(const std::string& text, json* joints) {
   return true;
 }
 
-int send(const Context& context, const Arguments& arguments) {
+int send(const Context& context, const PoseArguments& arguments) {
   const std::string command = "pose " + arguments.part;
   json params = *arguments.params;
   json& where = params[arguments.part];
@@ -77,9 +77,9 @@ int send(const Context& context, const Arguments& arguments) {
   return ask(context, command, "pose", params);
 }
 
-std::shared_ptr<Arguments> add_part(CLI::App* pose, Context* context, const std::string& part,
+std::shared_ptr<PoseArguments> add_part(CLI::App* pose, Context* context, const std::string& part,
                                     const std::string& description, CLI::App** command) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PoseArguments>();
   arguments->part = part;
   arguments->params = std::make_shared<json>(json::object());
   *command = pose->add_subcommand(part, description);
@@ -95,7 +95,7 @@ std::shared_ptr<Arguments> add_part(CLI::App* pose, Context* context, const std:
   return arguments;
 }
 
-void add_side(CLI::App* command, const std::shared_ptr<Arguments>& arguments) {
+void add_side(CLI::App* command, const std::shared_ptr<PoseArguments>& arguments) {
   command
       ->add_option_function<std::string>(
           "SIDE", [arguments](const std::string& side) { arguments->where["side"] = side; },
@@ -104,7 +104,7 @@ void add_side(CLI::App* command, const std::shared_ptr<Arguments>& arguments) {
       ->check(CLI::IsMember({"left", "right"}));
 }
 
-void add_axes(CLI::App* command, const std::shared_ptr<Arguments>& arguments,
+void add_axes(CLI::App* command, const std::shared_ptr<PoseArguments>& arguments,
               const std::vector<std::pair<std::string, std::string>>& axes) {
   for (const auto& [name, description] : axes) {
     add_number(command, "--" + name, arguments->params, "/" + arguments->part + "/" + name,

@@ -84,13 +84,13 @@ std::string report_text(const std::string& file, const ReplayReport& report) {
   return out;
 }
 
-struct Arguments {
+struct ReplayArguments {
   std::string file;
   std::vector<std::string> set;
   bool trust = false;
 };
 
-int replay(const Context& context, const Arguments& arguments) {
+int replay(const Context& context, const ReplayArguments& arguments) {
   const std::string& file = arguments.file;
   std::string error;
   const auto log = daemon::LogReader::open(file, &error);
@@ -125,7 +125,7 @@ void add_replay_command(CLI::App* log, Context* context) {
       "and signal that differ are named. With --set the difference that it makes is shown. It\n"
       "needs the log, the installed plugins and no daemon; wall times and the simulation are not\n"
       "replayed. 4: the log is damaged, and was replayed up to the first tick that is missing.");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("FILE", arguments->file, "A log of gaitd (.mcap)")
       ->required()
       ->type_name("FILE");

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct RunArguments {
   std::vector<std::string> scenarios;
   std::vector<std::string> settings;
   std::string log;
@@ -50,7 +50,7 @@ void print_summary(const std::vector<RunReport>& reports) {
   std::cout << std::endl;
 }
 
-int run(const Context& context, const Arguments& arguments) {
+int run(const Context& context, const RunArguments& arguments) {
   std::error_code ignored;
   if (arguments.scenarios.size() > 1 && !arguments.log.empty() && !arguments.log.ends_with('/') &&
       !fs::is_directory(arguments.log, ignored)) {
@@ -95,7 +95,7 @@ void add_run_command(CLI::App* app, Context* context) {
       "run", "Play scenarios on a private gaitd in lockstep and judge what the logs show");
   command->footer(
       "Exit code 0 only if every expectation of every scenario holds; 4 if a log is damaged.");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RunArguments>();
   const auto* scenario =
       command
           ->add_option("SCENARIO", arguments->scenarios,

@@ -13,14 +13,18 @@ mapfile -t all < <(git ls-files '*.cc' '*.h')
 clang-format --dry-run --Werror "${all[@]}" 2>"$scratch/format.txt" ||
   fail "run clang-format -i on: $(sed -n 's/^\([^ :]*\):.* error: .*/\1/p' "$scratch/format.txt" | sort -u | tr '\n' ' ')"
 
+# The options of each file by itself; the build compiles several at once (unity). What it generated is in its folder.
+# clang does not know every option of gcc, and takes an unknown one for an error of the source.
+cmake --preset release -B "$scratch/tidy" -DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >"$scratch/cmake.txt" ||
+  fail "$(cat "$scratch/cmake.txt")"
+sed "s# -fno-gnu-unique##; s#$scratch/tidy/#$GAITD_BUILD/#g" "$scratch/tidy/compile_commands.json" >"$scratch/compile_commands.json"
+
 base=${GAITD_LINT_BASE:-HEAD~1}
 git rev-parse -q --verify "$base" >/dev/null || base=HEAD
 # Only what is compiled has options to be looked at with.
 mapfile -t changed < <(git diff --name-only --diff-filter=d "$base" -- '*.cc' | while read -r file; do
-  [[ $file != */test/* ]] && grep -q "\"file\": \".*/$file\"" "$GAITD_BUILD/compile_commands.json" && echo "$file"
+  [[ $file != */test/* ]] && grep -q "\"file\": \".*/$file\"" "$scratch/compile_commands.json" && echo "$file"
 done)
-# clang does not know every option of gcc, and takes an unknown one for an error of the source.
-sed 's/ -fno-gnu-unique//' "$GAITD_BUILD/compile_commands.json" >"$scratch/compile_commands.json"
 end=$((SECONDS + ${GAITD_LINT_SECONDS:-360}))
 failed=()
 for file in "${changed[@]}"; do

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 constexpr const char* kCommand = "calibrate";
 constexpr std::size_t kFewestPostures = 6;
 
-struct Arguments {
+struct CalibrateArguments {
   std::string log;
   std::string output;
   std::string motions = "calibration";
@@ -58,7 +58,7 @@ int write(const Context& context, const std::string& file, const std::string& te
 }
 
 // Beside the robot.yaml of the robot, unless the user says where.
-std::string output_of(const Arguments& arguments, const daemon::Robot& robot) {
+std::string output_of(const CalibrateArguments& arguments, const daemon::Robot& robot) {
   if (!arguments.output.empty()) return arguments.output;
   const fs::path folder = fs::path(robot.file).parent_path() / "calibration";
   return (folder / "measured.yaml").string();
@@ -95,7 +95,7 @@ calibrate::Result measure(const daemon::Robot& robot, const calibrate::Recording
 }
 
 // `growing`: gaitd still writes the log, so that it has no end is no damage.
-int estimate(const Context& context, const Arguments& arguments, const std::string& file,
+int estimate(const Context& context, const CalibrateArguments& arguments, const std::string& file,
              bool growing = false) {
   std::string error;
   const auto log = daemon::LogReader::open(file, &error);
@@ -134,7 +134,7 @@ int estimate(const Context& context, const Arguments& arguments, const std::stri
   return damaged ? tell_damage(kCommand, *log, kDone) : kDone;
 }
 
-int simulate(const Context& context, const Arguments& arguments) {
+int simulate(const Context& context, const CalibrateArguments& arguments) {
   RunOptions options{gaitd_program(), arguments.settings, arguments.simulated_log, arguments.trust};
   const RunReport report = run_with_progress(arguments.motions, options, arguments.motions);
   if (!report.pass()) {
@@ -145,7 +145,7 @@ int simulate(const Context& context, const Arguments& arguments) {
   return estimate(context, arguments, report.log);
 }
 
-int run(const Context& context, const Arguments& arguments) {
+int run(const Context& context, const CalibrateArguments& arguments) {
   if (!arguments.log.empty()) return estimate(context, arguments, arguments.log);
   if (arguments.simulate) return simulate(context, arguments);
   if (!arguments.settings.empty() || !arguments.simulated_log.empty() || arguments.trust) {
@@ -168,7 +168,7 @@ void add_calibrate_command(CLI::App* app, Context* context) {
       "encoders, IMU and force sensors say in them must fit together: that gives the calibration,\n"
       "with standard deviations, and tells what cannot be known without a jig. Exit code 0: the\n"
       "file is written; 1: refused or failed; 4: the log is damaged.");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CalibrateArguments>();
   command
       ->add_option("LOG", arguments->log,
                    "Nothing moves: a log of such motions is looked at (.mcap)")

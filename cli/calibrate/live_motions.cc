@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 using std::chrono::milliseconds;
 
-constexpr const char* kCommand = "calibrate";
+constexpr const char* kCalibrate = "calibrate";
 constexpr double kPatience = 60.0;    // s, for the robot to stand, or to be lowered
 constexpr double kLastPosture = 3.0;  // s, that it is held
 constexpr milliseconds kPoll(20);
@@ -95,26 +95,26 @@ std::optional<daemon::Scenario> read(const std::string& name, std::string* error
 int play_live(const Context& context, const std::string& name, std::string* log) {
   std::string error;
   const auto scenario = read(name, &error);
-  if (!scenario) return fail(context, kFailed, kCommand, error);
-  const auto client = connect(context, kCommand, daemon::Role::kAdminister);
+  if (!scenario) return fail(context, kFailed, kCalibrate, error);
+  const auto client = connect(context, kCalibrate, daemon::Role::kAdminister);
   if (!client) return kNoDaemon;
   const json before = status(client.get());
   const json written = before.value("log", json::object());
   if (!written.is_object() || !written.value("open", false)) {
-    return fail(context, kFailed, kCommand,
+    return fail(context, kFailed, kCalibrate,
                 "gaitd writes no log, and what it shows there is what is measured; start it with "
                 "`log`, see docs/configuration.md");
   }
   *log = written.value("file", "");
   if (before.value("state", "") != "disarmed") {
-    return fail(context, kFailed, kCommand,
+    return fail(context, kFailed, kCalibrate,
                 "expected a disarmed robot on its hoist, got one that is " +
                     before.value("state", "") + "; `gaitctl disarm` first");
   }
   const std::string mode(daemon::mode_name(scenario->mode));
   const daemon::RpcResult chosen = client->call("mode", {{"mode", mode}});
   if (const auto* refused = std::get_if<daemon::RpcError>(&chosen)) {
-    return fail(context, kCommand, "mode", *refused);
+    return fail(context, kCalibrate, "mode", *refused);
   }
   double due = time_of(before);
   double last = scenario->commands.empty() ? 0.0 : scenario->commands.front().at;
@@ -122,7 +122,7 @@ int play_live(const Context& context, const std::string& name, std::string* log)
     due += command.at - last;
     last = command.at;
     if (!wait_until(client.get(), due)) {
-      return fail(context, kFailed, kCommand, "gaitd does not go on; see `gaitctl status`");
+      return fail(context, kFailed, kCalibrate, "gaitd does not go on; see `gaitctl status`");
     }
     if (command.method == "arm") {
       std::cerr
@@ -130,12 +130,12 @@ int play_live(const Context& context, const std::string& name, std::string* log)
     }
     const daemon::RpcResult result = client->call(command.method, params_of(command));
     if (const auto* refused = std::get_if<daemon::RpcError>(&result)) {
-      return fail(context, kCommand, command.method, *refused);
+      return fail(context, kCalibrate, command.method, *refused);
     }
     const std::string wanted = state_after(command.method);
     std::string got;
     if (!wanted.empty() && !wait_for(client.get(), wanted, &got)) {
-      return fail(context, kFailed, kCommand,
+      return fail(context, kFailed, kCalibrate,
                   command.method + ": expected the robot to be " + wanted + " after it, got " +
                       got + "; see `gaitctl status`");
     }

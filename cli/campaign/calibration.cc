@@ -16,6 +16,7 @@
 
 #include "cli/campaign/settings.h"
 #include "cli/stop_signals.h"
+#include "cli/whole_file.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/settings.h"
 
@@ -47,11 +48,6 @@ std::string hash_text(const std::string& text) {
   char hex[17];
   std::snprintf(hex, sizeof(hex), "%016" PRIx64, hash);
   return hex;
-}
-
-std::string read_file(const fs::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 // Why there is no calibration: the last that gaitctl said, in one line.

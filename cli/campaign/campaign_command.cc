@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct CampaignArguments {
   std::string file;
   std::string folder;
   std::vector<std::string> settings;
@@ -77,7 +77,7 @@ std::string wrong_shard(const CampaignPlan& plan) {
 }
 
 // Why this campaign does not begin in the folder like this; empty if it does.
-std::string wrong_folder(const Arguments& arguments, const fs::path& folder) {
+std::string wrong_folder(const CampaignArguments& arguments, const fs::path& folder) {
   if (arguments.resume && !holds_campaign(folder)) {
     return folder.string() + ": --resume, but no campaign was started there; leave it out, or " +
            "give the folder with -o";
@@ -89,7 +89,7 @@ std::string wrong_folder(const Arguments& arguments, const fs::path& folder) {
   return "";
 }
 
-int run(const Context& context, const Arguments& arguments) {
+int run(const Context& context, const CampaignArguments& arguments) {
   const auto failed = [&](const std::string& why) {
     return fail(context, kFailed, "campaign", why);
   };
@@ -178,7 +178,7 @@ void add_campaign_command(CLI::App* app, Context* context) {
   command->footer(
       "Started again after an end of any kind it goes on where it was. Exit code 0 only if every "
       "combination succeeds as often as the file asks for; 4 if the log of a run is damaged.");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CampaignArguments>();
   command->add_option("FILE", arguments->file, "A campaign (schema gaitd.campaign/1)")
       ->type_name("FILE");
   command

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "cli/campaign/runner.h"
+#include "cli/whole_file.h"
 
 namespace gaitd::cli {
 namespace {
@@ -34,11 +35,6 @@ bool add_results(const ResultFormat& format, const fs::path& folder, CampaignRes
     if (fresh || !has_log((*sources)[number], number)) (*sources)[number] = folder;
   }
   return true;
-}
-
-std::string read_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 // The same bytes in both places; without a second copy of them where that can be.

@@ -19,7 +19,7 @@
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "cli/report/report_data.h"
-#include "cli/write_file.h"
+#include "cli/whole_file.h"
 #include "daemon/log/log_reader.h"
 
 namespace gaitd::cli {
@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-struct Arguments {
+struct PageArguments {
   std::string folder;
   std::string output = "campaign.html";
   bool replays = false;
@@ -57,7 +57,7 @@ std::optional<json> log_json(int number, const fs::path& log_file, const fs::pat
   return entry;
 }
 
-int run(const Context& context, const Arguments& arguments) {
+int run(const Context& context, const PageArguments& arguments) {
   const auto failed = [&](const std::string& why) {
     return fail(context, kFailed, "campaign report", why);
   };
@@ -104,7 +104,7 @@ void add_page_command(CLI::App* campaign, Context* context) {
       "Of a campaign that is still being played it shows what there is. Variants are compared on "
       "runs that differ in nothing else, and each run leads to what its log says, where one was "
       "kept.");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PageArguments>();
   command->add_option("FOLDER", arguments->folder, "Folder of a campaign")
       ->required()
       ->type_name("FOLDER");

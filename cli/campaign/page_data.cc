@@ -55,7 +55,7 @@ std::vector<Axis> axes_of(const CampaignPlan& plan) {
   return axes;
 }
 
-struct Count {
+struct Outcomes {
   int runs = 0, successes = 0, falls = 0;
 
   void add(const CampaignResult& result) {
@@ -89,7 +89,7 @@ json quantiles(std::vector<double> values) {
 
 // By each value of an axis: how often, and how the figures are spread.
 json axis_json(const Axis& axis, const CampaignResults& results) {
-  std::vector<Count> counts(axis.labels.size());
+  std::vector<Outcomes> counts(axis.labels.size());
   const std::size_t figures = campaign_figures().size();
   std::vector<std::vector<std::vector<double>>> values(axis.labels.size(),
                                                        std::vector<std::vector<double>>(figures));
@@ -118,7 +118,7 @@ json maps_json(const std::vector<Axis>& axes, const CampaignResults& results) {
     for (std::size_t b = a + 1; b < axes.size(); ++b) {
       const std::size_t rows = axes[a].labels.size(), columns = axes[b].labels.size();
       if (rows < 2 || columns < 2 || rows > kMostValues || columns > kMostValues) continue;
-      std::vector<Count> counts(rows * columns);
+      std::vector<Outcomes> counts(rows * columns);
       for (const auto& [number, result] : results) {
         const std::size_t i = index_of(result);
         counts[static_cast<std::size_t>(axes[a].place[i]) * columns +
@@ -126,7 +126,7 @@ json maps_json(const std::vector<Axis>& axes, const CampaignResults& results) {
             .add(result);
       }
       json cells = json::array();
-      for (const Count& count : counts) cells.push_back({count.successes, count.runs});
+      for (const Outcomes& count : counts) cells.push_back({count.successes, count.runs});
       maps.push_back({{"rows", a}, {"columns", b}, {"cells", cells}});
     }
   }
@@ -154,7 +154,7 @@ json drawn_json(const CampaignPlan& plan, const CampaignResults& results) {
       // A seed draws the same in all its runs: they stay together.
       while (end > 0 && end < values.size() && values[end].first == values[end - 1].first) ++end;
       if (first == end) continue;
-      Count count;
+      Outcomes count;
       for (std::size_t k = first; k < end; ++k) count.add(*values[k].second);
       json entry = count.to_json();
       entry["from"] = values[first].first;

@@ -13,6 +13,7 @@
 
 #include "cli/campaign/settings.h"
 #include "cli/print.h"
+#include "cli/whole_file.h"
 #include "daemon/config/daemon_config.h"
 #include "daemon/config/library_paths.h"
 
@@ -25,11 +26,6 @@ using nlohmann::json;
 constexpr const char* kCopy = "campaign.yaml";
 constexpr const char* kOrigin = "origin.json";
 constexpr const char* kShardLine = "# --shard ";
-
-std::string read_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 // KEY=VALUE of everything that a run may get from the file.
 std::vector<std::string> all_assignments(const Campaign& campaign) {

@@ -17,6 +17,8 @@
 #include <sstream>
 #include <utility>
 
+#include "cli/one_line.h"
+
 namespace gaitd::cli {
 namespace {
 
@@ -67,11 +69,6 @@ double badness(const CampaignResult& result) {
   const auto icp = std::find(names.begin(), names.end(), "icp_error_max") - names.begin();
   const double error = result.figures[static_cast<std::size_t>(icp)];
   return (result.success ? 0.0 : 1e6) + (std::isnan(error) ? 1e3 : std::min(error, 1e3));
-}
-
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
 }
 
 }  // namespace

@@ -14,6 +14,8 @@
 #include <utility>
 
 #include "cli/child.h"
+#include "cli/one_line.h"
+#include "cli/whole_file.h"
 
 namespace gaitd::cli {
 namespace {
@@ -29,17 +31,6 @@ std::string on_path(const std::string& program) {
     if (access(file.c_str(), X_OK) == 0) return file.string();
   }
   return "";
-}
-
-std::string read_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::string one_line(std::string text) {
-  while (text.ends_with('\n')) text.pop_back();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
 }
 
 }  // namespace

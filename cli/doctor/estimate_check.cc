@@ -18,7 +18,7 @@ constexpr double kTilt = 0.06;        // rad, estimate against gravity or truth
 constexpr double kVelocity = 0.25;    // m/s, estimate against truth
 constexpr double kAverage = 0.05;     // s, standing
 constexpr double kWalkAverage = 0.8;  // s
-constexpr double kLeast = 0.05;       // s
+constexpr double kLeastEstimate = 0.05;       // s
 constexpr double kLoad = 0.4;         // of the weight, of a foot that does not move
 
 // Mean over the last `duration` seconds (of samples one `period` apart).
@@ -135,7 +135,7 @@ Findings check_estimate(const LogCase& log) {
   Findings findings;
   if (const GaitdModel* model = log.model()) {
     const Disagreement d = compare_imu(log, *model);
-    if (const auto episode = last_episode(log, d.rate, kLeast)) {
+    if (const auto episode = last_episode(log, d.rate, kLeastEstimate)) {
       findings.push_back(log_finding(
           log, "estimate", episode->begin,
           format("gyro and leg joints disagree about the turning of the pelvis, by up to %.2f "
@@ -144,7 +144,7 @@ Findings check_estimate(const LogCase& log) {
           "bias and mounting of the IMU (imus in robot.yaml), signs of the leg joints; "
           "state_estimator.variant=invariant_ekf estimates the bias"));
     }
-    if (const auto episode = last_episode(log, d.gravity, kLeast)) {
+    if (const auto episode = last_episode(log, d.gravity, kLeastEstimate)) {
       findings.push_back(log_finding(
           log, "estimate", episode->begin,
           format("standing, the estimated vertical is %.2f rad off the one of the accelerometer",
@@ -160,7 +160,7 @@ Findings check_estimate(const LogCase& log) {
       wrong[i] = wrong[i] || (log.controlled(i) && std::abs((*error)[i]) > bound);
     }
   }
-  if (const auto episode = last_episode(log, wrong, kLeast)) {
+  if (const auto episode = last_episode(log, wrong, kLeastEstimate)) {
     findings.push_back(log_finding(
         log, "estimate", episode->begin,
         format("the estimated pelvis was off the true one by more than %g rad or %g m/s", kTilt,

@@ -5,7 +5,7 @@ namespace gaitd::doctor {
 namespace {
 
 constexpr double kNear = 0.01;   // rad from the stop
-constexpr double kLeast = 0.05;  // s
+constexpr double kLeastAtStop = 0.05;  // s
 
 }  // namespace
 
@@ -23,7 +23,7 @@ Findings check_joints(const LogCase& log) {
         wrong[i] = log.controlled(i) && ((*position)[i] < joint.position_min + kNear ||
                                          (*position)[i] > joint.position_max - kNear);
       }
-      const auto episode = last_episode(log, wrong, kLeast);
+      const auto episode = last_episode(log, wrong, kLeastAtStop);
       if (!episode) continue;
       const bool lower = (*position)[episode->begin] < joint.position_min + kNear;
       findings.push_back(log_finding(

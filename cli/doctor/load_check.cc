@@ -6,7 +6,7 @@
 namespace gaitd::doctor {
 namespace {
 
-constexpr double kLeast = 0.8;  // s
+constexpr double kLeastLoad = 0.8;  // s
 constexpr double kNext = 0.2;   // s: the force is judged once it has settled
 
 }  // namespace
@@ -19,7 +19,7 @@ Findings check_load(const LogCase& log) {
   for (std::size_t i = 0; i < wrong.size(); ++i) {
     wrong[i] = log.controlled(i) && (*load)[i] != 0.0;
   }
-  const auto episode = last_episode(log, wrong, kLeast);
+  const auto episode = last_episode(log, wrong, kLeastLoad);
   if (!episode) return {};
   double sum = 0.0;
   std::size_t count = 0;

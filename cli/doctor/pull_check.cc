@@ -6,7 +6,7 @@
 namespace gaitd::doctor {
 namespace {
 
-constexpr double kLeast = 0.5;  // s
+constexpr double kLeastPull = 0.5;  // s
 constexpr double kShows = 0.1;  // of the force
 
 }  // namespace
@@ -20,7 +20,7 @@ Findings check_pull(const LogCase& log) {
   for (std::size_t i = 0; i < wrong.size(); ++i) {
     wrong[i] = log.controlled(i) && (*pulled)[i] != 0.0;
   }
-  auto episode = last_episode(log, wrong, kLeast);
+  auto episode = last_episode(log, wrong, kLeastPull);
   if (!episode) return {};
   Eigen::Vector2d force = Eigen::Vector2d::Zero();
   for (std::size_t i = episode->begin; i < episode->end; ++i)

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSlipped = 0.015;  // m
 constexpr double kBegan = 0.003;    // m
-constexpr double kLoaded = 0.2;     // of the weight
+constexpr double kOnFoot = 0.2;     // of the weight
 
 struct Slip {
   Episode episode;
@@ -44,7 +44,7 @@ std::optional<Slip> measured_slip(const LogCase& log) {
     if (x[k] == nullptr || y[k] == nullptr || f[k] == nullptr) return std::nullopt;
   }
   if (toe == nullptr || model == nullptr) return std::nullopt;
-  const double load = kLoaded * model->total_mass * model->gravity;
+  const double load = kOnFoot * model->total_mass * model->gravity;
   std::vector<bool> wrong(x[0]->size());
   std::optional<double> reference;
   for (std::size_t i = 0; i < wrong.size(); ++i) {
@@ -72,7 +72,7 @@ double grip(const LogCase& log, const Slip& slip) {
     const GaitdModel* model = log.model();
     if (fx == nullptr || fy == nullptr || fz == nullptr || model == nullptr) continue;
     for (std::size_t i = slip.episode.begin; i < end; ++i) {
-      if ((*fz)[i] < kLoaded * model->total_mass * model->gravity) continue;
+      if ((*fz)[i] < kOnFoot * model->total_mass * model->gravity) continue;
       most = std::max(most, std::hypot((*fx)[i], (*fy)[i]) / (*fz)[i]);
     }
   }

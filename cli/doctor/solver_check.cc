@@ -7,7 +7,7 @@
 namespace gaitd::doctor {
 namespace {
 
-constexpr double kLeast = 0.005;  // s without a solution
+constexpr double kLeastUnsolved = 0.005;  // s without a solution
 
 }  // namespace
 
@@ -19,7 +19,7 @@ Findings check_solver(const LogCase& log) {
   for (std::size_t i = 0; i < wrong.size(); ++i) {
     wrong[i] = log.controlled(i) && (*status)[i] != static_cast<double>(GAITD_WBC_SOLVED);
   }
-  const auto episode = last_episode(log, wrong, kLeast);
+  const auto episode = last_episode(log, wrong, kLeastUnsolved);
   if (!episode) return {};
   std::map<double, int> counts;
   int unsolved = 0;

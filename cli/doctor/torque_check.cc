@@ -9,7 +9,7 @@ namespace gaitd::doctor {
 namespace {
 
 constexpr double kAtLimit = 0.999;  // of the limit
-constexpr double kLeast = 0.02;     // s
+constexpr double kLeastTorque = 0.02;     // s
 
 }  // namespace
 
@@ -33,7 +33,7 @@ Findings check_torques(const LogCase& log) {
       }
     }
   }
-  const auto episode = last_episode(log, wrong, kLeast);
+  const auto episode = last_episode(log, wrong, kLeastTorque);
   if (!episode) return {};
   std::string worst;
   long most = 0;

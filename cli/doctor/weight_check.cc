@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kNoticed = 0.04;  // of the mass; force sensors are rarely better
 constexpr double kWrong = 0.10;    // enough to make a robot fall
-constexpr double kLeast = 0.2;     // s of standing
+constexpr double kLeastStanding = 0.2;     // s of standing
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Findings check_weight(const LogCase& log) {
   std::size_t count = 0;
   std::size_t first = 0;
   std::size_t last = 0;
-  const auto least = static_cast<std::size_t>(kLeast / log.period());
+  const auto least = static_cast<std::size_t>(kLeastStanding / log.period());
   for (std::size_t i = 0; i < log.end(); ++i) {
     const bool standing = log.controlled(i) && log.run().phase()[i] == daemon::Phase::kStand;
     if (!standing && count >= least) break;  // the first time that it stands

@@ -7,7 +7,6 @@
 namespace gaitd::cli {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr double kHalfFoot = 0.1302;  // m, sole frame to toe and heel
 constexpr double kEdge = 0.005;       // m, at least between a sole and the edge of its tread
 constexpr double kWidth = 2.0;        // m, of all ground, across
@@ -114,7 +113,7 @@ Story slope(const Draws& draws, bool up) {
   Story story;
   story.swing = draws.between("swing", 0.7, 0.9);
   story.transfer = draws.between("transfer", 0.25, 0.35);
-  const double angle = draws.between("angle", 3.0, 13.0) * kDegree;
+  const double angle = draws.between("angle", 3.0, 13.0) * kRadiansPerDegree;
   const double length = draws.between("length", 0.22, 0.34);
   const int count = draws.whole("count", 4, 7);
   const double first = draws.between("approach", 0.25, 0.35);
@@ -173,8 +172,8 @@ Story blocks(const Draws& draws) {
     const double x = field + kSize * (row + 0.5);
     for (int foot = 0; foot < 2; ++foot) {
       const int block = 2 * row + foot;
-      const double tilt =
-          draws.between("tilt", 5.0, 15.0, block) * kDegree * draws.sign("tilt/sign", block);
+      const double tilt = draws.between("tilt", 5.0, 15.0, block) * kRadiansPerDegree *
+                          draws.sign("tilt/sign", block);
       const bool rolls = draws.coin("tilt/axis", block);
       const double roll = rolls ? tilt : 0.0, pitch = rolls ? 0.0 : tilt;
       const double y = footholds.left() ? 0.5 * kSize : -0.5 * kSize;

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace gaitd::cli {
+
+inline constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 /// Draws of one scenario, each by its own name, so that one more changes none of the others. All
 /// are rounded: what is written is what was meant, to the last digit.

@@ -9,7 +9,6 @@
 namespace gaitd::cli {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr double kBase = 0.3;       // m, of the walkway above the floor of the pit
 constexpr double kHalfWidth = 1.2;  // m, of the walkway
 constexpr double kBetween = 0.7;    // m of walkway before, between and behind the obstacles
@@ -107,7 +106,7 @@ class Course {
   // A board up, a gap, and a board down.
   void ramps() {
     constexpr double kThick = 0.2;  // m
-    const double angle = (4.0 + 8.0 * difficulty_ + between("ramp", -1.0, 1.0)) * kDegree;
+    const double angle = (4.0 + 8.0 * difficulty_ + between("ramp", -1.0, 1.0)) * kRadiansPerDegree;
     const double run = between("ramp/run", 0.9, 1.2);
     const double rise = run * std::tan(angle);
     const double gap = 0.04 + 0.1 * difficulty_;
@@ -135,7 +134,7 @@ class Course {
         const bool edge = i == 0 || i == rows - 1;
         const double z = kBase + layer * whole("blocks/level", 0, edge ? 1 : 2, place);
         const bool tilted = between("blocks/tilted", 0.0, 1.0, place) < 0.6 * difficulty_;
-        const double tilt = tilted ? between("blocks/tilt", 4.0, 12.0, place) * kDegree *
+        const double tilt = tilted ? between("blocks/tilt", 4.0, 12.0, place) * kRadiansPerDegree *
                                          draws_.sign("blocks/sign", place_ + place)
                                    : 0.0;
         const bool rolls = draws_.coin("blocks/axis", place_ + place);

@@ -22,7 +22,7 @@
 namespace gaitd::cli {
 namespace {
 
-struct Arguments {
+struct ReportArguments {
   std::vector<std::string> logs;
   std::string output = "report.html";
   std::string png;
@@ -30,7 +30,7 @@ struct Arguments {
   std::vector<double> span;  // s, of the film
 };
 
-int run(const Context& context, const Arguments& arguments) {
+int run(const Context& context, const ReportArguments& arguments) {
   std::string error;
   std::optional<Waiting> waiting("drawing " + arguments.output);
   std::vector<std::unique_ptr<daemon::LogReader>> logs;
@@ -91,7 +91,7 @@ void add_report_command(CLI::App* app, Context* context) {
       "Several logs are laid over each other: their lines in the same plots, the robots of all "
       "but\n"
       "the first as ghosts. Exit code 4: done, but a log is damaged; what is missing is said.");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReportArguments>();
   command->add_option("FILE", arguments->logs, "Logs of gaitd (.mcap)")
       ->required()
       ->type_name("FILE");

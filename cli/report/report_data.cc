@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cli/installed_page.h"
+#include "cli/whole_file.h"
 #include "daemon/config/names.h"
 #include "daemon/config/node.h"
 #include "daemon/config/paths.h"
@@ -30,16 +31,11 @@ using nlohmann::json;
 constexpr double kRowsPerSecond = 100.0;
 constexpr std::size_t kMostRows = 12000;
 // What the page shows.
-constexpr char kShown[] =
+constexpr char kShownSignals[] =
     "time,com/?,com/height_target,truth/com/z,icp/*,cmp/desired/*,cop/*,pelvis/*,foot/*,footstep/*,"
     "external/force/?,external/pulled,payload/?/*,handhold/*,leg/*,joint/*/position,joint/*/"
     "torque_desired,step_adjust/*,tick/*_us,gait/phase,"
     "toe_off/active";
-
-std::string read_file(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 // Every n-th tick, so that neither bound is passed.
 std::size_t stride_of(const LogReader& log) {
@@ -54,7 +50,7 @@ std::size_t stride_of(const LogReader& log) {
 void add_signals(const LogReader& log, json* data) {
   const daemon::SignalTable& table = log.signals();
   std::vector<int> shown;
-  for (const std::string& name : log.match(kShown)) shown.push_back(find_signal(table, name));
+  for (const std::string& name : log.match(kShownSignals)) shown.push_back(find_signal(table, name));
   const std::vector<std::vector<double>> columns = log.columns(shown);
   const std::size_t stride = stride_of(log);
   (*data)["rows"] = (log.tick_count() + stride - 1) / stride;

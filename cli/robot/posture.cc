@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 using Task = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kBend = 0.5;     // rad
-constexpr double kMargin = 0.03;  // rad, from the stops
+constexpr double kStopMargin = 0.03;  // rad, from the stops
 constexpr double kClose = 5e-4;   // rad and m
 constexpr double kGap = 0.35;     // of the width of a sole, between the soles
 
@@ -73,7 +73,7 @@ class Solver {
       if (most > 0.2) step *= 0.2 / most;
       for (int i = 0; i < leg.joint_count; ++i) {
         const GaitdJoint& joint = model_.joints[leg.joints[i]];
-        const double margin = std::min(kMargin, 0.05 * (joint.position_max - joint.position_min));
+        const double margin = std::min(kStopMargin, 0.05 * (joint.position_max - joint.position_min));
         double& position = (*q)[leg.joints[i]];
         position = std::clamp(position + step[i], joint.position_min + margin,
                               joint.position_max - margin);
@@ -86,7 +86,7 @@ class Solver {
   double knee_target(const GaitdLeg& leg) const {
     const GaitdJoint& knee = model_.joints[leg.knee];
     const double target = straight(leg) + leg.knee_bend_sign * knee_bend_;
-    return std::clamp(target, knee.position_min + kMargin, knee.position_max - kMargin);
+    return std::clamp(target, knee.position_min + kStopMargin, knee.position_max - kStopMargin);
   }
 
   // Where the leg is longest; zero when that is near enough, as people count from there.

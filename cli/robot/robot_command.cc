@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct RobotArguments {
   std::string urdf;
   std::string folder;
   std::string name;
@@ -61,7 +61,7 @@ std::string write(const fs::path& folder,
   return "";
 }
 
-int init(const Context& context, const Arguments& arguments) {
+int init(const Context& context, const RobotArguments& arguments) {
   const fs::path folder = arguments.folder;
   std::error_code ignored;
   if (!arguments.force && fs::exists(folder / "robot.yaml", ignored)) {
@@ -110,7 +110,7 @@ void add_robot_command(CLI::App* app, Context* context) {
       "standing posture, and scales times and steps with the legs. Every guess stands in\n"
       "robot.yaml with its reason; posture.svg shows it. Then the doctor says what is left. Exit\n"
       "code 1: something keeps the robot from standing. Needs no daemon.");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RobotArguments>();
   command->add_option("URDF", arguments->urdf, "Description of the robot")
       ->required()
       ->type_name("FILE");

@@ -8,9 +8,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kAnswer{300};     // until it is asked again
-constexpr milliseconds kReconnect{500};  // while nobody needs it
-constexpr milliseconds kKnock{20};       // while somebody does
+constexpr milliseconds kAskAgain{300};  // until it is asked again
+constexpr milliseconds kIdle{500};      // while nobody needs it
+constexpr milliseconds kKnock{20};      // while somebody does
 
 }  // namespace
 
@@ -26,7 +26,7 @@ void EstopLine::pull(Time now) {
 void EstopLine::ask(Time now) {
   id_ = link_.send("estop", nullptr);
   if (id_ == 0 && link_.open()) id_ = link_.send("estop", nullptr);
-  next_ = now + (id_ == 0 ? kKnock : kAnswer);
+  next_ = now + (id_ == 0 ? kKnock : kAskAgain);
 }
 
 void EstopLine::tick(Time now) {
@@ -45,7 +45,7 @@ void EstopLine::tick(Time now) {
     return ask(now);
   }
   if (!link_.up()) link_.open();
-  next_ = now + kReconnect;
+  next_ = now + kIdle;
 }
 
 std::string EstopLine::text() const {

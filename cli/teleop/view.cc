@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "cli/one_line.h"
 #include "cli/table.h"
 
 namespace gaitd::cli::teleop {
@@ -27,7 +28,7 @@ json at(const json& status, const char* name) {
   return status.is_object() ? status.value(name, json()) : json();
 }
 
-std::string text(const json& status, const char* name) {
+std::string shown_text(const json& status, const char* name) {
   const json value = at(status, name);
   return value.is_string() ? value.get<std::string>() : "-";
 }
@@ -43,8 +44,8 @@ std::string faults(const json& status) {
 
 std::string gait(const json& status) {
   if (!status.is_object()) return "-";
-  std::string out = text(status, "state") + ", " + text(status, "mode");
-  const std::string phase = text(status, "phase");
+  std::string out = shown_text(status, "state") + ", " + shown_text(status, "mode");
+  const std::string phase = shown_text(status, "phase");
   if (phase != "stand") out += ", " + phase;
   const json step = at(status, "step_index");
   if (step.is_number_integer() && phase != "stand") out += ", step " + step.dump();
@@ -69,11 +70,6 @@ std::string speed(const char* name, const Speed& value) {
   const auto shown = [](double v) { return std::abs(v) < 0.005 ? 0.0 : v; };
   return format("%-10s %+6.2f m/s  %+6.2f m/s  %+6.2f rad/s", name, shown(value.forward),
                 shown(value.lateral), shown(value.turn));
-}
-
-std::string one_line(std::string message) {
-  for (std::size_t at = 0; (at = message.find('\n', at)) != std::string::npos;) message[at] = ' ';
-  return message;
 }
 
 void add(std::vector<Line>* lines, const std::string& text, Tone tone, std::size_t columns) {
@@ -105,7 +101,8 @@ std::vector<Line> screen(const Scene& scene, std::size_t columns, std::size_t ro
   const json& status = scene.status;
   std::vector<Line> lines;
   const std::string robot =
-      status.is_object() ? text(status, "robot") + " on " + text(status, "backend") : "no gaitd";
+      status.is_object() ? shown_text(status, "robot") + " on " + shown_text(status, "backend")
+                         : "no gaitd";
   lines.push_back({format("gaitctl teleop   %s   speed %d %%", robot.c_str(), scene.percent)});
   if (!scene.alarm.empty()) add(&lines, scene.alarm, Tone::kBad, columns);
   lines.push_back({""});

@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "cli/child.h"
+#include "cli/whole_file.h"
 
 namespace gaitd::cli {
 namespace {
@@ -23,11 +24,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr double kSpread = 0.2;  // of the first generation, a standard deviation, of the ranges
-
-std::string read_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 }  // namespace
 

@@ -10,7 +10,7 @@
 #include "cli/campaign/slurm_engine.h"
 #include "cli/failure.h"
 #include "cli/print.h"
-#include "cli/write_file.h"
+#include "cli/whole_file.h"
 #include "daemon/config/node.h"
 
 namespace gaitd::cli {

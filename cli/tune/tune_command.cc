@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct TuneArguments {
   std::string file;
   std::string folder;
   std::vector<std::string> settings;
@@ -49,7 +49,7 @@ std::string wrong_tuning(const CampaignPlan& plan) {
   return "";
 }
 
-int run(const Context& context, const Arguments& arguments) {
+int run(const Context& context, const TuneArguments& arguments) {
   const auto failed = [&](const std::string& why) {
     return fail(context, kFailed, "campaign tune", why);
   };
@@ -86,7 +86,7 @@ void add_tune_command(CLI::App* campaign, Context* context) {
       "that were held out. Started again after an end of any kind it goes on where it was. Exit "
       "code 0 "
       "only if the winner is better there and no neighbour loses a run that it holds.");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<TuneArguments>();
   command->add_option("FILE", arguments->file, "A campaign with 'tune' (schema gaitd.campaign/1)")
       ->required()
       ->type_name("FILE");

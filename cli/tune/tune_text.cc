@@ -10,7 +10,7 @@
 #include "cli/table.h"
 #include "cli/terminal.h"
 #include "cli/tune/verdict.h"
-#include "cli/write_file.h"
+#include "cli/whole_file.h"
 
 namespace gaitd::cli {
 namespace {

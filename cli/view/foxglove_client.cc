@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "cli/view/raw_bytes.h"
 #include "daemon/server/rpc.h"
 
 namespace gaitd::cli {
@@ -43,12 +44,6 @@ constexpr Service kServices[] = {
     {"abort", "{}"},
     {"sim.reset", "{}"},
 };
-
-void append(std::string* bytes, auto value) {
-  char raw[sizeof(value)];
-  std::memcpy(raw, &value, sizeof(value));
-  bytes->append(raw, sizeof(value));
-}
 
 std::uint32_t number_at(std::string_view bytes, std::size_t place) {
   std::uint32_t value = 0;
@@ -138,8 +133,8 @@ void FoxgloveClient::send_message(std::uint16_t channel, std::uint64_t time_ns,
     std::string bytes;
     bytes.reserve(13 + data.size());
     bytes += kMessageData;
-    append(&bytes, subscription);
-    append(&bytes, time_ns);
+    append_raw(&bytes, subscription);
+    append_raw(&bytes, time_ns);
     bytes += data;
     socket_->send(message_of(std::move(bytes)), true);
   }
@@ -149,7 +144,7 @@ void FoxgloveClient::send_time(std::uint64_t time_ns) {
   if (ended_ || subscriptions_.empty() || socket_->waiting() >= kMessagesWaiting) return;
   std::string bytes;
   bytes += kTime;
-  append(&bytes, time_ns);
+  append_raw(&bytes, time_ns);
   socket_->send(message_of(std::move(bytes)), true);
 }
 
@@ -266,9 +261,9 @@ void FoxgloveClient::call(std::uint32_t service, std::uint32_t call, std::string
     constexpr std::string_view kEncoding = "json";
     std::string bytes;
     bytes += kServiceResponse;
-    append(&bytes, service);
-    append(&bytes, call);
-    append(&bytes, static_cast<std::uint32_t>(kEncoding.size()));
+    append_raw(&bytes, service);
+    append_raw(&bytes, call);
+    append_raw(&bytes, static_cast<std::uint32_t>(kEncoding.size()));
     bytes += kEncoding;
     bytes += answer["result"].dump();
     self->send(message_of(std::move(bytes)), true);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cli/installed_page.h"
+#include "cli/view/raw_bytes.h"
 #include "daemon/log/glob.h"
 
 namespace gaitd::cli {
@@ -26,12 +27,6 @@ static_assert(std::endian::native == std::endian::little, "frames are little-end
 bool is_shown(const std::string& signal) {
   return std::ranges::any_of(LiveSource::shown_signals(),
                              [&](const auto& glob) { return daemon::glob_match(glob, signal); });
-}
-
-void append(std::string* bytes, auto value) {
-  char raw[sizeof(value)];
-  std::memcpy(raw, &value, sizeof(value));
-  bytes->append(raw, sizeof(value));
 }
 
 WebAnswer not_found() {
@@ -204,10 +199,10 @@ void LiveView::on_frame(const LiveFrame& frame) {
   if (viewers_.empty()) return;
   std::string bytes;
   bytes.reserve(16 + 4 * places_.size());
-  append(&bytes, frame.time);
-  append(&bytes, static_cast<double>(frame.tick));
+  append_raw(&bytes, frame.time);
+  append_raw(&bytes, static_cast<double>(frame.tick));
   for (const std::size_t place : places_) {
-    append(&bytes, static_cast<float>(frame.values[place]));
+    append_raw(&bytes, static_cast<float>(frame.values[place]));
   }
   const Message message = message_of(std::move(bytes));
   for (const auto& viewer : viewers_) viewer->send_frame(message);

@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr std::size_t kReports = 8;  // that are kept; each has some megabytes
+constexpr std::size_t kKeptReports = 8;  // that are kept; each has some megabytes
 
 std::string new_file(const std::string& folder) {
   const std::time_t now = std::time(nullptr);
@@ -81,7 +81,7 @@ void Recorder::end(std::function<void(const End&)> done) {
       if (end.error.empty()) {
         end.report = next_report_++;
         reports_[*end.report] = page;
-        if (reports_.size() > kReports) reports_.erase(reports_.begin());
+        if (reports_.size() > kKeptReports) reports_.erase(reports_.begin());
       }
       done(end);
     });

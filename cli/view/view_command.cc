@@ -32,7 +32,7 @@ namespace {
 
 using daemon::Role;
 
-struct Arguments {
+struct ViewArguments {
   std::string listen = "127.0.0.1:8765";
   std::vector<std::string> origins;
   std::string folder = ".";
@@ -110,7 +110,7 @@ void open_browser(const std::string& page) {
   }
 }
 
-int run(const Context& context, const Arguments& arguments) {
+int run(const Context& context, const ViewArguments& arguments) {
   std::string error;
   const auto address = parse_listen_address(arguments.listen, &error);
   if (!address) return fail(context, kUsage, "view", error);
@@ -157,7 +157,7 @@ void add_view_command(CLI::App* app, Context* context) {
       "in\nthe addresses that are printed, one for each role that you have. Away from this machine "
       "it is\nserved over TLS with a certificate of your own, whose fingerprint is printed. "
       "docs/view.md.");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ViewArguments>();
   command->add_option("--listen", arguments->listen, "Where browsers connect")
       ->type_name("ADDRESS:PORT")
       ->capture_default_str();

@@ -11,7 +11,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kFramesWaiting = 2;        // of a browser that is behind
-constexpr std::size_t kBytesWaiting = 8u << 20;  // then it is dropped
+constexpr std::size_t kBytesUnsent = 8u << 20;  // then it is dropped
 
 json error(int code, const std::string& message) {
   return {{"error", {{"code", code}, {"message", message}}}};
@@ -69,7 +69,7 @@ void Viewer::end() {
 
 void Viewer::send_text(const Message& message) {
   if (ended_) return;
-  if (socket_->waiting_bytes() > kBytesWaiting) return socket_->close("too slow");
+  if (socket_->waiting_bytes() > kBytesUnsent) return socket_->close("too slow");
   socket_->send(message, false);
 }
 

@@ -17,7 +17,7 @@ namespace {
 // The control thread cannot wake anybody: requests are looked for.
 constexpr std::chrono::milliseconds kPoll{2};
 constexpr double kSamePlace = 0.02;   // m: a footstep is that one of the route
-constexpr double kExact = 0.02;       // m, from the goal to a plan that ends there
+constexpr double kEndsThere = 0.02;   // m, from the goal to a plan that ends there
 constexpr double kMuchBetter = 0.85;  // of the cost of the way that was begun
 
 void raise(double by, GaitdFootstep* step) {
@@ -29,7 +29,7 @@ void raise(double by, GaitdFootstep* step) {
 bool ends_there(const std::vector<GaitdFootstep>& steps, const footsteps::Goal& goal) {
   if (steps.size() < 2) return true;
   const GaitdPose middle = walking::middle_pose(steps.end()[-1].pose, steps.end()[-2].pose);
-  return std::hypot(middle.position[0] - goal.x, middle.position[1] - goal.y) < kExact;
+  return std::hypot(middle.position[0] - goal.x, middle.position[1] - goal.y) < kEndsThere;
 }
 
 bool same(const GaitdFootstep& a, const GaitdFootstep& b) {

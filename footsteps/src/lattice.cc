@@ -9,6 +9,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "angle.h"
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
 #include "goal_place.h"
@@ -21,7 +22,7 @@ using walking::Gait;
 using walking::other_side;
 using walking::side_sign;
 
-constexpr double kCell = 0.043;  // pelvis heights, of the lattice
+constexpr double kLatticeCell = 0.043;  // pelvis heights, of the lattice
 // What a pelvis height of uneven ground costs in the estimate.
 constexpr double kUneven = 8.0;
 // By which the estimate is inflated, search by search.
@@ -36,8 +37,6 @@ constexpr double kLeadsOn = 0.2;
 constexpr double kBeyond = 1.5;
 constexpr double kSameEnd =
     0.22;  // pelvis heights, around the end of a plan that saw no more there
-
-double wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 
 }  // namespace
 
@@ -65,7 +64,7 @@ class Lattice::Search {
         start_(start),
         parameters_(parameters),
         exhausted_(goal.exhausted),
-        cell_(kCell * steps_.unit()) {
+        cell_(kLatticeCell * steps_.unit()) {
     const Place from = middle_of(start.feet[GAITD_LEFT], start.feet[GAITD_RIGHT]);
     const double dx = goal.x - from.x, dy = goal.y - from.y;
     const bool near = std::hypot(dx, dy) < steps_.unit();

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "angle.h"
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
 
@@ -21,8 +22,6 @@ using walking::side_sign;
 constexpr double kLargestTurn = 0.35;  // rad, from one footstep to the next
 constexpr double kNoWay = 1e-3;        // m, or rad
 constexpr int kMostSteps = 900;        // fewer than the queue of the gait machine holds
-
-double wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 
 // From one footstep to the next, of the middle of the feet.
 struct Motion {

@@ -13,10 +13,10 @@
 namespace gaitd::footsteps {
 namespace {
 
-constexpr double kCell = 0.11;   // pelvis heights
-constexpr double kAround = 0.2;  // pelvis heights, within which level ground is level
-constexpr double kLevel = 0.02;  // m
-constexpr double kBeside = 0.6;  // pelvis heights
+constexpr double kCoarseCell = 0.11;   // pelvis heights
+constexpr double kAround = 0.2;        // pelvis heights, within which level ground is level
+constexpr double kLevelSpread = 0.02;  // m
+constexpr double kBeside = 0.6;        // pelvis heights
 // Of the cost of level ground, where the legs do not pass, and where the arms do not: a map may be
 // wrong by a cell, the robot may stand there already, and a stride may pass a narrow place.
 constexpr double kBlocked = 60.0;
@@ -40,7 +40,7 @@ WayEstimate::WayEstimate(const StepMaker& steps, double level, double uneven, Wa
     : level_(level), uneven_(uneven) {
   const terrain::Grid& fine = steps.footholds().map().grid();
   const int ratio =
-      std::max(1, static_cast<int>(std::lround(kCell * steps.unit() / fine.resolution)));
+      std::max(1, static_cast<int>(std::lround(kCoarseCell * steps.unit() / fine.resolution)));
   grid_.resolution = ratio * fine.resolution;
   grid_.origin = grid_.resolution * (fine.origin / grid_.resolution).array().floor().matrix();
   const Eigen::Vector2i last = grid_.cell(fine.centre(fine.columns - 1, fine.rows - 1));
@@ -102,7 +102,7 @@ std::vector<Way> WayEstimate::ways_on_map(const StepMaker& steps) const {
       } else if (!footholds.arms_fit(p, lower)) {
         ways[at] = Way::kNarrow;
       } else if (known) {
-        ways[at] = most[at] - least[at] < kLevel ? Way::kLevel : Way::kUneven;
+        ways[at] = most[at] - least[at] < kLevelSpread ? Way::kLevel : Way::kUneven;
       }
     }
   }

@@ -27,7 +27,7 @@ constexpr double kRemains = 0.3;
 // Of the width of the foothold. From the edge to what is relied on: the load turns the foot back
 // with this lever. How far the CoP is where
 // nothing should carry when it does carry after all, and for how long (s).
-constexpr double kLever = 0.04;
+constexpr double kTippingLever = 0.04;
 constexpr double kBeyond = 0.12;
 constexpr double kBeyondTime = 0.03;
 
@@ -48,7 +48,7 @@ void FootContact::reset() {
 ConvexPolygon FootContact::bearing(const ConvexPolygon& sole, double width,
                                    const Eigen::Vector2d& tilt) const {
   const Eigen::Vector2d down = Eigen::Vector2d(tilt.y(), -tilt.x()).normalized();
-  return sole.cut(down, down.dot(cop_) - kLever * width);
+  return sole.cut(down, down.dot(cop_) - kTippingLever * width);
 }
 
 // A sole that has not come to lie as it was told stands on ground that is not as it was told

@@ -12,7 +12,7 @@ namespace {
 
 // The feet stand where they are estimated: a step that is as long as allowed is not too long for
 // that.
-constexpr double kEstimate = 0.005;  // m
+constexpr double kEstimateError = 0.005;  // m
 
 // Of the longest step forwards: one backwards, and the way of a foot from its foothold before.
 constexpr double kBackward = 0.6;
@@ -101,32 +101,32 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const
       sdk::from_yaw(-stance_yaw) * (sdk::view(step.pose.position) - sdk::view(stance.position));
   const double outwards = side_sign(step.side) * d.y();
   const double turn = std::remainder(rpy.z() - stance_yaw, 2.0 * M_PI);
-  if (outwards < limits.least_separation - kEstimate) {
+  if (outwards < limits.least_separation - kEstimateError) {
     return refuse(
         "footstep %d (%s): %.3f m beside the other foot, at least %.3f expected, "
         "or the legs cross; move it outwards",
         number, side, outwards, limits.least_separation);
   }
-  if (outwards > limits.largest_separation + kEstimate) {
+  if (outwards > limits.largest_separation + kEstimateError) {
     return refuse(
         "footstep %d (%s): %.3f m beside the other foot, at most %.3f expected "
         "(gait.widest_step); take more steps",
         number, side, outwards, limits.largest_separation);
   }
-  if (d.x() > limits.forward + kEstimate || -d.x() > limits.backward + kEstimate) {
+  if (d.x() > limits.forward + kEstimateError || -d.x() > limits.backward + kEstimateError) {
     return refuse(
         "footstep %d (%s): %.3f m ahead of the other foot, %.3f to %.3f expected "
         "(gait.longest_step); take more steps",
         number, side, d.x(), -limits.backward, limits.forward);
   }
   const double travel = (sdk::view(step.pose.position) - sdk::view(from.position)).head<2>().norm();
-  if (travel > limits.travel + kEstimate) {
+  if (travel > limits.travel + kEstimateError) {
     return refuse(
         "footstep %d (%s): %.3f m from where this foot stands before, at most %.3f expected "
         "(gait.longest_step); take shorter steps",
         number, side, travel, limits.travel);
   }
-  if (std::abs(d.z()) > limits.height + kEstimate) {
+  if (std::abs(d.z()) > limits.height + kEstimateError) {
     return refuse(
         "footstep %d (%s): %.3f m above the other foot, within %.3f expected "
         "(gait.highest_step); find lower footholds",

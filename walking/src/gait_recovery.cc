@@ -14,7 +14,7 @@ namespace {
 constexpr double kSwing = 1.3;
 constexpr double kTransfer = 0.173;
 constexpr double kPatience = 0.005;  // s, that the ICP has to be out of reach: no spike of a sensor
-constexpr double kLoaded = 0.5;      // of the weight on the feet: neither on a hoist nor in the air
+constexpr double kOnItsFeet = 0.5;   // of the weight on the feet: neither on a hoist nor in the air
 constexpr double kSideways = 1.7;    // away sideways by this much more than along: a side step
 // Heights of the CoM, of the ICP past the edge of the feet at which the robot steps: an ICP at the
 // edge comes back as often as not.
@@ -78,7 +78,7 @@ bool GaitMachine::recover(double dt, const GaitdRobotState& robot) {
   const ConvexPolygon feet = support_region(model_, state_, robot);
   const Eigen::Vector2d icp = sdk::view(robot.icp);
   const bool held = feet.inside_distance(icp) >= -kPastEdge * scale_.length;
-  if (held || load < kLoaded * model_.total_mass * model_.gravity) {
+  if (held || load < kOnItsFeet * model_.total_mass * model_.gravity) {
     time_unheld_ = 0.0;
     return false;
   }

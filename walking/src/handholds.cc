@@ -18,13 +18,13 @@ constexpr double kForget = 0.5;     // s: a hand that creeps along its surface i
 constexpr double kProof = 0.4;      // s, for which it only presses, once it is stopped
 constexpr double kStopTime = 0.15;  // s, for which it is
 // Heights of the CoM.
-constexpr double kSpeed = 0.05;       // 1/s, of the place that a hand that seeks follows
+constexpr double kSeekSpeed = 0.05;   // 1/s, of the place that a hand that seeks follows
 constexpr double kBehind = 0.02;      // that it is behind it by, once something stops it
 constexpr double kFarthest = 0.09;    // that it seeks
 constexpr double kDrawBack = 0.1;     // that it goes back from the surface, letting go
-constexpr double kLost = 0.05;        // that a hand may be off its place
+constexpr double kHandLost = 0.05;    // that a hand may be off its place
 constexpr double kStopped = 0.8;      // of kBehind: a hand that nothing stops keeps up better
-constexpr double kLever = 0.05;       // heights of the CoM, that an arm needs to press with
+constexpr double kArmLever = 0.05;    // heights of the CoM, that an arm needs to press with
 constexpr double kAtStop = 0.03;      // rad, of a joint that goes no further
 constexpr double kEffortShare = 0.7;  // of the joints of an arm; the rest is for its weight
 
@@ -120,7 +120,7 @@ Refusal Handholds::take(const HandholdCommand& command, const GaitdRobotState& r
   kinematics_.update(robot);
   const GaitdFrame& frame = model_.hands[side];
   const Eigen::Vector3d position = kinematics_.frame_position(frame.body, view(frame.origin));
-  if (lever(side, normal, robot) < kLever * model_.nominal_com_height) {
+  if (lever(side, normal, robot) < kArmLever * model_.nominal_com_height) {
     return refuse(
         "handhold.take: the %s arm is stretched, it could not press; bring the hand nearer "
         "to the body: `gaitctl pose hand`",
@@ -169,7 +169,7 @@ void Handholds::seek(double dt, const Eigen::Vector3d& position, Hand& hand) con
     return;
   }
   const double behind = hand.normal.dot(position - hand.anchor);
-  if (behind < kBehind * height) hand.anchor -= kSpeed * height * dt * hand.normal;
+  if (behind < kBehind * height) hand.anchor -= kSeekSpeed * height * dt * hand.normal;
   hand.time = behind > kStopped * kBehind * height ? hand.time + dt : 0.0;
   if (hand.time < kStopTime) return;
   hand.state = GAITD_HANDHOLD_HELD;
@@ -187,7 +187,7 @@ void Handholds::hold(double dt, const Eigen::Vector3d& position, Hand& hand) con
   const Eigen::Vector3d moved = position - hand.anchor;
   const Eigen::Vector3d across = moved - moved.dot(hand.normal) * hand.normal;
   hand.anchor += std::min(1.0, dt / kForget) * across;
-  if (moved.norm() > kLost * model_.nominal_com_height) {
+  if (moved.norm() > kHandLost * model_.nominal_com_height) {
     hand.change = hand.time > kProof ? Change::kLost : Change::kNothing;
     hand.least = hand.most = 0.0;
   }

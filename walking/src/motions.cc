@@ -11,14 +11,14 @@
 namespace gaitd::walking {
 namespace {
 
-constexpr double kMargin = 0.03;      // m, of the ICP to the edge of the feet
-constexpr double kLargestDrop = 0.1;  // of the nominal height of the centre of mass
-constexpr double kLargestTilt = 0.2;  // rad, roll and pitch
-constexpr double kLargestYaw = 0.3;   // rad
-constexpr double kChestMiss = 0.02;   // rad, of a spine at its limits
-constexpr double kRateShare = 0.5;    // of the velocity limit of a joint, for a motion
-constexpr double kPeak = 1.875;       // speed of a minimum-jerk motion, over its mean
-constexpr int kSearch = 40;           // steps of the search for where a hand ends
+constexpr double kShiftMargin = 0.03;  // m, of the ICP to the edge of the feet
+constexpr double kLowestPelvis = 0.1;  // of the nominal height of the centre of mass
+constexpr double kLargestTilt = 0.2;   // rad, roll and pitch
+constexpr double kLargestYaw = 0.3;    // rad
+constexpr double kChestMiss = 0.02;    // rad, of a spine at its limits
+constexpr double kRateShare = 0.5;     // of the velocity limit of a joint, for a motion
+constexpr double kPeak = 1.875;        // speed of a minimum-jerk motion, over its mean
+constexpr int kSearch = 40;            // steps of the search for where a hand ends
 constexpr const char* kTurnNames[] = {"roll", "pitch", "yaw"};
 
 bool is_hand(int part) { return part == GAITD_PART_LEFT_ARM || part == GAITD_PART_RIGHT_ARM; }
@@ -103,7 +103,7 @@ Refusal Motions::command(const MotionCommand& command, const GaitdRobotState& ro
 
 Refusal Motions::check_pelvis(const GaitdMotion& motion, const GaitdGaitState& gait) const {
   const bool stands = gait.phase == GAITD_PHASE_STAND && gait.footstep_count == 0;
-  const double lowest = -kLargestDrop * model_.nominal_com_height;
+  const double lowest = -kLowestPelvis * model_.nominal_com_height;
   const Eigen::Vector2d rest = middle(gait.footholds[GAITD_LEFT], gait.footholds[GAITD_RIGHT]);
   for (int i = 0; i < motion.point_count; ++i) {
     const double* shift = motion.points[i].value;
@@ -130,11 +130,11 @@ Refusal Motions::check_pelvis(const GaitdMotion& motion, const GaitdGaitState& g
     }
     const Eigen::Vector2d goal = rest + turned(heading_of(gait), shift);
     const double inside = support_polygon(model_, gait).inside_distance(goal);
-    if (!(inside >= kMargin)) {
+    if (!(inside >= kShiftMargin)) {
       return refuse(
           "pose: pelvis.x %.3f, y %.3f m: the centre of mass would be %.3f m inside the "
           "edge of the feet, at least %.2f expected",
-          shift[0], shift[1], inside, kMargin);
+          shift[0], shift[1], inside, kShiftMargin);
     }
   }
   return {};

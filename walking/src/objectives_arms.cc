@@ -15,8 +15,8 @@ using sdk::view;
 
 constexpr double kPostureDamping = 0.6;  // light limbs may swing
 // Of hands.
-constexpr double kStiffness = 100.0;  // 1/s^2
-constexpr double kDamping = 20.0;     // 1/s
+constexpr double kStiffness = 100.0;   // 1/s^2
+constexpr double kHandDamping = 20.0;  // 1/s
 constexpr double kHandWeight = 1000.0;
 constexpr double kComesBack = 0.5;  // s, in which the posture of an arm does
 
@@ -72,7 +72,7 @@ void ObjectiveBuilder::add_hands(const GaitdRobotState& robot, GaitdObjectives& 
     const Eigen::Vector3d off = view(handhold.anchor) - view(handhold.position);
     // A hand that something holds stays where it is: it would not follow, but pull at the robot.
     const double stiffness = touches ? 0.0 : kStiffness;
-    view(task.acceleration).tail<3>() = stiffness * off - kDamping * velocity;
+    view(task.acceleration).tail<3>() = stiffness * off - kHandDamping * velocity;
     view(task.weight).tail<3>().setConstant(kHandWeight);
   }
 }

@@ -11,12 +11,12 @@ namespace gaitd::walking {
 namespace {
 
 // In heights of the CoM, sqrt(g / h) and g.
-constexpr double kMargin = 0.017;  // kept between capsules
-constexpr double kNear = 0.1;      // beyond it, where a pair begins to be looked after
-constexpr double kGain = 2.8;      // speed of an approach, over what is left of the way
-constexpr double kHorizon = 0.09;  // in which an approach may be slowed
-constexpr double kHardest = 10.0;  // deceleration of it
-constexpr double kWeight = 300.0;  // of a deceleration that is missing, against posture: 1
+constexpr double kClearance = 0.017;  // kept between capsules
+constexpr double kNear = 0.1;         // beyond it, where a pair begins to be looked after
+constexpr double kGain = 2.8;         // speed of an approach, over what is left of the way
+constexpr double kHorizon = 0.09;     // in which an approach may be slowed
+constexpr double kHardest = 10.0;     // deceleration of it
+constexpr double kWeight = 300.0;     // of a deceleration that is missing, against posture: 1
 
 // The arm that moves a body: GAITD_LEFT or GAITD_RIGHT, -1 none.
 int arm_that_moves(const GaitdModel& model, int body) {
@@ -60,7 +60,7 @@ SelfCollision::SelfCollision(const GaitdModel& model)
     : model_(model),
       height_(model.nominal_com_height),
       pace_(std::sqrt(model.gravity / height_)),
-      margin_(kMargin * height_) {
+      margin_(kClearance * height_) {
   dynamics::Kinematics kinematics(model);
   kinematics.update(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(), sdk::Vector6d::Zero(),
                     sdk::head(model.nominal_position, model.joint_count),

@@ -11,7 +11,7 @@ namespace {
 // m, beside the line on which a tilted sole bears, towards where it has to come down: the load
 // turns it back with this lever. Aimed at the line itself, it would stay as it is: a foot is so
 // light that an error of 1 mm in the CoP outweighs what the controller asks to turn it.
-constexpr double kLever = 0.006;
+constexpr double kRestLever = 0.006;
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void SoleRest::update(double dt, const GaitdFootState& foot, const GaitdFoothold
   way_back_ = sdk::quaternion(foot.orientation) * Eigen::Vector3d(back.x(), back.y(), 0.0);
   pivot_ = share_ * cop;
   line_ = back / tilt;
-  bearing_ = cop + kLever * Eigen::Vector2d(line_.y(), -line_.x());
+  bearing_ = cop + kRestLever * Eigen::Vector2d(line_.y(), -line_.x());
 }
 
 Eigen::Vector2d SoleRest::bearing_point(const Eigen::Vector2d& p) const {

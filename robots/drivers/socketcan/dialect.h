@@ -136,6 +136,10 @@ std::span<const Dialect* const> dialects();
 std::string dialect_names();                         // "damiao, mini_cheetah, ..."
 const Dialect* find_dialect(std::string_view name);  // null: there is none
 
+// The largest identifier (11 bits) of a motor or sensor: above are register requests and the end of
+// a cycle.
+inline constexpr uint32_t kLastId = 0x7EF;
+
 // Requests for registers of a Damiao motor go to this identifier.
 inline constexpr uint32_t kDamiaoRegisterId = 0x7FF;
 

@@ -11,7 +11,6 @@ namespace {
 
 constexpr uint8_t kRead = 0x33;
 constexpr uint8_t kWrite = 0x55;
-constexpr uint32_t kLastId = 0x7EF;  // above are register requests and the end of a cycle
 
 Frame encode_command(const MotorId& motor, const Ranges& ranges, const MotorCommand& command) {
   const auto symmetric = [](double value, double range, int bits) {

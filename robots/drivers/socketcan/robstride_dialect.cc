@@ -49,7 +49,7 @@ uint32_t get(const Frame& frame, int index) {
 uint32_t code_of(double value, double range) { return to_code(value, -range, range, kBits); }
 double value_of(uint32_t code, double range) { return from_code(code, -range, range, kBits); }
 
-Frame encode_command(const MotorId& motor, const Ranges& ranges, const MotorCommand& command) {
+Frame robstride_command(const MotorId& motor, const Ranges& ranges, const MotorCommand& command) {
   Frame frame;
   frame.id = to_motor(kControl, code_of(command.torque, ranges.torque), motor.id);
   put(&frame, 0, code_of(command.position, ranges.position));
@@ -59,7 +59,7 @@ Frame encode_command(const MotorId& motor, const Ranges& ranges, const MotorComm
   return frame;
 }
 
-std::optional<MotorCommand> decode_command(const Frame& frame, const Ranges& ranges) {
+std::optional<MotorCommand> decode_robstride_command(const Frame& frame, const Ranges& ranges) {
   if (!has_kind(frame, kControl)) return std::nullopt;
   MotorCommand command;
   command.torque = value_of(frame.id >> 8 & 0xFFFF, ranges.torque);
@@ -70,7 +70,7 @@ std::optional<MotorCommand> decode_command(const Frame& frame, const Ranges& ran
   return command;
 }
 
-Frame encode_special(const MotorId& motor, Special special) {
+Frame robstride_special(const MotorId& motor, Special special) {
   constexpr std::array<Kind, 4> kKinds = {kEnable, kStop, kZero, kStop};  // in the order of Special
   Frame frame;
   frame.id = to_motor(kKinds[static_cast<size_t>(special)], motor.reply_id, motor.id);
@@ -79,7 +79,7 @@ Frame encode_special(const MotorId& motor, Special special) {
   return frame;
 }
 
-std::optional<Special> decode_special(const Frame& frame) {
+std::optional<Special> decode_robstride_special(const Frame& frame) {
   if (has_kind(frame, kEnable)) return Special::kEnable;
   if (has_kind(frame, kStop)) return frame.data[0] == 1 ? Special::kClear : Special::kDisable;
   if (has_kind(frame, kZero)) return Special::kSetZero;
@@ -220,10 +220,10 @@ const Dialect kRobStride = {.name = "robstride",
                             .bits = kBits,
                             .last_id = 0x7F,
                             .reply_length = 8,
-                            .command = encode_command,
-                            .read_command = decode_command,
-                            .special = encode_special,
-                            .read_special = decode_special,
+                            .command = robstride_command,
+                            .read_command = decode_robstride_command,
+                            .special = robstride_special,
+                            .read_special = decode_robstride_special,
                             .reply = encode_reply,
                             .read_reply = decode_reply,
                             .fault = encode_fault,

@@ -19,7 +19,6 @@ using sim::JsonReader;
 using sim::Range;
 using Errors = std::vector<std::string>;
 
-constexpr uint32_t kLastId = 0x7EF;  // above are register requests and the end of a cycle
 // Of a master on extended identifiers: beyond the motors, and 0xFE is for everybody.
 constexpr uint32_t kFirstMaster = 0x80, kLastMaster = 0xFD;
 

@@ -9,7 +9,7 @@ namespace gaitd::unitree {
 namespace {
 
 constexpr int kDepth = 10;
-constexpr dds_duration_t kPause = DDS_MSECS(5);
+constexpr dds_duration_t kPoll = DDS_MSECS(5);
 
 }  // namespace
 
@@ -41,7 +41,7 @@ Service::Answer Service::call(int64_t api, std::string parameter, double seconds
   const int64_t end = monotonic_ns() + static_cast<int64_t>(1e9 * seconds);
   while (matched_readers(requests_) == 0 || matched_writers(answers_) == 0) {
     if (monotonic_ns() > end) return {kNobody, ""};
-    dds_sleepfor(kPause);
+    dds_sleepfor(kPoll);
   }
   Request request;
   std::memset(&request, 0, sizeof(request));
@@ -52,7 +52,7 @@ Service::Answer Service::call(int64_t api, std::string parameter, double seconds
   Answer answer;
   while (!take_answer(request.header.identity.id, api, &answer)) {
     if (monotonic_ns() > end) return {kTimeout, ""};
-    dds_sleepfor(kPause);
+    dds_sleepfor(kPoll);
   }
   return answer;
 }

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/write_file.h"
+#include "cli/whole_file.h"
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 
 namespace gaitd::cli {
+
+std::string read_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 bool write_file(const std::filesystem::path& file, const std::string& text, std::string* error) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);

@@ -6,6 +6,9 @@
 
 namespace gaitd::cli {
 
+/// All bytes of a file; none when it cannot be read.
+std::string read_file(const std::filesystem::path& file);
+
 /// Writes all of a file, in place of what was there; false with why not in `error`.
 bool write_file(const std::filesystem::path& file, const std::string& text, std::string* error);
 
