@@ -8,6 +8,8 @@ from typing import Any, Dict, Iterator, Mapping, Optional, Tuple
 
 import numpy as np
 
+from .arrays import Array
+
 __all__ = ["HeightMap"]
 
 _TILE = 96  # cells, in both directions, of one request
@@ -23,7 +25,7 @@ class HeightMap:
     array of the shape of heights.
     """
 
-    heights: np.ndarray
+    heights: Array
     origin: Tuple[float, float] = (0.0, 0.0)
     resolution: float = 0.02
     variance: Any = field(default=0.0)
@@ -43,8 +45,9 @@ class HeightMap:
             return None
         raw = np.frombuffer(base64.b64decode(answer["heights"]), dtype="<i2")
         heights = np.where(raw == _UNKNOWN, np.nan, answer["scale"] * raw.astype(float))
+        x, y = answer["origin"]
         return HeightMap(
-            heights.reshape(answer["rows"], answer["columns"]), tuple(answer["origin"]), float(answer["resolution"])
+            heights.reshape(answer["rows"], answer["columns"]), (float(x), float(y)), float(answer["resolution"])
         )
 
     def _tiles(self) -> Iterator[Dict[str, Any]]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, Optional, 
 import numpy as np
 
 from . import _native
+from .arrays import Array, Floats
 from .errors import DamagedLog, LogError
 from .model import Model
 from .signal_table import Signal, choose, missing, signal_table
@@ -37,7 +38,7 @@ class Event:
     text: Any
 
 
-class Log(Mapping[str, np.ndarray]):
+class Log(Mapping[str, Array]):
     """A log of gaitd, read by signal.
 
     >>> log = gaitd.Log("walk.mcap")
@@ -98,7 +99,7 @@ class Log(Mapping[str, np.ndarray]):
         return float(self._info["duration"])
 
     @property
-    def time(self) -> np.ndarray:
+    def time(self) -> Floats:
         """float64 of shape (ticks,), s of the tick clock."""
         return self["time"]
 
@@ -119,7 +120,7 @@ class Log(Mapping[str, np.ndarray]):
 
     # ---- Values.
 
-    def __getitem__(self, name: str) -> np.ndarray:
+    def __getitem__(self, name: str) -> Array:
         """The values of a signal, shape (ticks,); its type is ``signals[name].dtype``.
 
         Raises :class:`MissingSignal`, a KeyError that names the nearest signal.
@@ -139,7 +140,7 @@ class Log(Mapping[str, np.ndarray]):
     def __repr__(self) -> str:
         return f"<gaitd.Log {self._path!r}: {self.ticks} ticks, {self.duration:.3f} s, {len(self)} signals>"
 
-    def read(self, name: str, *, rows: slice = slice(None)) -> np.ndarray:
+    def read(self, name: str, *, rows: slice = slice(None)) -> Array:
         """As ``log[name][rows]``, but reads only the blocks with those rows. The step must be positive."""
         if name not in self._signals:
             raise missing(name, list(self._signals))
@@ -197,7 +198,7 @@ class Log(Mapping[str, np.ndarray]):
             self._model = Model(self.metadata)
         return self._model
 
-    def poses(self, link: str, *, base: str = "estimate", rows: slice = slice(None)) -> np.ndarray:
+    def poses(self, link: str, *, base: str = "estimate", rows: slice = slice(None)) -> Floats:
         """Poses of a link of the URDF: homogeneous matrices of shape (rows, 4, 4), link in world, m.
 
         base: ``"estimate"`` places the pelvis where gaitd estimated it, ``"truth"`` where the simulation had it. The
@@ -223,10 +224,11 @@ class Log(Mapping[str, np.ndarray]):
         *,
         base: str = "estimate",
         rows: slice = slice(None),
-    ) -> np.ndarray:
+    ) -> Floats:
         """Where a point of a link is in the world: shape (rows, 3), m. point: in the frame of the link, m."""
         poses = self.poses(link, base=base, rows=rows)
-        return poses[:, :3, 3] + poses[:, :3, :3] @ np.asarray(point, dtype=float)
+        placed: Floats = poses[:, :3, 3] + poses[:, :3, :3] @ np.asarray(point, dtype=float)
+        return placed
 
     # ---- Judgement.
 

@@ -8,6 +8,7 @@ from typing import List, Mapping, Tuple
 import numpy as np
 
 from . import _native
+from .arrays import Floats
 from .errors import LogError
 from .signal_table import missing
 
@@ -69,7 +70,7 @@ class Model:
     def __repr__(self) -> str:
         return f"<gaitd.Model {self.name!r}: {len(self._links)} links, {len(self._joints)} joints>"
 
-    def poses(self, link: str, pelvis: np.ndarray, joints: np.ndarray) -> np.ndarray:
+    def poses(self, link: str, pelvis: Floats, joints: Floats) -> Floats:
         """Homogeneous matrices of shape (n, 4, 4): the link in the world, m.
 
         pelvis: (n, 6), x, y, z (m), roll, pitch, yaw (rad) as in the signals ``pelvis/*``. joints: (n, joints), rad
@@ -81,15 +82,16 @@ class Model:
         pelvis = np.asarray(pelvis, dtype=float)
         joints = np.asarray(joints, dtype=float)
         poses = self._native.poses(self._links.index(link), np.atleast_2d(pelvis), np.atleast_2d(joints))
-        return poses[0] if pelvis.ndim == 1 else poses
+        return poses.reshape(4, 4) if pelvis.ndim == 1 else poses
 
     def positions(
         self,
         link: str,
-        pelvis: np.ndarray,
-        joints: np.ndarray,
+        pelvis: Floats,
+        joints: Floats,
         point: Tuple[float, float, float] = (0.0, 0.0, 0.0),
-    ) -> np.ndarray:
+    ) -> Floats:
         """Where a point of a link is in the world: (n, 3), m. point: in the frame of the link, m; else as ``poses``."""
         poses = self.poses(link, pelvis, joints)
-        return poses[..., :3, 3] + poses[..., :3, :3] @ np.asarray(point, dtype=float)
+        placed: Floats = poses[..., :3, 3] + poses[..., :3, :3] @ np.asarray(point, dtype=float)
+        return placed

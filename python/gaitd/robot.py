@@ -17,6 +17,11 @@ __all__ = ["Robot", "connect"]
 _LOOK_PERIOD = 0.01  # s
 
 
+def _given(**params: Any) -> Dict[str, Any]:
+    """Those that are not None."""
+    return {name: value for name, value in params.items() if value is not None}
+
+
 def connect(socket: str = "", *, role: str = "command") -> "Robot":
     """The robot of a running gaitd.
 
@@ -203,8 +208,10 @@ class Robot:
             where["side"] = side
         if points is not None:
             where["points"] = [dict(point) for point in points]
-            return dict(self.call("pose", **{part: where}))
-        return dict(self.call("pose", **{part: where}, duration=duration))
+        params: Dict[str, Any] = {part: where}
+        if points is None:
+            params["duration"] = duration
+        return dict(self.call("pose", **params))
 
     def arm(self) -> Dict[str, Any]:
         """Enables the drives and stands up; ``wait("standing")`` waits for it."""
@@ -245,7 +252,7 @@ class Robot:
         centre of mass in the frame of its link and the standard deviation of that. Raises :class:`WaitTimeout` with
         the reason where nothing could be weighed.
         """
-        began = self.call("payload.estimate", **({} if link is None else {"link": link}))["tick"]
+        began = self.call("payload.estimate", **_given(link=link))["tick"]
         end = time.monotonic() + timeout
         while time.monotonic() < end:
             status = self.status()
@@ -265,7 +272,7 @@ class Robot:
 
     def payload_clear(self, link: Optional[str] = None) -> Dict[str, Any]:
         """Says that nothing is carried any more, by ``link`` or by all of them."""
-        return dict(self.call("payload.clear", **({} if link is None else {"link": link})))
+        return dict(self.call("payload.clear", **_given(link=link)))
 
     def handhold_take(
         self, hand: str, normal: Sequence[float], force: float, friction: Optional[float] = None
@@ -275,12 +282,11 @@ class Robot:
         normal: from the surface towards the robot: ahead, to the left, up. force: N along it, at most. friction: of
         the hand on the surface, 0.5 if left out.
         """
-        rest = {} if friction is None else {"friction": friction}
-        return dict(self.call("handhold.take", hand=hand, normal=list(normal), force=force, **rest))
+        return dict(self.call("handhold.take", hand=hand, normal=list(normal), force=force, **_given(friction=friction)))
 
     def handhold_release(self, hand: Optional[str] = None) -> Dict[str, Any]:
         """Lets go with a hand, or with both."""
-        return dict(self.call("handhold.release", **({} if hand is None else {"hand": hand})))
+        return dict(self.call("handhold.release", **_given(hand=hand)))
 
     def tare(self) -> Dict[str, Any]:
         """Takes what seems to pull at the standing robot for nothing: nobody touches it now."""
@@ -293,7 +299,7 @@ class Robot:
 
         force: N, world axes. duration: s. point: m, in the frame of the link; by default its origin.
         """
-        where = {} if point is None else {"point": list(point)}
+        where = _given(point=None if point is None else list(point))
         return dict(self.call("sim.push", link=link, force=list(force), duration=duration, **where))
 
     def load(self, link: str, mass: float, com: Sequence[float] = (0.0, 0.0, 0.0)) -> Dict[str, Any]:

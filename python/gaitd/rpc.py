@@ -52,8 +52,8 @@ class Connection:
             if "method" in answer or answer.get("id") not in (self._next_id, None):
                 continue
             if "error" in answer:
-                error = answer["error"]
-                raise Refused(error["message"], error["code"], error.get("data"))
+                refusal = answer["error"]
+                raise Refused(refusal["message"], refusal["code"], refusal.get("data"))
             return answer["result"]
 
     def notifications(self, timeout: Optional[float] = None) -> Iterator[Dict[str, Any]]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, Iterable, List, Mapping, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, Tuple
 
 import numpy as np
 
 from . import _native
+from .arrays import Array, Floats
 from .errors import MissingSignal
 
 __all__ = ["Signal"]
@@ -30,11 +31,11 @@ class Signal:
     words: Tuple[str, ...] = ()
 
     @property
-    def dtype(self) -> np.dtype:
+    def dtype(self) -> np.dtype[Any]:
         """Type of the values in arrays."""
         return np.dtype({"real": "f8", "integer": "i8", "boolean": "?", "enumeration": "i1"}[self.kind])
 
-    def convert(self, values: np.ndarray) -> np.ndarray:
+    def convert(self, values: Floats) -> Array:
         """Doubles as the reader gives them (NaN: no value) in this signal's type."""
         if self.kind == "real":
             return values
