@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kNames = 24;      // columns of the names
 constexpr std::size_t kMostWords = 40;  // characters of the words to choose from
 constexpr std::size_t kUsual = 80;      // where there is no terminal
-constexpr std::size_t kWidest = 100;   // a longer line is hard to read
+constexpr std::size_t kWidest = 100;    // a longer line is hard to read
 
 struct Group {
   const char* title;

@@ -78,7 +78,7 @@ int send(const Context& context, const PoseArguments& arguments) {
 }
 
 std::shared_ptr<PoseArguments> add_part(CLI::App* pose, Context* context, const std::string& part,
-                                    const std::string& description, CLI::App** command) {
+                                        const std::string& description, CLI::App** command) {
   auto arguments = std::make_shared<PoseArguments>();
   arguments->part = part;
   arguments->params = std::make_shared<json>(json::object());

@@ -12,14 +12,14 @@
 namespace gaitd::doctor {
 namespace {
 
-constexpr double kRate = 0.06;        // rad/s, gyro against legs, standing
-constexpr double kWalkRate = 0.15;    // rad/s, the same in a walk, where feet roll and slip
-constexpr double kTilt = 0.06;        // rad, estimate against gravity or truth
-constexpr double kVelocity = 0.25;    // m/s, estimate against truth
-constexpr double kAverage = 0.05;     // s, standing
-constexpr double kWalkAverage = 0.8;  // s
-constexpr double kLeastEstimate = 0.05;       // s
-constexpr double kLoad = 0.4;         // of the weight, of a foot that does not move
+constexpr double kRate = 0.06;           // rad/s, gyro against legs, standing
+constexpr double kWalkRate = 0.15;       // rad/s, the same in a walk, where feet roll and slip
+constexpr double kTilt = 0.06;           // rad, estimate against gravity or truth
+constexpr double kVelocity = 0.25;       // m/s, estimate against truth
+constexpr double kAverage = 0.05;        // s, standing
+constexpr double kWalkAverage = 0.8;     // s
+constexpr double kLeastEstimate = 0.05;  // s
+constexpr double kLoad = 0.4;            // of the weight, of a foot that does not move
 
 // Mean over the last `duration` seconds (of samples one `period` apart).
 class Average {

@@ -4,7 +4,7 @@
 namespace gaitd::doctor {
 namespace {
 
-constexpr double kNear = 0.01;   // rad from the stop
+constexpr double kNear = 0.01;         // rad from the stop
 constexpr double kLeastAtStop = 0.05;  // s
 
 }  // namespace

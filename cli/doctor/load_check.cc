@@ -7,7 +7,7 @@ namespace gaitd::doctor {
 namespace {
 
 constexpr double kLeastLoad = 0.8;  // s
-constexpr double kNext = 0.2;   // s: the force is judged once it has settled
+constexpr double kNext = 0.2;       // s: the force is judged once it has settled
 
 }  // namespace
 

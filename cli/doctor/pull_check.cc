@@ -7,7 +7,7 @@ namespace gaitd::doctor {
 namespace {
 
 constexpr double kLeastPull = 0.5;  // s
-constexpr double kShows = 0.1;  // of the force
+constexpr double kShows = 0.1;      // of the force
 
 }  // namespace
 

@@ -8,8 +8,8 @@
 namespace gaitd::doctor {
 namespace {
 
-constexpr double kAtLimit = 0.999;  // of the limit
-constexpr double kLeastTorque = 0.02;     // s
+constexpr double kAtLimit = 0.999;     // of the limit
+constexpr double kLeastTorque = 0.02;  // s
 
 }  // namespace
 

@@ -7,9 +7,9 @@
 namespace gaitd::doctor {
 namespace {
 
-constexpr double kNoticed = 0.04;  // of the mass; force sensors are rarely better
-constexpr double kWrong = 0.10;    // enough to make a robot fall
-constexpr double kLeastStanding = 0.2;     // s of standing
+constexpr double kNoticed = 0.04;       // of the mass; force sensors are rarely better
+constexpr double kWrong = 0.10;         // enough to make a robot fall
+constexpr double kLeastStanding = 0.2;  // s of standing
 
 }  // namespace
 

@@ -50,7 +50,8 @@ std::size_t stride_of(const LogReader& log) {
 void add_signals(const LogReader& log, json* data) {
   const daemon::SignalTable& table = log.signals();
   std::vector<int> shown;
-  for (const std::string& name : log.match(kShownSignals)) shown.push_back(find_signal(table, name));
+  for (const std::string& name : log.match(kShownSignals))
+    shown.push_back(find_signal(table, name));
   const std::vector<std::vector<double>> columns = log.columns(shown);
   const std::size_t stride = stride_of(log);
   (*data)["rows"] = (log.tick_count() + stride - 1) / stride;

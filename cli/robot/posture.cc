@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Task = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kBend = 0.5;     // rad
+constexpr double kBend = 0.5;         // rad
 constexpr double kStopMargin = 0.03;  // rad, from the stops
-constexpr double kClose = 5e-4;   // rad and m
-constexpr double kGap = 0.35;     // of the width of a sole, between the soles
+constexpr double kClose = 5e-4;       // rad and m
+constexpr double kGap = 0.35;         // of the width of a sole, between the soles
 
 class Solver {
  public:
@@ -73,7 +73,8 @@ class Solver {
       if (most > 0.2) step *= 0.2 / most;
       for (int i = 0; i < leg.joint_count; ++i) {
         const GaitdJoint& joint = model_.joints[leg.joints[i]];
-        const double margin = std::min(kStopMargin, 0.05 * (joint.position_max - joint.position_min));
+        const double margin =
+            std::min(kStopMargin, 0.05 * (joint.position_max - joint.position_min));
         double& position = (*q)[leg.joints[i]];
         position = std::clamp(position + step[i], joint.position_min + margin,
                               joint.position_max - margin);

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kFramesWaiting = 2;        // of a browser that is behind
+constexpr std::size_t kFramesWaiting = 2;       // of a browser that is behind
 constexpr std::size_t kBytesUnsent = 8u << 20;  // then it is dropped
 
 json error(int code, const std::string& message) {
