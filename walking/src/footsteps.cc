@@ -40,7 +40,8 @@ StepLimits::StepLimits(const GaitdModel& model, const GaitParameters& p)
 FootstepGenerator::FootstepGenerator(const WalkCommand& walk, const GaitdPose& middle,
                                      int first_side, double width, double least_separation)
     : walk_(walk), middle_(middle), side_(first_side), width_(width) {
-  width_ = std::max(width_, std::abs(walk.lateral) + least_separation);
+  // From the second step sideways on, the foot behind comes past where the one ahead stood.
+  if (walk.steps > 1) width_ = std::max(width_, std::abs(walk.lateral) + least_separation);
 }
 
 GaitdFootstep FootstepGenerator::next() {

@@ -152,6 +152,13 @@ TEST(FootstepGenerator, SidewaysWalksNeverBringTheFeetCloserThanAllowed) {
   }
 }
 
+TEST(FootstepGenerator, ASingleStepSidewaysIsAsWideAsItWasAskedFor) {
+  const WalkCommand walk{.steps = 1, .lateral = 0.6};
+  FootstepGenerator generator(walk, pose(0, 0, 0), GAITD_LEFT, 0.22, limits().least_separation);
+  EXPECT_NEAR(generator.next().pose.position[1], 0.6 + 0.11, 1e-12);
+  EXPECT_NEAR(generator.next().pose.position[1], 0.6 - 0.11, 1e-12);
+}
+
 TEST(FootstepGenerator, WhatAMachineAcceptsNeverBringsTheFeetTooClose) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> uniform(-1, 1);

@@ -57,7 +57,8 @@ class FootstepQueue {
 class FootstepGenerator {
  public:
   // `middle` is the pose half-way between the feet (the last footfall's M when already walking).
-  // A lateral walk is widened so that the feet never come closer than `least_separation` (m).
+  // A lateral walk is widened so that the feet never come closer than `least_separation` (m). A
+  // single step is not: the other foot only closes.
   FootstepGenerator(const WalkCommand& walk, const GaitdPose& middle, int first_side, double width,
                     double least_separation);
   int count() const { return walk_.steps + 1; }

@@ -39,7 +39,7 @@ inline constexpr std::array<GaitdParameter, 10> kGaitParameters = {
     porting(real_parameter(
         "longest_step", "com heights", 0.05, 2.5, 0.85,
         "accepted forwards, 0.6 of it backwards; low: more steps, high: legs too short")),
-    porting(real_parameter("widest_step", "com heights", 0.1, 1.7, 0.64,
+    porting(real_parameter("widest_step", "com heights", 0.1, 1.7, 0.72,
                            "accepted distance sideways; low: more steps, high: legs too short")),
     porting(real_parameter("highest_step", "com heights", 0, 1.7, 0.385,
                            "accepted up or down; low: stairs are refused, high: legs too short")),
