@@ -135,9 +135,13 @@ int play_live(const Context& context, const std::string& name, std::string* log)
     const std::string wanted = state_after(command.method);
     std::string got;
     if (!wanted.empty() && !wait_for(client.get(), wanted, &got)) {
-      return fail(context, kFailed, kCalibrate,
-                  command.method + ": expected the robot to be " + wanted + " after it, got " +
-                      got + "; see `gaitctl status`");
+      std::string text = command.method;
+      text += ": expected the robot to be ";
+      text += wanted;
+      text += " after it, got ";
+      text += got;
+      text += "; see `gaitctl status`";
+      return fail(context, kFailed, kCalibrate, text);
     }
     due = std::max(due, time_of(status(client.get())));
   }

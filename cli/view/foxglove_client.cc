@@ -132,7 +132,7 @@ void FoxgloveClient::send_message(std::uint16_t channel, std::uint64_t time_ns,
     }
     std::string bytes;
     bytes.reserve(13 + data.size());
-    bytes += kMessageData;
+    bytes.push_back(kMessageData);
     append_raw(&bytes, subscription);
     append_raw(&bytes, time_ns);
     bytes += data;
@@ -143,7 +143,7 @@ void FoxgloveClient::send_message(std::uint16_t channel, std::uint64_t time_ns,
 void FoxgloveClient::send_time(std::uint64_t time_ns) {
   if (ended_ || subscriptions_.empty() || socket_->waiting() >= kMessagesWaiting) return;
   std::string bytes;
-  bytes += kTime;
+  bytes.push_back(kTime);
   append_raw(&bytes, time_ns);
   socket_->send(message_of(std::move(bytes)), true);
 }
@@ -260,7 +260,7 @@ void FoxgloveClient::call(std::uint32_t service, std::uint32_t call, std::string
     if (answer.contains("error")) return fail(text_of_error(answer));
     constexpr std::string_view kEncoding = "json";
     std::string bytes;
-    bytes += kServiceResponse;
+    bytes.push_back(kServiceResponse);
     append_raw(&bytes, service);
     append_raw(&bytes, call);
     append_raw(&bytes, static_cast<std::uint32_t>(kEncoding.size()));
