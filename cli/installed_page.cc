@@ -2,11 +2,11 @@
 #include "cli/installed_page.h"
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
+
+#include "cli/whole_file.h"
 
 namespace gaitd::cli {
 namespace {
@@ -20,8 +20,7 @@ InstalledPage installed_page(const std::string& name) {
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   const fs::path file = program.parent_path().parent_path() / "share/gaitd" / (name + ".html");
-  std::ifstream in(file, std::ios::binary);
-  return {file.string(), {std::istreambuf_iterator<char>(in), {}}};
+  return {file.string(), read_file(file)};
 }
 
 std::string script_text(const nlohmann::json& data) {

@@ -10,14 +10,13 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <system_error>
 
 #include "cli/private_daemon.h"
 #include "cli/rpc_client.h"
 #include "cli/verdict_view.h"
+#include "cli/whole_file.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/scenario.h"
 #include "daemon/log/log_reader.h"
@@ -115,8 +114,7 @@ std::optional<double> simulated_time(const std::string& socket) {
 // The last lines of what the daemon printed.
 std::string tail(const fs::path& file) {
   constexpr std::size_t kLines = 15;
-  std::ifstream in(file);
-  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const std::string text = read_file(file);
   std::size_t begin = text.size();
   for (std::size_t lines = 0; begin > 0; --begin) {
     if (text[begin - 1] == '\n' && lines++ == kLines) break;

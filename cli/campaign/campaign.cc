@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -18,6 +16,7 @@
 #include "cli/campaign/tune_section.h"
 #include "cli/gauntlet/gauntlet.h"
 #include "cli/random_draw.h"
+#include "cli/whole_file.h"
 #include "daemon/config/node.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/settings.h"
@@ -175,8 +174,7 @@ std::optional<Campaign> load_campaign(const std::string& file, Issues* issues,
   if (node == nullptr) return std::nullopt;
   Campaign campaign;
   campaign.file = fs::absolute(copy_of.empty() ? file : copy_of).lexically_normal().string();
-  std::ifstream in(file);
-  campaign.text.assign(std::istreambuf_iterator<char>(in), {});
+  campaign.text = read_file(file);
   MapReader root(node, "", issues);
   root.require({"schema", "name"});
   if (!root.has("gauntlet")) root.require({"scenarios"});

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/campaign/merge.h"
 
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <system_error>
 

@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -18,6 +17,7 @@
 #include <utility>
 
 #include "cli/one_line.h"
+#include "cli/whole_file.h"
 
 namespace gaitd::cli {
 namespace {
@@ -197,8 +197,7 @@ std::optional<CampaignResult> ResultFormat::parse(const std::string& line) const
 
 std::optional<CampaignResults> read_results(const fs::path& path, const ResultFormat& format,
                                             std::string* error) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const std::string text = read_file(path);
   const std::string header = format.header();
   CampaignResults results;
   if (!text.starts_with(header)) {

@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -18,6 +17,7 @@
 #include "cli/child_pool.h"
 #include "cli/gauntlet/gauntlet.h"
 #include "cli/stop_signals.h"
+#include "cli/whole_file.h"
 
 namespace gaitd::cli {
 namespace {
@@ -124,9 +124,7 @@ const std::string* failure_of(const Campaign& campaign, const CampaignRun& run,
 }
 
 CampaignResult result_of(const Campaign& campaign, int number, int status, const fs::path& output) {
-  std::ifstream in(output);
-  const std::string text(std::istreambuf_iterator<char>(in), {});
-  CampaignResult result = read_result(campaign, number, text);
+  CampaignResult result = read_result(campaign, number, read_file(output));
   if (WIFSIGNALED(status)) {
     result.success = false;
     result.problem = "gaitctl run was killed by signal " + std::to_string(WTERMSIG(status));
@@ -154,8 +152,7 @@ bool write_drawn(const Campaign& campaign, const std::vector<CampaignRun>& runs,
     const std::string path = scenario_of(campaign, run, folder);
     if (!seen.insert(path).second) continue;
     const std::string text = gauntlet_scenario(run.scenario, run.seed);
-    std::ifstream in(path, std::ios::binary);
-    const std::string there(std::istreambuf_iterator<char>(in), {});
+    const std::string there = read_file(path);
     if (there == text) continue;
     if (!text.starts_with(there)) {
       *error = path + ": another gaitd has drawn it otherwise; give another folder with -o";

@@ -10,7 +10,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <string_view>
 #include <system_error>
 #include <thread>
@@ -19,6 +18,7 @@
 
 #include "cli/child.h"
 #include "cli/report/animated_png.h"
+#include "cli/whole_file.h"
 #include "daemon/config/names.h"
 #include "daemon/server/base64.h"
 
@@ -105,8 +105,7 @@ std::vector<Picture> draw(const fs::path& page, const std::string& fragment, con
     return {};
   }
   const bool ended = wait_for_child(pid, kBrowserTime);
-  std::ifstream in(document, std::ios::binary);
-  const std::string drawn{std::istreambuf_iterator<char>(in), {}};
+  const std::string drawn = read_file(document);
   std::error_code ignored;
   fs::remove(document, ignored);
   std::vector<Picture> pictures;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "angle.h"
 #include "gaitd/abi/types.h"
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/footsteps.h"
@@ -34,8 +35,7 @@ inline double swing_cost(const GaitdFootstep& step, const GaitdPose& from, doubl
   const double raised = (step.swing_height - parameters[Gait::kSwingHeight]) / unit;
   const double yaw = sdk::yaw_of(sdk::quaternion(from.orientation));
   const double aside = std::cos(yaw) * way.y() - std::sin(yaw) * way.x();
-  const double turn =
-      std::remainder(sdk::yaw_of(sdk::quaternion(step.pose.orientation)) - yaw, 2.0 * M_PI);
+  const double turn = wrapped(sdk::yaw_of(sdk::quaternion(step.pose.orientation)) - yaw);
   return 0.5 + 2.5 * way.head<2>().squaredNorm() + 12.0 * aside * aside + 6.0 * turn * turn +
          6.0 * way.z() * way.z() + 8.0 * raised;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "angle.h"
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
 #include "gaitd/walking/swing_trajectory.h"
@@ -89,7 +90,7 @@ double StepMaker::cost(const GaitdFootstep& step, const GaitdPose& stance, const
   const double ahead = c * (b.x - a.x) + s * (b.y - a.y);
   const double outwards = walking::side_sign(step.side) * (c * (b.y - a.y) - s * (b.x - a.x)) -
                           model_.nominal_foot_separation;
-  const double turn = std::abs(std::remainder(b.yaw - a.yaw, 2.0 * M_PI));
+  const double turn = std::abs(wrapped(b.yaw - a.yaw));
   return stride_cost(ahead / unit_, outwards / unit_, turn / kHeading) +
          height_cost((step.pose.position[2] - stance.position[2]) / unit_) +
          swing_cost(step, from, unit_, parameters);

@@ -282,7 +282,8 @@ class Robot:
         normal: from the surface towards the robot: ahead, to the left, up. force: N along it, at most. friction: of
         the hand on the surface, 0.5 if left out.
         """
-        return dict(self.call("handhold.take", hand=hand, normal=list(normal), force=force, **_given(friction=friction)))
+        rest = _given(friction=friction)
+        return dict(self.call("handhold.take", hand=hand, normal=list(normal), force=force, **rest))
 
     def handhold_release(self, hand: Optional[str] = None) -> Dict[str, Any]:
         """Lets go with a hand, or with both."""

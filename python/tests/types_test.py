@@ -1,4 +1,4 @@
-"""The package is typed: mypy finds nothing in it, nor in a program that uses it as docs/python.md says."""
+"""The package is typed: mypy finds nothing in it, and in a program that uses it just what is wrong."""
 
 import os
 import subprocess
@@ -14,7 +14,7 @@ import gaitd
 import numpy as np
 
 log = gaitd.Log("walk.mcap")
-icp: "np.ndarray[tuple[int], np.dtype[np.float64]]" = log.time
+time: "np.ndarray[tuple[int], np.dtype[np.float64]]" = log.time
 knee: float = float(log["joint/l_leg_kny/position"][0])
 with gaitd.connect() as robot:
     robot.walk(6, length=0.3)
@@ -22,7 +22,7 @@ with gaitd.connect() as robot:
     robot.wait(30.0)  # wrong
     robot.walk("six")  # wrong
     robot.run()  # wrong
-reveal: int = log.ticks
+ticks: int = log.ticks
 name: str = log.ticks  # wrong
 '''
 
