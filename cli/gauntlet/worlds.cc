@@ -31,7 +31,8 @@ class Course {
                                        &Course::stairs,  &Course::ramps,   &Course::blocks,
                                        &Course::stones,  &Course::rubble};
     static_assert(std::size(kObstacles) == kKinds);
-    (this->*kObstacles[kind])();
+    const Obstacle obstacle = kObstacles[kind];
+    (this->*obstacle)();
   }
   static constexpr int kKinds = 8;
 
