@@ -13,6 +13,7 @@
 #include "daemon/config/command_parse.h"
 #include "daemon/server/command_bridge.h"
 #include "daemon/server/rpc.h"
+#include "fuzz/answer.h"
 #include "fuzz/require.h"
 
 namespace gaitd::daemon {
@@ -61,22 +62,11 @@ void check_command(const Command& command) {
   }
 }
 
-void check_answer(const std::string& line) {
-  fuzz::require(line.find('\n') == std::string::npos, "an answer is one line");
-  const nlohmann::json answer = nlohmann::json::parse(line, nullptr, false);
-  fuzz::require(answer.is_object() || answer.is_array(), "an answer is JSON");
-  for (const auto& one : answer.is_array() ? answer : nlohmann::json::array({answer})) {
-    fuzz::require(one.contains("result") != one.contains("error"), "a result or an error");
-    if (!one.contains("error")) continue;
-    fuzz::require(!one["error"]["message"].get<std::string>().empty(), "an error has a reason");
-  }
-}
-
 void handle(Server* server, std::string_view line) {
   int answers = 0;
   handle_line(server->methods, RpcLimits{}, Caller{}, line, [&](std::string answer) {
     ++answers;
-    check_answer(answer);
+    fuzz::check_answer(answer);
   });
   static Command command;
   bool taken = true;

@@ -9,6 +9,7 @@
 #include "daemon/host/layers.h"
 #include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -176,6 +177,13 @@ void visit_foot(V& v, const TickData& d, int side) {
   v.word(foot.contact == GAITD_CONTACT_NONE ? 0 : (toe ? 1 : 2), {"none", "toe", "full"}, "foot/",
          name, "/contact");
   v.real(d.bearing[side], "", "foot/", name, "/bearing");
+  const GaitdFoothold& foothold = d.gait.footholds[side];
+  const auto bears = foothold.polygon_count > 0 ? walking::sole_extent(foothold)
+                                                : walking::SoleExtent{0.0, 0.0, 0.0, 0.0};
+  v.real(bears.x_min, "m", "foot/", name, "/bears/back");
+  v.real(bears.x_max, "m", "foot/", name, "/bears/front");
+  v.real(bears.y_min, "m", "foot/", name, "/bears/right");
+  v.real(bears.y_max, "m", "foot/", name, "/bears/left");
   const Eigen::Vector3d force =
       sdk::quaternion(foot.orientation) * sdk::view(foot.wrench).tail<3>();
   const Eigen::Vector3d moment =

@@ -23,8 +23,9 @@ using nlohmann::json;
 using terrain::Grid;
 using terrain::HeightMap;
 
-constexpr double kScale = 0.001;  // m per unit of a height that is sent
+constexpr double kScale = 0.001;  // m per unit of a height that is sent, at least
 constexpr std::int16_t kUnknown = -32768;
+constexpr double kMostUnits = 32767.0;
 constexpr double kHighest = 1e4;  // m
 
 static_assert(std::endian::native == std::endian::little, "floats are sent as they are");
@@ -135,6 +136,17 @@ RpcResult get(const json& params, const LiveGround& ground) {
   return map_json(known, resolution);
 }
 
+// m per unit of the heights of a map, so that the furthest from zero can still be sent.
+double scale_of(const HeightMap& map) {
+  double furthest = 0.0;
+  for (int j = 0; j < map.grid().rows; ++j) {
+    for (int i = 0; i < map.grid().columns; ++i) {
+      if (map.known(i, j)) furthest = std::max(furthest, std::abs(map.height(i, j)));
+    }
+  }
+  return std::max(kScale, furthest / kMostUnits);
+}
+
 }  // namespace
 
 json map_json(const LiveGround::Known& known, double resolution) {
@@ -146,6 +158,7 @@ json map_json(const LiveGround::Known& known, double resolution) {
   const double least = std::max(resolution / grid.resolution, std::sqrt(cells / kMapCells));
   const int by = std::max(1, static_cast<int>(std::ceil(least - 1e-9)));
   const int columns = (grid.columns + by - 1) / by, rows = (grid.rows + by - 1) / by;
+  const double scale = scale_of(map);
   std::vector<std::int16_t> heights(
       static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), kUnknown);
   for (int j = 0; j < grid.rows; ++j) {
@@ -154,8 +167,8 @@ json map_json(const LiveGround::Known& known, double resolution) {
       std::int16_t& height =
           heights[static_cast<std::size_t>(j / by) * static_cast<std::size_t>(columns) +
                   static_cast<std::size_t>(i / by)];
-      const double scaled = std::clamp(map.height(i, j) / kScale, -32767.0, 32767.0);
-      height = std::max(height, static_cast<std::int16_t>(std::lround(scaled)));
+      const double units = std::clamp(map.height(i, j) / scale, -kMostUnits, kMostUnits);
+      height = std::max(height, static_cast<std::int16_t>(std::lround(units)));
     }
   }
   const std::string_view bytes(reinterpret_cast<const char*>(heights.data()),
@@ -164,7 +177,7 @@ json map_json(const LiveGround::Known& known, double resolution) {
                  {"rows", rows},
                  {"resolution", by * grid.resolution},
                  {"origin", {grid.origin.x(), grid.origin.y()}},
-                 {"scale", kScale},
+                 {"scale", scale},
                  {"heights", base64(bytes)}});
   return result;
 }

@@ -65,6 +65,7 @@ const char* const kNames[] = {
     "cop/{x,y}",
     "pelvis/{x,y,z,roll,pitch,yaw}",
     "foot/{left,right}/{x,y,z,roll,pitch,yaw,contact}",
+    "foot/{left,right}/bears/{back,front,right,left}",
     "foot/{left,right}/force/{x,y,z}",
     "leg/{left,right}/{state,knee_privileged}",
     "toe_off/active",
@@ -248,6 +249,19 @@ TEST(Signals, ValuesStandUnderTheirNames) {
   EXPECT_EQ(r["truth/com/y"], 0.01);
   EXPECT_EQ(r["layer/icp_planner/variant"], 1);
   EXPECT_EQ(r["layer/toe_off/variant"], 0);
+}
+
+TEST(Signals, WhatAFootBearsOnIsTheExtentOfItsFoothold) {
+  Recorded r;
+  GaitdFoothold& foothold = r.data->gait.footholds[GAITD_RIGHT];
+  EXPECT_EQ(r["foot/right/bears/front"], 0.0) << "of no polygon";
+  const double corners[4][2] = {{0.13, -0.06}, {0.13, 0.01}, {-0.12, 0.01}, {-0.12, -0.06}};
+  foothold.polygon_count = 4;
+  for (int i = 0; i < 4; ++i) sdk::view(foothold.contact_polygon[i]) = sdk::view(corners[i]);
+  EXPECT_EQ(r["foot/right/bears/back"], -0.12);
+  EXPECT_EQ(r["foot/right/bears/front"], 0.13);
+  EXPECT_EQ(r["foot/right/bears/right"], -0.06);
+  EXPECT_EQ(r["foot/right/bears/left"], 0.01);
 }
 
 TEST(Signals, AFootstepIsTheOneAheadOfItsFootOrWhereItStands) {

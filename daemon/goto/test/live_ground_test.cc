@@ -205,6 +205,20 @@ TEST_F(MapMethods, WhatIsPutIsWhatOneGets) {
   EXPECT_FALSE(std::get<json>(call("map.get", json::object())).contains("heights"));
 }
 
+TEST_F(MapMethods, GroundFarAboveTheOriginKeepsItsHeight) {
+  json hill = tile();
+  hill["heights"] = floats({120.0F, 120.25F, NAN, -40.0F, 119.5F, 119.0F});
+  EXPECT_EQ(std::get<json>(call("map.put", hill))["cells"], 5);
+  const json map = std::get<json>(call("map.get", json::object()));
+  const std::string bytes = from_base64(map["heights"].get<std::string>());
+  std::int16_t heights[6];
+  ASSERT_EQ(bytes.size(), sizeof(heights));
+  std::memcpy(heights, bytes.data(), sizeof(heights));
+  const double scale = map["scale"];
+  EXPECT_NEAR(scale * heights[1], 120.25, 0.5 * scale);
+  EXPECT_NEAR(scale * heights[3], -40.0, 0.5 * scale);
+}
+
 TEST_F(MapMethods, WhatIsNoTileIsRefusedWithTheReason) {
   const auto with = [](const char* key, const json& value) {
     json params = tile();

@@ -3,7 +3,7 @@ import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {HandArrow, Loads, PullArrow} from './forces.js';
 import {Ground} from './ground.js';
-import {hull} from './hull.js';
+import {clip, hull} from './hull.js';
 import {Plan} from './plan.js';
 import {PushArrow} from './push_arrow.js';
 import {chooseRenderer} from './renderer.js';
@@ -24,6 +24,7 @@ const kGhost = 0.3;  // opacity
 const kShortDrawing = 6;
 
 const kGrid = 0.5;       // m
+const kEdge = 1e-3;      // m
 const kGridRange = 3.5;  // m, around the robot
 
 // In short pieces: software renderers drop lines that begin behind the camera.
@@ -187,16 +188,32 @@ export class Scene {
     this.stale = true;
   }
 
-  // Corners of a sole in the world. `pose`: the log's foot (with roll and pitch) or footstep.
-  outline(side, pose, row) {
+  // m, in the frame of the sole.
+  sole(side) {
+    return this.log.robot?.feet?.[side]?.outline ??
+        [[0.12, -0.06], [0.12, 0.06], [-0.12, 0.06], [-0.12, -0.06]];
+  }
+
+  // What of its sole a foot is seen to bear on. A log of before those signals does not tell.
+  bears(side, row) {
+    const reach = (name) => this.log.value(`foot/${side}/bears/${name}`, row);
+    const [back, front, right, left] = ['back', 'front', 'right', 'left'].map(reach);
+    const part = Number.isFinite(front) ? clip(this.sole(side), {
+      back: back - kEdge, front: front + kEdge, right: right - kEdge, left: left + kEdge,
+    }) : this.sole(side);
+    if (this.log.word(`foot/${side}/contact`, row) !== 'toe') return part;
+    const toe = Math.max(...part.map(([x]) => x)) - 2 * kEdge;
+    return part.filter(([x]) => x > toe);
+  }
+
+  // Corners in the world of a part of a sole. `pose`: the log's foot (with roll and pitch) or footstep.
+  corners(part, side, pose, row) {
     const matrix = new THREE.Matrix4();
     const angle = (name) => this.log.value(`${pose}/${side}/${name}`, row) || 0;
     matrix.makeRotationFromEuler(
         new THREE.Euler(angle('roll'), angle('pitch'), angle('yaw'), 'ZYX'));
     matrix.setPosition(...this.log.point(`${pose}/${side}`, row));
-    const corners = this.log.robot?.feet?.[side]?.outline ??
-        [[0.12, -0.06], [0.12, 0.06], [-0.12, 0.06], [-0.12, -0.06]];
-    return corners.map(([x, y]) => new THREE.Vector3(x, y, 0).applyMatrix4(matrix));
+    return part.map(([x, y]) => new THREE.Vector3(x, y, 0).applyMatrix4(matrix));
   }
 
   show(time) {
@@ -207,13 +224,9 @@ export class Scene {
     this.plan.show(time);
     const loaded = [];
     for (const side of ['left', 'right']) {
-      setPoints(this.footsteps[side].geometry, this.outline(side, 'footstep', row));
+      setPoints(this.footsteps[side].geometry, this.corners(this.sole(side), side, 'footstep', row));
       if (log.word(`foot/${side}/contact`, row) === 'none') continue;
-      const corners = this.outline(side, 'foot', row);
-      const front = Math.max(...(log.robot?.feet?.[side]?.outline ?? [[0]]).map(([x]) => x));
-      const toe = log.word(`foot/${side}/contact`, row) === 'toe';
-      loaded.push(...corners.filter(
-          (_, i) => !toe || log.robot.feet[side].outline[i][0] > front - 1e-3));
+      loaded.push(...this.corners(this.bears(side, row), side, 'foot', row));
     }
     this.support.visible = loaded.length > 2;
     if (this.support.visible) {
