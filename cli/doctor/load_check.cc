@@ -9,6 +9,32 @@ namespace {
 constexpr double kLeastLoad = 0.8;  // s
 constexpr double kNext = 0.2;       // s: the force is judged once it has settled
 
+// Standing or walking, however heavy: the mean of what does not fit, at its largest.
+Findings check_surplus(const LogCase& log, const GaitdModel& model) {
+  const daemon::Column* surplus = log.find("external/surplus");
+  const daemon::Column* misjudged = log.find("external/misjudged");
+  if (surplus == nullptr || misjudged == nullptr) return {};
+  std::vector<bool> wrong(misjudged->size());
+  for (std::size_t i = 0; i < wrong.size(); ++i) {
+    wrong[i] = log.controlled(i) && (*misjudged)[i] != 0.0;
+  }
+  const auto episode = last_episode(log, wrong, kLeastLoad);
+  if (!episode) return {};
+  double force = 0.0;
+  for (std::size_t i = episode->begin; i < episode->end; ++i) {
+    if (std::abs((*surplus)[i]) > std::abs(force)) force = (*surplus)[i];
+  }
+  const double mass = force / model.gravity;
+  Finding finding =
+      log_finding(log, "load", episode->begin,
+                  format("the robot was %.1f kg %s than it was known to be, for %.1f s",
+                         std::abs(mass), mass > 0.0 ? "heavier" : "lighter",
+                         static_cast<double>(episode->end - episode->begin) * log.period()),
+                  "what `payload set` said; what was put on or taken off in the walk; a rope");
+  if (std::abs(mass) < 0.1 * model.total_mass) finding.severity = Severity::kWarning;
+  return {finding};
+}
+
 }  // namespace
 
 Findings check_load(const LogCase& log) {
@@ -20,7 +46,7 @@ Findings check_load(const LogCase& log) {
     wrong[i] = log.controlled(i) && (*load)[i] != 0.0;
   }
   const auto episode = last_episode(log, wrong, kLeastLoad);
-  if (!episode) return {};
+  if (!episode) return check_surplus(log, *model);
   double sum = 0.0;
   std::size_t count = 0;
   const auto settled = episode->begin + static_cast<std::size_t>(kNext / log.period());

@@ -305,6 +305,7 @@ void ControlLoop::report_changes() {
   }
   report_feet();
   report_hands();
+  report_surplus();
   if (d.payload.concluded) {
     telemetry_->push_event(
         EventKind::kNote, d.time.tick, d.time.time,
@@ -315,6 +316,16 @@ void ControlLoop::report_changes() {
   last_faults_ = d.faults;
   telemetry_->push_event(d.safety == SafetyState::kFault ? EventKind::kFault : EventKind::kState,
                          d.time.tick, d.time.time, state_text(*pipeline_, text, sizeof(text)));
+}
+
+// The robot is not as heavy as it is known to be; told once as long as that lasts.
+void ControlLoop::report_surplus() {
+  const TickData& d = pipeline_->data();
+  const bool misjudged = d.external.misjudged;
+  if (std::exchange(misjudged_, misjudged) || !misjudged) return;
+  char text[kMaxEventText];
+  telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
+                         surplus_text(d.external.surplus / model_.gravity, text, sizeof(text)));
 }
 
 // A foothold turns out not to carry as a whole; told once of each.

@@ -100,6 +100,7 @@ class ControlLoop {
   void record();
   void report_changes();
   void report_feet();
+  void report_surplus();
   void report_hands();
   void wait_for_next_period();
   void tell_overrun();
@@ -134,6 +135,7 @@ class ControlLoop {
   JointMask last_dropped_ = 0;
   std::array<bool, GAITD_MAX_HANDS> hand_moved_{};
   std::array<bool, GAITD_MAX_FEET> foot_partial_{};
+  bool misjudged_ = false;
 };
 
 }  // namespace gaitd::daemon

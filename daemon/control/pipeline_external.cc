@@ -70,6 +70,8 @@ void Pipeline::observe_external(double dt) {
   d.external.pulled = external_.pulled();
   sdk::view(d.robot.external_wrench) = steady;
   d.external.load = external_.unknown_load();
+  d.external.surplus = external_.surplus();
+  d.external.misjudged = external_.misjudged();
   sdk::view(d.robot.icp) +=
       walking::lean(steady, sdk::total_mass(model_, d.robot.loads), model_.gravity, d.gait.omega);
 }

@@ -147,6 +147,8 @@ void visit_balance(V& v, const GaitdModel& model, const TickData& d) {
   v.boolean(d.external.tared, "external/tared");
   v.boolean(d.external.pulled, "external/pulled");
   v.real(d.external.load, "N", "external/load");
+  v.real(d.external.surplus, "N", "external/surplus");
+  v.boolean(d.external.misjudged, "external/misjudged");
   v.real(sdk::mass_of(d.loads), "kg", "payload/mass");
   v.boolean(d.payload.estimating, "payload/estimating");
   v.word(static_cast<int>(d.payload.outcome),

@@ -2,6 +2,7 @@
 #include "daemon/control/state_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 
@@ -101,6 +102,15 @@ std::string_view payload_text(const PayloadData& payload, const char* link, char
       text.add(R"({"payload":"not weighed","what":"%s"})",
                outcome_text(static_cast<int>(payload.outcome)));
   }
+  return text.view();
+}
+
+std::string_view surplus_text(double surplus, char* buffer, std::size_t size) {
+  Text text(buffer, size);
+  text.add(R"({"weight":"at least %.1f kg %s than gaitd knows of",)", std::abs(surplus),
+           surplus > 0.0 ? "more" : "less");
+  text.add(R"("what":"a load that it was not told of, or that is not there, or a pull; )"
+           R"(stand, then gaitctl payload estimate"})");
   return text.view();
 }
 

@@ -22,6 +22,9 @@ const char* outcome_text(int outcome);
 std::string_view payload_text(const PayloadData& payload, const char* link, char* text,
                               std::size_t size);
 
+// That a robot is heavier than it is known to be, by `surplus` (kg) or more, or lighter.
+std::string_view surplus_text(double surplus, char* text, std::size_t size);
+
 // How much of its foothold a foot bears on.
 std::string_view bearing_text(int side, double share, char* text, std::size_t size);
 

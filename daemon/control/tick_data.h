@@ -65,8 +65,10 @@ struct Drive {
 struct External {
   double wrench[6] = {};  // moment first, about the CoM, W; N m and N
   bool tared = false;
-  bool pulled = false;  // steadily: the controller counts on it
-  double load = 0.0;    // N, upwards: of what was put on a standing robot, and is not known yet
+  bool pulled = false;     // steadily: the controller counts on it
+  double load = 0.0;       // N, upwards: of what was put on a standing robot, and is not known yet
+  double surplus = 0.0;    // N, by which it is heavier than it is known to be
+  bool misjudged = false;  // by more than is explained
 };
 
 // What the robot carries: walking::Payload.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "atlas.h"
+#include "gaitd/sdk/loads.h"
 
 namespace gaitd::walking {
 namespace {
@@ -51,6 +52,38 @@ struct Bench {
 };
 
 const double kWeight = atlas().total_mass * atlas().gravity;  // N
+
+TEST(ExternalWrench, ALoadThatNobodyToldOfMakesItHeavier) {
+  for (const int phase : {GAITD_PHASE_STAND, GAITD_PHASE_SWING}) {
+    Bench b;
+    b.run_for(2.0);
+    EXPECT_FALSE(b.external.misjudged());
+    b.gait.phase = phase;
+    b.pull.z() = -0.06 * kWeight;
+    b.run_for(0.5);
+    EXPECT_FALSE(b.external.misjudged()) << "as much as a step does";
+    b.run_for(7.5);
+    EXPECT_TRUE(b.external.misjudged());
+    EXPECT_NEAR(b.external.surplus(), 0.06 * kWeight, 0.002 * kWeight);
+    b.pull.z() = 0.0;
+    b.run_for(8.0);
+    EXPECT_FALSE(b.external.misjudged());
+  }
+}
+
+TEST(ExternalWrench, ALoadThatWasToldOfAndIsNotThereMakesItLighter) {
+  Bench b;
+  b.run_for(2.0);
+  const GaitdLoad load{.body = 0, .reserved = 0, .mass = 35.0, .com = {}};
+  ASSERT_TRUE(sdk::put_load(load, b.robot.loads));
+  b.gait.phase = GAITD_PHASE_SWING;
+  b.run_for(1.0);
+  EXPECT_TRUE(b.external.misjudged());
+  EXPECT_LT(b.external.surplus(), -0.05 * kWeight);
+  b.robot.loads = {};
+  b.run_for(0.1);
+  EXPECT_FALSE(b.external.misjudged()) << "told that it was not there";
+}
 
 TEST(ExternalWrench, ASteadyPullIsFoundAndCountedOn) {
   Bench b;

@@ -57,6 +57,12 @@ class ExternalWrench {
   // N, upwards: on a standing robot that has been loaded with something, or relieved of it, and
   // does not know of it yet. 0: nothing.
   double unknown_load() const { return loaded_ ? now_[5] : 0.0; }
+  // N, by which the robot is heavier (less: lighter) than it is known to be, standing or walking,
+  // as the mean of the last seconds. Without the tare.
+  double surplus() const { return surplus_; }
+  // That is more than sensors, drives and steps explain: something was put on the robot or taken
+  // away, it was told of a load that is not there, or something pulls it down or up.
+  bool misjudged() const { return misjudged_; }
   // s, for which a standing robot has hardly moved, its weight on its feet.
   double time_at_rest() const { return time_at_rest_; }
   const dynamics::Kinematics& kinematics() const { return kinematics_; }
@@ -69,6 +75,7 @@ class ExternalWrench {
   void update_rest(double dt, bool stands, const GaitdRobotState& robot);
   void update_tare(double dt);
   void update_unknown_load(double dt, bool stands);
+  void update_surplus(double dt, bool controlled);
   void update_belief(double dt, bool pulls);
 
   const GaitdModel model_;
@@ -84,6 +91,8 @@ class ExternalWrench {
   double time_at_rest_ = 0.0;  // s
   bool loaded_ = false;
   double time_unloaded_ = 0.0;  // s
+  double surplus_ = 0.0;        // N
+  bool misjudged_ = false;
   GaitdLoads known_{};
   // In the axes of the heading, as sensors and masses turn with the robot.
   Vector6d sum_ = Vector6d::Zero();   // of the tare being taken, N m s and N s
