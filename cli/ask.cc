@@ -2,6 +2,8 @@
 #include "cli/ask.h"
 
 #include <chrono>
+#include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <optional>
 #include <thread>
@@ -110,10 +112,15 @@ CLI::App* add_plain(CLI::App* app, Context* context, const std::string& name,
 CLI::Option* add_number(CLI::App* command, const std::string& option,
                         const std::shared_ptr<json>& params, const std::string& place,
                         const std::string& description) {
-  return command->add_option_function<double>(
-      option,
-      [params, place = json::json_pointer(place)](double value) { (*params)[place] = value; },
-      description);
+  return command
+      ->add_option_function<double>(
+          option,
+          [params, place = json::json_pointer(place)](double value) { (*params)[place] = value; },
+          description)
+      ->check([](const std::string& text) {
+        const bool finite = std::isfinite(std::strtod(text.c_str(), nullptr));
+        return finite ? std::string() : text + ": a finite number expected";
+      });
 }
 
 void wait_while(RpcClient* client, const std::string& state, std::chrono::milliseconds longest) {

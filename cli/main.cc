@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // gaitctl: the command line of gaitd.
+#include <poll.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -63,6 +64,13 @@ int run(int argc, char** argv) {
   return context.action();
 }
 
+// What could not be written is told, but to a reader that has read enough and closed its end.
+bool output_is_lost() {
+  if (std::cout.flush()) return false;
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&output, 1, 0) < 0 || (output.revents & POLLERR) == 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -71,7 +79,10 @@ int main(int argc, char** argv) {
   const gaitd::cli::PlainOutput out(&std::cout, whole ? 0 : gaitd::cli::columns_of(STDOUT_FILENO));
   const gaitd::cli::PlainOutput err(&std::cerr, whole ? 0 : gaitd::cli::columns_of(STDERR_FILENO));
   try {
-    return run(argc, argv);
+    const int code = run(argc, argv);
+    if (code != gaitd::cli::kDone || !output_is_lost()) return code;
+    std::cerr << "gaitctl: cannot write to standard output; is its disk full?\n";
+    return gaitd::cli::kFailed;
   } catch (const std::exception& e) {
     std::cerr << "gaitctl: internal error: " << e.what() << "; please report it\n";
     return gaitd::cli::kFailed;

@@ -45,10 +45,11 @@ std::optional<json> read_way(const std::string& file, std::string* error) {
   return daemon::to_json(*root);
 }
 
-// NAME=RAD
+// NAME=RAD, each joint once.
 bool read_joint(const std::string& text, json* joints) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) return false;
+  if (joints->contains(text.substr(0, equals))) return false;
   const char* number = text.c_str() + equals + 1;
   char* end = nullptr;
   const double value = std::strtod(number, &end);
@@ -65,7 +66,8 @@ int send(const Context& context, const PoseArguments& arguments) {
   where.update(arguments.where);
   for (const std::string& joint : arguments.joints) {
     if (!read_joint(joint, &where["joints"])) {
-      return fail(context, kUsage, command, "--joint " + joint + ": NAME=RAD expected");
+      return fail(context, kUsage, command,
+                  "--joint " + joint + ": NAME=RAD expected, each joint once");
     }
   }
   if (!arguments.points.empty()) {

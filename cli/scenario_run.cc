@@ -2,6 +2,7 @@
 #include "cli/scenario_run.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -76,6 +77,37 @@ fs::path choose_log(const fs::path& asked, const std::string& scenario, std::str
              "; give another place with --log";
   return {};
 }
+
+// Of a log and of what gaitd prints beside it, as long as this lives.
+class WriteLock {
+ public:
+  explicit WriteLock(const fs::path& log) {
+    std::error_code ignored;
+    for (const fs::path& file : {log, output_of(log)}) {
+      const fs::file_status status = fs::symlink_status(file, ignored);
+      if (!fs::exists(status) || fs::is_regular_file(status)) continue;
+      reason_ =
+          file.string() + " is no file that could be written anew; give another one with --log";
+      return;
+    }
+    file_ = open(output_of(log).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      reason_ = "another run writes " + log.string() + "; give another file with --log";
+    }
+  }
+  ~WriteLock() {
+    if (file_ >= 0) close(file_);
+  }
+  WriteLock(const WriteLock&) = delete;
+  WriteLock& operator=(const WriteLock&) = delete;
+
+  // Why it must not be written; empty: it may.
+  const std::string& reason() const { return reason_; }
+
+ private:
+  int file_ = -1;
+  std::string reason_;
+};
 
 std::optional<Scenario> load(const RunOptions& options, RunReport* report) {
   const daemon::Paths paths = daemon::Paths::detect();
@@ -204,6 +236,11 @@ RunReport run_scenario(const std::string& name, const RunOptions& options,
     return report;
   }
   report.log = log.string();
+  const WriteLock lock(log);
+  if (!lock.reason().empty()) {
+    report.problems.push_back(lock.reason());
+    return report;
+  }
   // An old log of this name must never be judged as the new one.
   std::error_code ignored;
   fs::remove(log, ignored);

@@ -48,7 +48,8 @@ UsageError usage_error(const CLI::App& app, const CLI::ParseError& error) {
     return {name, "no option '" + option + "'; " +
                       daemon::suggestion(option, option_names(command)) + help};
   }
-  if (commands.empty()) return {name, error.what() + help};
+  const bool alone = word.empty() && command->get_require_subcommand_min() == 0;
+  if (commands.empty() || alone) return {name, error.what() + help};
   if (word.empty()) {
     return {name, "a command is expected; " + daemon::suggestion("", commands) + help};
   }

@@ -68,7 +68,12 @@ void read_scenarios(MapReader* root, Campaign* campaign) {
                           daemon::suggestion(node->text, paths.scenarios()));
       continue;
     }
-    campaign->scenarios.push_back(scenario);
+    std::vector<std::string>& all = campaign->scenarios;
+    if (std::find(all.begin(), all.end(), scenario) != all.end()) {
+      root->issues()->add(node->where, path, "each scenario once", daemon::describe(*node),
+                          "the same runs again say nothing new");
+    }
+    all.push_back(scenario);
   }
 }
 

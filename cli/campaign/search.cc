@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <utility>
+#include <vector>
 
 #include "cli/campaign/settings.h"
 
@@ -64,13 +65,20 @@ void read_seeds(MapReader* root, Campaign* campaign) {
   if (node != nullptr && node->kind == NodeKind::kList) {
     for (const NodePtr& item : node->items) {
       const auto seed = daemon::as_integer(*item);
-      if (seed && *seed >= 0) {
-        campaign->seeds.push_back(static_cast<std::uint64_t>(*seed));
-      } else {
+      std::vector<std::uint64_t>& seeds = campaign->seeds;
+      if (!seed || *seed < 0) {
         root->issues()->add(item->where, "seeds", "whole numbers of at least 0",
                             daemon::describe(*item), "");
+        continue;
       }
+      const auto value = static_cast<std::uint64_t>(*seed);
+      if (std::find(seeds.begin(), seeds.end(), value) != seeds.end()) {
+        root->issues()->add(item->where, "seeds", "each seed once", daemon::describe(*item),
+                            "the same run again says nothing new");
+      }
+      seeds.push_back(value);
     }
+    if (node->items.empty()) root->fail("seeds", "at least one", "none", "write how many");
   } else {
     const long long usual = campaign->search ? kUsualSeeds : 1;
     const long long count = root->integer("seeds", 1, 1000000).value_or(usual);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "cli/doctor/log_doctor.h"
 #include "cli/doctor/machine_doctor.h"
@@ -27,6 +28,8 @@ namespace {
 constexpr char kMcapMagic[] = "\x89MCAP";
 
 bool is_log(const std::string& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return file.ends_with(".mcap");
   std::ifstream in(file, std::ios::binary);
   char begin[5] = {};
   in.read(begin, sizeof(begin));

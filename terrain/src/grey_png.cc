@@ -7,7 +7,9 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
 namespace gaitd::terrain {
 namespace {
@@ -102,6 +104,12 @@ std::vector<png_bytep> rows_of(std::vector<std::uint16_t>* pixels, int width, in
 }  // namespace
 
 std::string read_grey_png(const std::string& name, GreyImage* image) {
+  // A pipe would let everybody wait.
+  std::error_code ignored;
+  const auto status = std::filesystem::status(name, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return "expected a PNG image, got something that is no file";
+  }
   const File file(std::fopen(name.c_str(), "rb"));
   if (!file) return std::string("expected a PNG image, got ") + std::strerror(errno);
   Failure failure;
