@@ -13,10 +13,11 @@
 namespace gaitd::doctor {
 namespace {
 
-constexpr double kNearStop = 0.05;   // rad
-constexpr double kLeastBend = 0.01;  // of the leg length
-constexpr double kIcpMargin = 0.02;  // m
-constexpr double kLoaded = 0.4;      // of the effort limit, standing on both legs
+constexpr double kNearStop = 0.05;     // rad
+constexpr double kLeastBend = 0.01;    // of the leg length
+constexpr double kLowestPelvis = 0.4;  // of the leg length: it tells a fall by its height
+constexpr double kIcpMargin = 0.02;    // m
+constexpr double kLoaded = 0.4;        // of the effort limit, standing on both legs
 constexpr double kOverloaded = 0.9;
 
 using Eigen::Vector2d;
@@ -26,6 +27,13 @@ Findings check_reach(const GaitdModel& model) {
   const double length = leg_length(model);
   const double height = model.nominal_pelvis_height;
   const double reserve = length - height;
+  if (height < kLowestPelvis * length) {
+    return {
+        {"reach", Severity::kProblem,
+         format("the origin of the pelvis is %.3f m above the soles, where legs are %.3f m long",
+                height, length),
+         "give the link from which the legs hang a frame of its own near the hips (in the URDF)"}};
+  }
   const bool bent = reserve > kLeastBend * length;
   return {{"reach", bent ? Severity::kOk : Severity::kWarning,
            format("the pelvis stands %.3f m above the soles, straight legs would lift it by %.3f "

@@ -191,6 +191,19 @@ std::string robot_yaml(const Guess& guess, const std::string& urdf) {
   return out.text();
 }
 
+// m, from the middle of the soles, where a scenario begins, to the pelvis in the posture.
+Eigen::Vector2d pelvis_over_soles(const Guess& guess) {
+  const GaitdModel& model = guess.model;
+  const auto poses = body_poses(
+      model, Eigen::Map<const Eigen::VectorXd>(model.nominal_position, model.joint_count));
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const GaitdFoot& foot : model.feet) {
+    const auto body = static_cast<std::size_t>(foot.sole.body);
+    middle += 0.5 * (poses[body] * Eigen::Vector3d(foot.sole.origin)).head<2>();
+  }
+  return -middle;
+}
+
 std::string stand_scenario(const Guess& guess) {
   return "# Stands on its own: begin here.\nschema: gaitd.scenario/1\nname: " +
          quoted(guess.name + "-stand") +
@@ -204,6 +217,7 @@ std::string walk_scenario(const Guess& guess) {
   const double duration = std::ceil(1.0 + (kSteps + 2) * step + 3.0);
   // The last step comes beside the foot before.
   const double way = kSteps * p.length;
+  const Eigen::Vector2d pelvis = pelvis_over_soles(guess);
   return "# A first walk: bent knees, short steps that take their time.\nschema: gaitd.scenario/1\n"
          "name: " +
          quoted(guess.name + "-walk") + "\nrobot: robot.yaml\nduration: " + number(duration) +
@@ -211,8 +225,8 @@ std::string walk_scenario(const Guess& guess) {
          std::to_string(kSteps) + ", length: " + number(p.length) +
          ", swing: " + number(p.swing, 3) + ", transfer: " + number(p.transfer, 3) +
          "}}\nexpect:\n  no_fall: true\n  steps_taken: " + std::to_string(kSteps) +
-         "\n  final_pelvis: {x: " + number(way) +
-         ", y: 0.0, tolerance: " + number(std::max(0.03, 0.1 * p.scale), 3) +
+         "\n  final_pelvis: {x: " + number(way + pelvis.x()) + ", y: " + number(pelvis.y()) +
+         ", tolerance: " + number(std::max(0.03, 0.1 * p.scale), 3) +
          ", yaw: 0.0, yaw_tolerance: 0.05}\n";
 }
 

@@ -191,6 +191,7 @@ void LiveView::on_robot() {
 void LiveView::on_frame(const LiveFrame& frame) {
   newest_time_ = frame.time;
   recorder_.add(frame);
+  if (recorder_.failed()) record(false);
   if (channels_ && !foxgloves_.empty()) {
     for (const auto& client : foxgloves_) client->send_time(daemon::to_nanoseconds(frame.time));
     channels_->add(frame);

@@ -34,6 +34,8 @@ class Recorder {
   Recorder& operator=(const Recorder&) = delete;
 
   bool recording() const { return writer_ != nullptr; }
+  /// It is not written any more, as where the disk is full: end() says why.
+  bool failed() const { return writer_ != nullptr && !writer_->ok(); }
   const std::string& file() const { return file_; }
   /// Empty, or why it cannot be written.
   std::string begin(const nlohmann::json& robot, const daemon::SignalTable& signals);

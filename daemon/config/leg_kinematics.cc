@@ -42,7 +42,8 @@ double leg_length(const GaitdModel& model, const GaitdLeg& leg, Kinematics* kine
 }
 
 // The knee bends away from where the leg is longest, towards the nominal posture, or, with a
-// straight nominal posture, towards the larger part of its range.
+// straight nominal posture, towards the larger part of its range; where it may bend far either way,
+// towards the front of the pelvis.
 double knee_sign(const GaitdModel& model, const GaitdLeg& leg, Kinematics* kinematics) {
   constexpr int kSamples = 400;
   const double lower = std::max(model.joints[leg.knee].position_min, -M_PI);
@@ -60,7 +61,16 @@ double knee_sign(const GaitdModel& model, const GaitdLeg& leg, Kinematics* kinem
   const double bend = model.nominal_position[leg.knee] - straight;
   constexpr double kSeen = 0.2;  // rad
   if (std::abs(bend) > kSeen) return bend > 0 ? 1.0 : -1.0;
-  return upper - straight >= straight - lower ? 1.0 : -1.0;
+  constexpr double kStop = 0.5;  // rad: a knee that is kept from bending backwards
+  if (std::min(upper - straight, straight - lower) < kStop) {
+    return upper - straight >= straight - lower ? 1.0 : -1.0;
+  }
+  Eigen::VectorXd q = nominal_position(model);
+  q[leg.knee] = straight;
+  pose(kinematics, q);
+  const Vector3d lower_leg =
+      origin(*kinematics, model, leg.ankle_pitch) - origin(*kinematics, model, leg.knee);
+  return axis(*kinematics, model, leg.knee).cross(lower_leg).x() <= 0.0 ? 1.0 : -1.0;
 }
 
 }  // namespace

@@ -201,9 +201,12 @@ class TreeBuilder {
       }
       const UrdfJointElement& joint = *found->second;
       if (joint.kind != UrdfJointKind::kFixed) {
-        xml_.add_error(joint.line, "root link " + in_quotes(name) + " moves against the root " +
-                                       in_quotes(root) + " by joint " + in_quotes(joint.name) +
-                                       ", expected the root or a link fixed to it");
+        xml_.add_error(joint.line,
+                       "root link " + in_quotes(name) + " moves against the root " +
+                           in_quotes(root) + " by joint " + in_quotes(joint.name) +
+                           ", expected the root or a link fixed to it; turn the "
+                           "joints between them around in the URDF, so that the pelvis, "
+                           "from which both legs hang, is its root");
         return false;
       }
       X_RB = joint.X_PJ * X_RB;

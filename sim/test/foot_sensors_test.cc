@@ -153,6 +153,19 @@ TEST_F(FootSensorsTest, NoiseAndOffsetsHaveTheirFigures) {
   EXPECT_NEAR(std::sqrt(moment), 3, 0.2);
 }
 
+TEST_F(FootSensorsTest, SensorsOfALightRobotHaveASmallerRange) {
+  contact_[GAITD_LEFT].force = {0, 0, 100};
+  const auto errors = [&](const SensorFigures& figures) -> Vector3d {
+    return reading(figures).force - contact_[GAITD_LEFT].force;
+  };
+  SensorFigures figures = SensorFigures::nominal();
+  const Vector3d heavy = errors(figures);
+  figures.force_weight = 0;
+  EXPECT_EQ(errors(figures), heavy) << "Atlas has the sensors of the class";
+  figures.force_weight = 2 * model_.total_mass * model_.gravity;
+  EXPECT_TRUE(errors(figures).isApprox(0.5 * heavy, 1e-9));
+}
+
 TEST_F(FootSensorsTest, DriftGrowsToItsFigureInFiveMinutes) {
   SensorFigures figures;
   figures.force_drift = 20;

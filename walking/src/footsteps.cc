@@ -17,6 +17,12 @@ constexpr double kEstimateError = 0.005;  // m
 // Of the longest step forwards: one backwards, and the way of a foot from its foothold before.
 constexpr double kBackward = 0.6;
 constexpr double kTravel = 1.85;
+// Transfers with one foot this far ahead of the other (heights of the CoM) end in time: sqrt(h /
+// g), at the longest step of Atlas, and what a shorter one has more.
+constexpr double kStraddle = 0.35;
+constexpr double kLongestStraddle = 0.85;
+constexpr double kStraddleTime = 1.75;
+constexpr double kStraddleGain = 0.7;
 constexpr double kNearestFeet = 0.8;  // of their distance in the nominal posture
 
 }  // namespace
@@ -35,7 +41,9 @@ StepLimits::StepLimits(const GaitdModel& model, const GaitParameters& p)
       backward(kBackward * forward),
       travel(kTravel * forward),
       height(p[Gait::kHighestStep] * model.nominal_com_height),
-      turn(p[Gait::kMaxStepTurn]) {}
+      turn(p[Gait::kMaxStepTurn]),
+      com_height(model.nominal_com_height),
+      pace(std::sqrt(model.nominal_com_height / model.gravity)) {}
 
 FootstepGenerator::FootstepGenerator(const WalkCommand& walk, const GaitdPose& middle,
                                      int first_side, double width, double least_separation)
@@ -146,6 +154,21 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const
         number, side, std::max(std::abs(rpy.x()), std::abs(rpy.y())), kMaxStepTilt);
   }
   return {};
+}
+
+Refusal check_straddle(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
+                       int number, const StepLimits& limits) {
+  const Eigen::Vector3d apart = sdk::from_yaw(-sdk::yaw_of(sdk::quaternion(stance.orientation))) *
+                                (sdk::view(stance.position) - sdk::view(from.position));
+  const double ahead = std::abs(apart.x()) / limits.com_height;
+  if (ahead < kStraddle) return {};
+  const double most = (kStraddleTime + kStraddleGain * (kLongestStraddle - ahead)) * limits.pace;
+  if (step.transfer_duration <= most) return {};
+  return refuse(
+      "footstep %d (%s): a transfer of %.2f s with the feet %.2f m apart, at most %.2f s expected: "
+      "legs do not stand in that straddle; let it take less, or take shorter steps",
+      number, step.side == GAITD_LEFT ? "left" : "right", step.transfer_duration,
+      std::abs(apart.x()), most);
 }
 
 }  // namespace gaitd::walking

@@ -45,7 +45,8 @@ Refusal GaitMachine::check(const GaitdFootstep& step, const GaitdPose& stance,
   if (r.refused()) return r;
   GaitdFootstep filled = step;
   fill_in(filled);
-  return swing_limits_.check(filled, stance, from, number);
+  r = check_straddle(filled, stance, from, number, limits());
+  return r.refused() ? r : swing_limits_.check(filled, stance, from, number);
 }
 
 Refusal GaitMachine::check_capture(const GaitdFootstep* steps, int count, int kept,

@@ -185,6 +185,23 @@ TEST(FootstepGenerator, WhatAMachineAcceptsNeverBringsTheFeetTooClose) {
   EXPECT_LT(accepted, 450);
 }
 
+TEST(Straddle, ALongStepLeavesLessTimeForItsTransfer) {
+  const double separation = atlas().nominal_foot_separation;
+  const auto refused = [&](double length, double transfer) {
+    GaitdFootstep step = footstep(GAITD_RIGHT, 0.0, 0.0);
+    step.transfer_duration = transfer;
+    const GaitdPose stance = pose(length, separation, 0.0), from = pose(0.0, 0.0, 0.0);
+    return check_straddle(step, stance, from, 1, limits()).refused();
+  };
+  EXPECT_FALSE(refused(0.35, 5.0)) << "stands there as well as with its feet side by side";
+  EXPECT_FALSE(refused(-0.35, 5.0));
+  EXPECT_FALSE(refused(0.6, 0.65));
+  EXPECT_TRUE(refused(0.6, 0.75));
+  EXPECT_TRUE(refused(-0.6, 0.75));
+  EXPECT_FALSE(refused(1.0, 0.6));
+  EXPECT_TRUE(refused(1.0, 0.65));
+}
+
 TEST(MiddlePose, LiesHalfWayAndTurnsTheShortWayRound) {
   GaitdPose a = pose(1.0, 2.0, 3.0);
   GaitdPose b = pose(3.0, 0.0, -3.0);

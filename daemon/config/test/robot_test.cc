@@ -163,6 +163,25 @@ TEST_F(Atlas, LeavesTheDrivesToTheDefaultsInSimulation) {
   EXPECT_GT(robot->impedance.heel_strike.damping[ankle], robot->impedance.support.damping[ankle]);
 }
 
+TEST(BendSigns, AKneeThatMayBendEitherWayBendsForwards) {
+  Settings settings;
+  Issues issues;
+  const auto robot = load_robot(Paths::detect().robot("atlas").value_or("").string(),
+                                Profile::kSimulation, &settings, &issues);
+  ASSERT_TRUE(robot) << issues.error_text();
+  for (const double sign : {1.0, -1.0}) {
+    GaitdModel model = robot->model;
+    GaitdLeg leg = model.legs[GAITD_LEFT];
+    for (const int j : {leg.hip_pitch, leg.knee, leg.ankle_pitch}) model.nominal_position[j] = 0.0;
+    GaitdJoint& knee = model.joints[leg.knee];
+    knee.position_min = -2.3;
+    knee.position_max = 2.2;
+    for (double& x : knee.axis) x *= sign;
+    EXPECT_EQ(compute_bend_signs(model, &leg), "");
+    EXPECT_EQ(leg.knee_bend_sign, sign);
+  }
+}
+
 TEST(UnitreeG1, HasItsPublishedFigures) {
   Settings settings;
   Issues issues;

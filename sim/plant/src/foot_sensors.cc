@@ -68,14 +68,17 @@ void FootSensors::draw_errors(int side) {
   RandomStream stream(seed_, RandomPurpose::kFootErrors, index);
   Foot& foot = feet_[side];
   foot = Foot{};
-  foot.force_noise = figures_.force_noise.sample(&stream);
-  foot.moment_noise = figures_.moment_noise.sample(&stream);
-  foot.jump = figures_.force_jump.sample(&stream);
+  const double weight = model_.total_mass * model_.gravity;
+  const double range =
+      figures_.force_weight > 0 ? std::min(1.0, weight / figures_.force_weight) : 1.0;
+  foot.force_noise = range * figures_.force_noise.sample(&stream);
+  foot.moment_noise = range * figures_.moment_noise.sample(&stream);
+  foot.jump = range * figures_.force_jump.sample(&stream);
   foot.jump_share = figures_.force_jump_share.sample(&stream);
   foot.inertia_share = figures_.foot_inertia.sample(&stream);
-  const double offset = figures_.force_offset.sample(&stream);
-  const double moment_offset = figures_.moment_offset.sample(&stream);
-  const double drift = figures_.force_drift.sample(&stream);
+  const double offset = range * figures_.force_offset.sample(&stream);
+  const double moment_offset = range * figures_.moment_offset.sample(&stream);
+  const double drift = range * figures_.force_drift.sample(&stream);
   const double crosstalk = figures_.force_crosstalk.sample(&stream);
   const double pair = figures_.force_crosstalk_pair.sample(&stream);
   const double scale = figures_.force_scale.sample(&stream);

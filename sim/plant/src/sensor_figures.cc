@@ -13,6 +13,7 @@ using nlohmann::json;
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kGravity = 9.81;  // m/s^2
+constexpr double kWeight = 1700;   // N, of robots whose feet have the sensors of the classes
 
 Range range(const SensorFigureKey& key) { return {key.minimum, key.maximum}; }
 
@@ -59,6 +60,9 @@ void read_sensor_figures(const json& value, const std::string& path,
   }
   for (const SensorFigureKey& key : kSensorFigureKeys) {
     map.draw(key.name, range(key), &(figures->*key.figure));
+    const std::string_view name = key.name;
+    const bool of_force = name.starts_with("force_") || name.starts_with("moment_");
+    if (of_force && map.has(key.name)) figures->force_weight = 0;  // what is written counts
   }
 }
 
@@ -79,6 +83,7 @@ SensorFigures SensorFigures::nominal() {
   f.encoder_bits = 20;
   f.encoder_noise = 1e-4;
   f.velocity_filter = 100;
+  f.force_weight = kWeight;
   f.force_noise = 5;
   f.force_offset = 15;
   f.moment_noise = 0.5;
@@ -107,6 +112,7 @@ SensorFigures SensorFigures::lab() {
   f.strike_vibration = 30;             // estimates: MIT needed a notch at 87 Hz; 20 to 50 m/s^2 at
   f.strike_rotation = 0.1;             // the pelvis, ringing at 30 to 100 Hz
 
+  f.force_weight = kWeight;
   f.force_noise = 2;  // catalogue
   f.moment_noise = 0.2;
   f.force_offset = 10;  // after zeroing in the air; iCub sensors move by several newton
@@ -148,6 +154,7 @@ SensorFigures SensorFigures::rough() {
   f.strike_vibration = 90;
   f.strike_rotation = 0.3;
 
+  f.force_weight = kWeight;
   f.force_noise = 8;
   f.moment_noise = 0.8;
   f.force_offset = 40;  // iCub: tens of newton and several newton metres

@@ -27,6 +27,8 @@ struct StepLimits {
   double travel;  // from the foothold of the same foot before
   double height;  // up and down
   double turn;
+  double com_height;  // m
+  double pace;        // s, sqrt(h / g)
 };
 
 // Footsteps ahead, first in first out, storage taken at construction.
@@ -85,6 +87,11 @@ double tilt_of(const GaitdPose& pose);
 // Whether `step` can be taken from `stance`, the pose of the other foot, by the foot that stands at
 // `from` before. `number` names the footstep in the message, from 1.
 Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
+                       int number, const StepLimits& limits);
+
+// Whether the legs stand as long in the straddle of its transfer as `step` asks for, which has all
+// durations. Arguments as above.
+Refusal check_straddle(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
                        int number, const StepLimits& limits);
 
 }  // namespace gaitd::walking

@@ -51,6 +51,9 @@ struct SensorFigures {
   Draw moment_noise;          // N m, sigma, each reading
   Draw moment_offset;         // N m, sigma
   Draw foot_inertia;          // share of the foot's mass that lies below its sensor
+  /// N, of the robot whose sensors these forces and moments are of; those of a lighter one have a
+  /// smaller range, and errors that are as much smaller. 0: of any robot.
+  double force_weight = 0;
 
   // The way to the controller.
   Draw joint_delay;             // s
