@@ -13,6 +13,7 @@
 #include <ctime>
 #include <memory>
 #include <system_error>
+#include <thread>
 
 #include "cli/private_daemon.h"
 #include "cli/rpc_client.h"
@@ -91,7 +92,12 @@ class WriteLock {
       return;
     }
     file_ = open(output_of(log).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-    if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    // Who was killed needs a moment to end.
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+    while (is_taken() && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    if (is_taken()) {
       reason_ = "another run writes " + log.string() + "; give another file with --log";
     }
   }
@@ -105,6 +111,11 @@ class WriteLock {
   const std::string& reason() const { return reason_; }
 
  private:
+  // By another process; else it is ours from now on, or cannot be locked at all.
+  bool is_taken() const {
+    return file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  }
+
   int file_ = -1;
   std::string reason_;
 };
