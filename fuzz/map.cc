@@ -11,6 +11,7 @@
 #include "daemon/goto/map_methods.h"
 #include "daemon/server/base64.h"
 #include "fuzz/answer.h"
+#include "fuzz/lines.h"
 #include "fuzz/require.h"
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
@@ -101,14 +102,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   perception.methods.add("stand", [&perception](const nlohmann::json& params) {
     return gaitd::daemon::stand(&perception, params);
   });
-  std::string_view rest(reinterpret_cast<const char*>(data), size);
-  while (!rest.empty()) {
-    const std::size_t end = rest.find('\n');
-    const std::string_view line = rest.substr(0, end);
-    if (!line.empty()) gaitd::daemon::handle(&perception, line);
-    if (end == std::string_view::npos) break;
-    rest.remove_prefix(end + 1);
-  }
+  gaitd::fuzz::for_each_line(
+      data, size, [&](std::string_view line) { gaitd::daemon::handle(&perception, line); });
   gaitd::daemon::check_known(perception);
   return 0;
 }

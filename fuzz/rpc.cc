@@ -14,6 +14,7 @@
 #include "daemon/server/command_bridge.h"
 #include "daemon/server/rpc.h"
 #include "fuzz/answer.h"
+#include "fuzz/lines.h"
 #include "fuzz/require.h"
 
 namespace gaitd::daemon {
@@ -89,13 +90,7 @@ void handle(Server* server, std::string_view line) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static auto* server = new gaitd::daemon::Server;
-  std::string_view rest(reinterpret_cast<const char*>(data), size);
-  while (!rest.empty()) {
-    const std::size_t end = rest.find('\n');
-    const std::string_view line = rest.substr(0, end);
-    if (!line.empty()) gaitd::daemon::handle(server, line);
-    if (end == std::string_view::npos) break;
-    rest.remove_prefix(end + 1);
-  }
+  gaitd::fuzz::for_each_line(data, size,
+                             [](std::string_view line) { gaitd::daemon::handle(server, line); });
   return 0;
 }

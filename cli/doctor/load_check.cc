@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "cli/doctor/log_checks.h"
 
@@ -9,16 +11,19 @@ namespace {
 constexpr double kLeastLoad = 0.8;  // s
 constexpr double kNext = 0.2;       // s: the force is judged once it has settled
 
+// The last in which the robot was under control and `wrong` was not 0.
+std::optional<Episode> episode_of(const LogCase& log, const daemon::Column& wrong) {
+  std::vector<bool> holds(wrong.size());
+  for (std::size_t i = 0; i < holds.size(); ++i) holds[i] = log.controlled(i) && wrong[i] != 0.0;
+  return last_episode(log, holds, kLeastLoad);
+}
+
 // Standing or walking, however heavy: the mean of what does not fit, at its largest.
 Findings check_surplus(const LogCase& log, const GaitdModel& model) {
   const daemon::Column* surplus = log.find("external/surplus");
   const daemon::Column* misjudged = log.find("external/misjudged");
   if (surplus == nullptr || misjudged == nullptr) return {};
-  std::vector<bool> wrong(misjudged->size());
-  for (std::size_t i = 0; i < wrong.size(); ++i) {
-    wrong[i] = log.controlled(i) && (*misjudged)[i] != 0.0;
-  }
-  const auto episode = last_episode(log, wrong, kLeastLoad);
+  const auto episode = episode_of(log, *misjudged);
   if (!episode) return {};
   double force = 0.0;
   for (std::size_t i = episode->begin; i < episode->end; ++i) {
@@ -41,11 +46,7 @@ Findings check_load(const LogCase& log) {
   const daemon::Column* load = log.find("external/load");
   const GaitdModel* model = log.model();
   if (load == nullptr || model == nullptr) return {};
-  std::vector<bool> wrong(load->size());
-  for (std::size_t i = 0; i < wrong.size(); ++i) {
-    wrong[i] = log.controlled(i) && (*load)[i] != 0.0;
-  }
-  const auto episode = last_episode(log, wrong, kLeastLoad);
+  const auto episode = episode_of(log, *load);
   if (!episode) return check_surplus(log, *model);
   double sum = 0.0;
   std::size_t count = 0;
