@@ -96,6 +96,7 @@ void handle(Perception* perception, std::string_view line) {
 }  // namespace
 }  // namespace gaitd::daemon
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name that libFuzzer calls.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   gaitd::daemon::Perception perception;
   gaitd::daemon::add_map_methods(&perception.methods, &perception.ground);

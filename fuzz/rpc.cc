@@ -65,7 +65,7 @@ void check_command(const Command& command) {
 
 void handle(Server* server, std::string_view line) {
   int answers = 0;
-  handle_line(server->methods, RpcLimits{}, Caller{}, line, [&](std::string answer) {
+  handle_line(server->methods, RpcLimits{}, Caller{}, line, [&](const std::string& answer) {
     ++answers;
     fuzz::check_answer(answer);
   });
@@ -88,6 +88,7 @@ void handle(Server* server, std::string_view line) {
 }  // namespace
 }  // namespace gaitd::daemon
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name that libFuzzer calls.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static auto* server = new gaitd::daemon::Server;
   gaitd::fuzz::for_each_line(data, size,
