@@ -168,11 +168,26 @@ class Writer {
       const fs::path header = folder.path() / (stem + ".h");
       if (!fs::is_regular_file(header, ignored)) continue;
       copy(header);
-      const fs::path source = folder.path() / (stem + ".cc");
-      if (fs::is_regular_file(source, ignored)) copy(source);
+      copy_sources_of(folder.path(), stem);
       return true;
     }
     return false;
+  }
+
+  // What implements a header may be in several files: those that have none of their own.
+  void copy_sources_of(const fs::path& folder, const std::string& stem) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+      const fs::path& source = entry.path();
+      if (source.extension() != ".cc" || source.filename() == "adapter.cc") continue;
+      const bool own = source.stem() == stem;
+      const bool others = fs::exists(fs::path(source).replace_extension(".h"), ignored);
+      std::string text;
+      if (own || (!others && read(source, &text) &&
+                  text.find("#include \"" + stem + ".h\"") != std::string::npos)) {
+        copy(source);
+      }
+    }
   }
 
   std::string* take(const fs::path& from, const std::string& to) {

@@ -83,6 +83,10 @@ fs::path choose_log(const fs::path& asked, const std::string& scenario, std::str
 class WriteLock {
  public:
   explicit WriteLock(const fs::path& log) {
+    if (log == output_of(log)) {
+      reason_ = log.string() + " is where what gaitd prints is written; call the log .mcap";
+      return;
+    }
     std::error_code ignored;
     for (const fs::path& file : {log, output_of(log)}) {
       const fs::file_status status = fs::symlink_status(file, ignored);

@@ -244,11 +244,17 @@ bool Application::start_server() {
         {"abi", std::to_string(GAITD_ABI_MAJOR) + "." + std::to_string(GAITD_ABI_MINOR)}};
   });
   methods.add_snapshot("plugin.list", [this] {
-    std::map<std::string, std::string> active;
+    std::vector<PluginEntry> entries = directory_.list();
+    std::map<std::string, std::filesystem::path> active;
     for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
-      active[std::string(layer_name(layer))] = swaps_->variant(layer);
+      const std::filesystem::path file = swaps_->file(layer);
+      active[std::string(layer_name(layer))] = file;
+      const bool listed = std::any_of(entries.begin(), entries.end(),
+                                      [&](const PluginEntry& e) { return e.path == file; });
+      if (listed || file.empty()) continue;
+      entries.push_back(directory_.describe(file, layer, swaps_->variant(layer)));
     }
-    return plugin_list_json(directory_.list(), active);
+    return plugin_list_json(entries, active);
   });
   ServerOptions options;
   options.socket_path = config_.socket;

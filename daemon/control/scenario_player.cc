@@ -84,9 +84,10 @@ const GaitdDisturbance* ScenarioPlayer::next_disturbance(const TickData& data) {
 ScenarioPlayer::End ScenarioPlayer::update(double dt, const TickData& data, bool busy) {
   const bool standing = data.gait.phase == GAITD_PHASE_STAND;
   walked_ = walked_ || !standing;
-  const bool waiting = !standing || busy || data.gait.footstep_count > 0;
+  const bool fault = data.safety == SafetyState::kFault;
+  const bool waiting = !standing || busy || data.gait.footstep_count > 0 || fault;
   time_standing_ = waiting ? 0.0 : time_standing_ + dt;
-  time_in_fault_ = data.safety == SafetyState::kFault ? time_in_fault_ + dt : 0.0;
+  time_in_fault_ = fault ? time_in_fault_ + dt : 0.0;
   if (time_in_fault_ > kFaultTime) return End::kFault;
   const bool pushed = std::all_of(disturbances_.begin(), disturbances_.end(),
                                   [](const TimedDisturbance& d) { return d.done; });
@@ -94,7 +95,8 @@ ScenarioPlayer::End ScenarioPlayer::update(double dt, const TickData& data, bool
     return End::kSettled;
   }
   // The tick that begins at the end of the duration is no part of the run.
-  return data.time.time + 1.5 * dt > duration_ ? End::kDuration : End::kRunning;
+  if (data.time.time + 1.5 * dt <= duration_) return End::kRunning;
+  return fault ? End::kFault : End::kDuration;
 }
 
 }  // namespace gaitd::daemon

@@ -44,15 +44,15 @@ class PluginDirectory {
   /// Every variant of every layer, by layer, then name; the refused ones with their reasons. Reads
   /// only the files that have changed since they were read last.
   std::vector<PluginEntry> list() const;
+  /// A library wherever it is, read anew.
+  PluginEntry describe(const std::filesystem::path& path, int layer,
+                       const std::string& variant) const;
   std::uint64_t files_read() const { return files_read_; }  ///< by list()
 
   const std::vector<std::filesystem::path>& roots() const { return roots_; }
 
  private:
   struct Known;
-
-  PluginEntry describe(const std::filesystem::path& path, int layer,
-                       const std::string& variant) const;
 
   std::vector<std::filesystem::path> roots_;
   mutable std::mutex mutex_;                                           // of what follows

@@ -8,7 +8,8 @@ namespace {
 
 using nlohmann::json;
 
-json entry_json(const PluginEntry& entry, const std::map<std::string, std::string>& active) {
+json entry_json(const PluginEntry& entry,
+                const std::map<std::string, std::filesystem::path>& active) {
   const std::string layer(layer_name(entry.layer));
   json out = {{"layer", layer}, {"variant", entry.variant}, {"path", entry.path.string()}};
   if (!entry.descriptor) {
@@ -17,7 +18,7 @@ json entry_json(const PluginEntry& entry, const std::map<std::string, std::strin
   }
   const GaitdPluginDescriptor& d = *entry.descriptor;
   const auto in_use = active.find(layer);
-  out["active"] = in_use != active.end() && in_use->second == entry.variant;
+  out["active"] = in_use != active.end() && in_use->second == entry.path;
   out["version"] = d.version;
   out["build"] = d.build;
   out["worst_case_us"] = d.worst_case_us;
@@ -49,7 +50,7 @@ json parameter_json(const GaitdParameter& p) {
 }
 
 json plugin_list_json(const std::vector<PluginEntry>& entries,
-                      const std::map<std::string, std::string>& active) {
+                      const std::map<std::string, std::filesystem::path>& active) {
   json plugins = json::array();
   for (const PluginEntry& entry : entries) plugins.push_back(entry_json(entry, active));
   return {{"plugins", std::move(plugins)}};

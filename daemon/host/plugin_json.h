@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,8 +18,8 @@ nlohmann::json parameter_json(const GaitdParameter& parameter);
 
 /// The answer to plugin.list: {"plugins": [{layer, variant, path, active, version, build,
 /// worst_case_us, parameters: [{name, type, unit, min, max, default, description}]} or {layer,
-/// variant, path, refused: text}]}. `active` maps a layer's name to the variant in use.
+/// variant, path, refused: text}]}. `active` maps a layer's name to the library in use.
 nlohmann::json plugin_list_json(const std::vector<PluginEntry>& entries,
-                                const std::map<std::string, std::string>& active);
+                                const std::map<std::string, std::filesystem::path>& active);
 
 }  // namespace gaitd::daemon

@@ -14,6 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMaxShownEvents = 20;
+constexpr std::size_t kMaxFaultText = 1000;
 constexpr std::size_t kMaxShownText = 100;
 
 std::string dump(const Json& json, int indent) {
@@ -36,11 +37,11 @@ std::map<std::string, std::size_t> count_by_kind(const LogReader& log) {
   return counts;
 }
 
-std::string shorten(std::string text) {
+std::string shorten(std::string text, std::size_t most = kMaxShownText) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   const std::size_t size = text.size();
-  if (size <= kMaxShownText) return text;
-  return text.substr(0, kMaxShownText) + "... (" + std::to_string(size) + " bytes)";
+  if (size <= most) return text;
+  return text.substr(0, most) + "... (" + std::to_string(size) + " bytes)";
 }
 
 template <class... Arguments>
@@ -158,15 +159,19 @@ std::string log_info_text(const LogReader& log) {
   for (const auto& [kind, count] : count_by_kind(log)) {
     text += format("  %-10s %zu\n", kind.c_str(), count);
   }
-  const std::size_t shown = std::min(kMaxShownEvents, log.events().size());
-  for (std::size_t i = 0; i < shown; ++i) {
+  // The first ones, and what went wrong whenever it was.
+  const std::string fault = event_kind_name(EventKind::kFault);
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < log.events().size(); ++i) {
     const Event& event = log.events()[i];
-    text +=
-        format("  %10.3f s  %-10s ", event.time, event.kind.c_str()) + shorten(event.text) + "\n";
+    if (i >= kMaxShownEvents && event.kind != fault) {
+      ++left;
+      continue;
+    }
+    text += format("  %10.3f s  %-10s ", event.time, event.kind.c_str()) +
+            shorten(event.text, event.kind == fault ? kMaxFaultText : kMaxShownText) + "\n";
   }
-  if (shown < log.events().size()) {
-    text += format("  ... and %zu more (--json lists all)\n", log.events().size() - shown);
-  }
+  if (left > 0) text += format("  ... and %zu more (--json lists all)\n", left);
   return text;
 }
 

@@ -31,7 +31,9 @@ RpcError invalid(const std::string& method, const std::string& what) {
 
 SwapService::SwapService(Parts parts) : parts_(std::move(parts)) {
   for (int layer = 0; layer < GAITD_LAYER_COUNT; ++layer) {
-    names_[layer].in_use = parts_.in_use[layer];
+    std::string error;
+    const auto file = parts_.directory->find(layer, parts_.in_use[layer], &error);
+    names_[layer].in_use = {parts_.in_use[layer], file ? file->string() : ""};
   }
 }
 
@@ -56,7 +58,12 @@ void SwapService::stop() {
 
 std::string SwapService::variant(int layer) const {
   const std::scoped_lock lock(mutex_);
-  return names_[layer].in_use;
+  return names_[layer].in_use.variant;
+}
+
+std::string SwapService::file(int layer) const {
+  const std::scoped_lock lock(mutex_);
+  return names_[layer].in_use.file;
 }
 
 void SwapService::add_methods(Methods* methods) {
@@ -291,7 +298,8 @@ void SwapService::follow(const SwapReport& report) {
     if (back) {
       std::swap(names.in_use, names.before);
     } else {
-      names.before = std::exchange(names.in_use, swap.what.value("variant", ""));
+      names.before = std::exchange(
+          names.in_use, Library{swap.what.value("variant", ""), swap.what.value("file", "")});
     }
   }
   if (report.step == SwapStep::kShadow || report.step == SwapStep::kSwitched) return;

@@ -60,8 +60,9 @@ class SwapService {
   /// when the swap is over: done, refused or rolled back; at once with "busy" while another swap of
   /// the same layer, or bounds::kOpenSwaps of any, are not over.
   void add_methods(Methods* methods);
-  /// [any thread but rt] The variant in use.
+  /// [any thread but rt] The variant in use, and its library.
   std::string variant(int layer) const;
+  std::string file(int layer) const;
 
  private:
   struct Wanted {
@@ -78,9 +79,13 @@ class SwapService {
     nlohmann::json what;  // layer, variant, file, hash, parameters
     nlohmann::json steps = nlohmann::json::array();
   };
+  struct Library {
+    std::string variant;
+    std::string file;
+  };
   struct Names {
-    std::string in_use;
-    std::string before;
+    Library in_use;
+    Library before;
   };
 
   std::optional<RpcError> admit(const std::string& method, const Wanted& wanted);

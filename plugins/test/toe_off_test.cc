@@ -47,7 +47,7 @@ class RollingWalk : public SyntheticWalk {
         foot.cop[1] = 0.0;
       }
       GaitdStepAdjustment desired{};
-      const int lead = walking::other_side(gait().trailing_side & 1);
+      const int lead = walking::other_side(trailing() & 1);
       for (int k = 0; k < 2; ++k) {
         desired.cmp[k] = cmp_at_lead ? gait().footholds[lead].pose.position[k] : 1e3;
       }
@@ -60,11 +60,16 @@ class RollingWalk : public SyntheticWalk {
       }
       was_active = toe_off.active != 0;
       if (was_active) {
-        EXPECT_EQ(toe_off.side, gait().trailing_side);
+        EXPECT_EQ(toe_off.side, trailing());
         EXPECT_EQ(gait().phase, GAITD_PHASE_TRANSFER);
       }
     };
   }
+  // Out of a straddle that is where the next step leaves from.
+  int trailing() const {
+    return gait().trailing_side != GAITD_BOTH ? gait().trailing_side : gait().next_side;
+  }
+
   IcpCriteria layer;
   bool cmp_at_lead = true;
   bool was_active = false;
@@ -80,6 +85,24 @@ TEST(IcpCriteria, EveryLongEnoughStepRollsOverTheToeUntilLiftOff) {
   // The first step leaves from side by side; the closing one trails by a whole step.
   EXPECT_EQ(w.starts, 5);
   EXPECT_GT(w.first_fraction, 0.0);
+}
+
+TEST(IcpCriteria, AResumeInAStraddleRollsOverTheToeAsWell) {
+  RollingWalk w(0.1);
+  ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.35}).refused());
+  w.tick();
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 2, 5.0));
+  ASSERT_FALSE(w.machine.pause().refused());
+  ASSERT_TRUE(w.run_until([&] { return w.gait().phase == GAITD_PHASE_STAND; }));
+  ASSERT_EQ(w.gait().trailing_side, GAITD_BOTH);
+  const int before = w.starts;
+  ASSERT_FALSE(w.machine.resume().refused());
+  ASSERT_TRUE(w.run_until([&] { return w.toe_off.active != 0; }));
+  EXPECT_EQ(w.gait().trailing_side, GAITD_BOTH);
+  w.tick();
+  EXPECT_EQ(w.gait().footholds[w.gait().next_side].contact, GAITD_CONTACT_TOE);
+  ASSERT_TRUE(w.run_until_stand());
+  EXPECT_EQ(w.starts - before, 3);
 }
 
 TEST(IcpCriteria, AFootInToeContactCarriesLoadAtItsToeOnly) {

@@ -22,6 +22,12 @@ constexpr double kTravel = 1.85;
 constexpr double kStraddle = 0.35;
 constexpr double kLongestStraddle = 0.85;
 constexpr double kStraddleTime = 1.75;
+// Heights of the CoM, of a step from which on the foot has to keep a slower pace, and of one from
+// which on that gets no slower; mean speeds of the foot there, over sqrt(g h).
+constexpr double kLongStride = 0.62;
+constexpr double kLongestStride = 0.68;
+constexpr double kStrideSpeed = 1.09;
+constexpr double kLongestStrideSpeed = 0.825;
 constexpr double kStraddleGain = 0.7;
 constexpr double kNearestFeet = 0.8;  // of their distance in the nominal posture
 
@@ -169,6 +175,24 @@ Refusal check_straddle(const GaitdFootstep& step, const GaitdPose& stance, const
       "legs do not stand in that straddle; let it take less, or take shorter steps",
       number, step.side == GAITD_LEFT ? "left" : "right", step.transfer_duration,
       std::abs(apart.x()), most);
+}
+
+Refusal check_stride(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
+                     int number, const StepLimits& limits) {
+  const Eigen::Vector3d apart = sdk::from_yaw(-sdk::yaw_of(sdk::quaternion(stance.orientation))) *
+                                (sdk::view(step.pose.position) - sdk::view(stance.position));
+  const double ahead = std::abs(apart.x()) / limits.com_height;
+  if (ahead <= kLongStride) return {};
+  const double longer = std::min(1.0, (ahead - kLongStride) / (kLongestStride - kLongStride));
+  const double most =
+      std::lerp(kStrideSpeed, kLongestStrideSpeed, longer) * limits.com_height / limits.pace;
+  const double travel = (sdk::view(step.pose.position) - sdk::view(from.position)).head<2>().norm();
+  if (travel <= most * step.swing_duration) return {};
+  return refuse(
+      "footstep %d (%s): %.2f m in a swing of %.2f s to land %.2f m from the other foot, at least "
+      "%.2f s expected: no body follows such a stride; let it take more, or take shorter steps",
+      number, step.side == GAITD_LEFT ? "left" : "right", travel, step.swing_duration,
+      std::abs(apart.x()), std::ceil(100.0 * travel / most) / 100.0);
 }
 
 }  // namespace gaitd::walking

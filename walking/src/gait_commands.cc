@@ -46,6 +46,7 @@ Refusal GaitMachine::check(const GaitdFootstep& step, const GaitdPose& stance,
   GaitdFootstep filled = step;
   fill_in(filled);
   r = check_straddle(filled, stance, from, number, limits());
+  if (!r.refused()) r = check_stride(filled, stance, from, number, limits());
   return r.refused() ? r : swing_limits_.check(filled, stance, from, number);
 }
 

@@ -301,7 +301,8 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     GaitdFoothold& foothold = state_.footholds[side];
     if (foothold.contact == GAITD_CONTACT_NONE) continue;
-    const bool may_roll = state_.phase != GAITD_PHASE_TRANSFER || side == state_.trailing_side;
+    const bool may_roll = state_.phase != GAITD_PHASE_TRANSFER || side == state_.trailing_side ||
+                          (state_.trailing_side == GAITD_BOTH && side == state_.next_side);
     const bool toe = toe_off.active != 0 && toe_off.side == side && may_roll;
     foothold.contact = toe ? GAITD_CONTACT_TOE : GAITD_CONTACT_FULL;
   }

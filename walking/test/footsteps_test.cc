@@ -202,6 +202,23 @@ TEST(Straddle, ALongStepLeavesLessTimeForItsTransfer) {
   EXPECT_TRUE(refused(1.0, 0.65));
 }
 
+TEST(Stride, ALongStepAsksForASlowerFoot) {
+  const double separation = atlas().nominal_foot_separation;
+  const auto refused = [&](double length, double start, double swing) {
+    GaitdFootstep step = footstep(GAITD_RIGHT, length, -separation);
+    step.swing_duration = swing;
+    const GaitdPose stance = pose(0.0, 0.0, 0.0), from = pose(start, -separation, 0.0);
+    return check_stride(step, stance, from, 1, limits()).refused();
+  };
+  EXPECT_FALSE(refused(0.7, -0.7, 0.35)) << "a step of an ordinary length";
+  EXPECT_FALSE(refused(0.75, -0.75, 0.45));
+  EXPECT_TRUE(refused(0.78, -0.78, 0.45));
+  EXPECT_TRUE(refused(0.9, -0.9, 0.5));
+  EXPECT_TRUE(refused(-0.9, 0.9, 0.5));
+  EXPECT_FALSE(refused(0.9, -0.9, 0.7));
+  EXPECT_FALSE(refused(0.9, 0.0, 0.4)) << "out of standing a foot has half the way to go";
+}
+
 TEST(MiddlePose, LiesHalfWayAndTurnsTheShortWayRound) {
   GaitdPose a = pose(1.0, 2.0, 3.0);
   GaitdPose b = pose(3.0, 0.0, -3.0);

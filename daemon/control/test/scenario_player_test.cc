@@ -274,6 +274,21 @@ TEST(ScenarioPlayer, AFallenRobotIsWatchedForAMomentAndThenTheRunEnds) {
   EXPECT_LT(when, 3.0);
 }
 
+TEST(ScenarioPlayer, ARunThatEndsInAFaultWasBrokenOffHoweverLateTheFaultCame) {
+  Player late(scenario(10.0));
+  EXPECT_EQ(late.run(0.0, 9.7, nullptr), ScenarioPlayer::End::kRunning);
+  late.data->safety = SafetyState::kFault;
+  EXPECT_EQ(late.run(9.7, 11.0, nullptr), ScenarioPlayer::End::kFault);
+
+  Player settling(scenario(60.0));
+  settling.data->gait.phase = GAITD_PHASE_SWING;
+  EXPECT_EQ(settling.run(0.0, 5.0, nullptr), ScenarioPlayer::End::kRunning);
+  settling.data->gait.phase = GAITD_PHASE_STAND;
+  EXPECT_EQ(settling.run(5.0, 6.8, nullptr), ScenarioPlayer::End::kRunning);
+  settling.data->safety = SafetyState::kFault;
+  EXPECT_EQ(settling.run(6.8, 9.0, nullptr), ScenarioPlayer::End::kFault);
+}
+
 TEST(ScenarioPlayer, AFaultThatIsClearedInTimeDoesNotEndTheRun) {
   Player p(scenario(60.0));
   for (int i = 0; i < 5; ++i) {

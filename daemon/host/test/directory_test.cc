@@ -121,8 +121,11 @@ TEST(Directory, IsListedByTwoThreads) {
 }
 
 TEST(Directory, IsShownAsJson) {
+  const PluginDirectory directory({GAITD_TEST_PLUGINS});
+  std::string error;
   const nlohmann::json list =
-      plugin_list_json(PluginDirectory({GAITD_TEST_PLUGINS}).list(), {{"toe_off", "newer"}});
+      plugin_list_json(directory.list(),
+                       {{"toe_off", directory.find(GAITD_LAYER_TOE_OFF, "newer", &error).value()}});
   int active = 0;
   for (const nlohmann::json& plugin : list["plugins"]) {
     EXPECT_EQ(plugin["layer"], "toe_off");

@@ -66,8 +66,8 @@ bool IcpCriteria::far_enough(const GaitdFoothold& trailing, const GaitdFoothold&
 IcpCriteria::Candidate IcpCriteria::candidate(const GaitdGaitState& gait) const {
   Candidate c;
   if (gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 &&
-      gait.trailing_side != GAITD_BOTH && gait.trailing_side == gait.next_side) {
-    c.side = gait.trailing_side;
+      (gait.trailing_side == GAITD_BOTH || gait.trailing_side == gait.next_side)) {
+    c.side = gait.next_side;  // out of a straddle as well
     c.leading = gait.footholds[walking::other_side(c.side)];
   } else if (gait.phase == GAITD_PHASE_SWING && gait.footstep_count > 1 &&
              gait.time_in_phase >= kSwingStart * gait.phase_duration) {
