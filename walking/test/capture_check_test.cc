@@ -104,7 +104,7 @@ TEST(CaptureCheck, HoldsForFootstepsBehindThoseAhead) {
 TEST(CaptureCheck, WalksThatAreWalkedAreAccepted) {
   for (const WalkCommand& walk :
        {WalkCommand{.steps = 6, .length = 0.7, .swing_duration = 0.6, .transfer_duration = 0.1},
-        WalkCommand{.steps = 6, .length = 0.8, .swing_duration = 0.55, .transfer_duration = 0.1},
+        WalkCommand{.steps = 6, .length = 0.8, .swing_duration = 0.6, .transfer_duration = 0.1},
         WalkCommand{.steps = 6, .lateral = 0.2}, WalkCommand{.steps = 6, .turn = 0.5},
         WalkCommand{.steps = 6, .length = -0.3, .transfer_duration = 0.1}}) {
     SyntheticWalk w;
