@@ -44,7 +44,7 @@ done
 expect 2 gaitctl plugin new nose my_variant 2>/dev/null
 
 # GAITD_PLUGIN_LAYERS="state_estimator icp_planner ..." builds more of them.
-for layer in ${GAITD_PLUGIN_LAYERS:-step_adjuster whole_body_controller backend}; do
+for layer in ${GAITD_PLUGIN_LAYERS:-whole_body_controller backend}; do
   "${CMAKE:-cmake}" -S "$layer" -B "$layer/build" >build.txt 2>&1 &&
     "${CMAKE:-cmake}" --build "$layer/build" >>build.txt 2>&1 || fail "$layer: $(tail -n 20 build.txt)"
   if grep -i warning build.txt; then fail "$layer: warnings while building"; fi
