@@ -20,10 +20,6 @@ constexpr double kSideways = 1.7;    // away sideways by this much more than alo
 // edge comes back as often as not.
 constexpr double kPastEdge = 0.017;
 constexpr double kClosedGap = 0.05;  // m, feet that are as good as side by side
-// rad, of a sole that stands on its edge, and of the weight on it: 96 pushes of 330 to 470 N from
-// which the feet alone came back tilted none by more than 0.15.
-constexpr double kOnEdge = 0.2;
-constexpr double kEdgeLoad = 0.2;
 
 }  // namespace
 
@@ -77,27 +73,11 @@ GaitdFootstep GaitMachine::recovery_step(const GaitdRobotState& robot, int side)
   return step;
 }
 
-// A foot that has tilted so far holds nothing any more, wherever the ICP is: the robot rocks on its
-// edge, and the estimate of where it is, which believes in a foot at rest, goes with it.
-bool GaitMachine::on_edge(const GaitdRobotState& robot) const {
-  if (state_.phase != GAITD_PHASE_STAND) return false;  // it may have come down on its heel
-  const double weight = model_.total_mass * model_.gravity;
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    const GaitdFootState& foot = robot.feet[side];
-    if (state_.footholds[side].contact == GAITD_CONTACT_FULL &&
-        foot.normal_force > kEdgeLoad * weight &&
-        std::abs(contacts_[side].tilt(foot).y()) > kOnEdge) {
-      return true;
-    }
-  }
-  return false;
-}
-
 bool GaitMachine::recover(double dt, const GaitdRobotState& robot) {
   const double load = robot.feet[GAITD_LEFT].normal_force + robot.feet[GAITD_RIGHT].normal_force;
   const ConvexPolygon feet = support_region(model_, state_, robot);
   const Eigen::Vector2d icp = sdk::view(robot.icp);
-  const bool held = feet.inside_distance(icp) >= -kPastEdge * scale_.length && !on_edge(robot);
+  const bool held = feet.inside_distance(icp) >= -kPastEdge * scale_.length;
   if (held || load < kOnItsFeet * model_.total_mass * model_.gravity) {
     time_unheld_ = 0.0;
     return false;

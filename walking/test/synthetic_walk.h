@@ -78,7 +78,6 @@ class SyntheticWalk {
   double landing_delay = 0.0;       // s after the planned end of the swing; negative: early
   double landing_load = 2.0;        // of the weight, on a foot that is down
   double ground_error = 0.0;        // m, of the ground under the swing foot
-  double pitch = 0.0;               // rad, of the feet on the ground
   double icp_error = 0.0;           // m, forwards
   double icp_error_left = 0.0;      // m
   int ticks = 0;
@@ -98,8 +97,7 @@ class SyntheticWalk {
       if (!down) continue;
       for (int k = 0; k < 3; ++k) foot.position[k] = pose.position[k];
       if (swinging) foot.position[2] += ground_error;
-      const Eigen::AngleAxisd turned(pitch, Eigen::Vector3d::UnitY());
-      sdk::store(sdk::quaternion(pose.orientation) * turned, foot.orientation);
+      for (int k = 0; k < 4; ++k) foot.orientation[k] = pose.orientation[k];
     }
   }
 

@@ -28,12 +28,6 @@ class FootContact {
   // m^2 over m^2, of what the foothold was told to carry: 1 as long as nothing was found out.
   double share() const { return share_; }
 
-  // rad, of `foot` about the axes of its sole from how that came to lie; 0 as long as that is not
-  // known.
-  Eigen::Vector2d tilt(const GaitdFootState& foot) const {
-    return lie_.settled() ? lie_.tilt(foot) : Eigen::Vector2d::Zero();
-  }
-
  private:
   // Part of `sole`, of a foothold of `width` (m), that a foot that is tipping by `tilt` bears on.
   ConvexPolygon bearing(const ConvexPolygon& sole, double width, const Eigen::Vector2d& tilt) const;

@@ -110,8 +110,6 @@ class GaitMachine {
   void push_return(int side);
   // From standing, or the end of the transfer to it.
   void begin_return(const GaitdRobotState& robot);
-  // Whether a loaded foot stands on an edge of its sole.
-  bool on_edge(const GaitdRobotState& robot) const;
   // Standing, or on the way to it: whether only a step can catch the robot; begins that step.
   bool recover(double dt, const GaitdRobotState& robot);
   GaitdFootstep recovery_step(const GaitdRobotState& robot, int side) const;
