@@ -1,4 +1,5 @@
-# The run of a scenario that somebody ends before it is over does not pass, though nothing fell.
+# The run of a scenario that somebody ends before it is over does not pass, though nothing fell; nor does
+# one that ends in a fault, however late that comes.
 source "$(dirname "$0")/common.sh"
 
 cat >"$scratch/long.yaml" <<SCENARIO
@@ -26,4 +27,23 @@ wait "$run" || code=$?
 ((code == 1)) || fail "gaitctl run ended with exit code $code: $(cat "$scratch/verdict")"
 grep -q 'ok  *no_fall' "$scratch/verdict" || fail "it fell: $(cat "$scratch/verdict")"
 grep -q 'FAIL  *played_to_the_end  *stopped' "$scratch/verdict" || fail "$(cat "$scratch/verdict")"
-echo "a run that was stopped fails"
+
+cat >"$scratch/late.yaml" <<SCENARIO
+schema: gaitd.scenario/1
+name: late
+robot: atlas
+duration: 2
+mode: walk-bent
+commands:
+  - {at: 1.7, estop: true}
+expect: {no_fall: true}
+SCENARIO
+expect 1 gaitctl run "$scratch/late.yaml" --log "$scratch/late.mcap" >"$scratch/verdict" 2>&1
+grep -q 'ok  *no_fall' "$scratch/verdict" || fail "it fell: $(cat "$scratch/verdict")"
+grep -q 'FAIL  *played_to_the_end  *fault' "$scratch/verdict" || fail "$(cat "$scratch/verdict")"
+
+# What gaitd prints has its place beside the log.
+expect 1 gaitctl run "$scratch/late.yaml" --log "$scratch/walk.txt" >"$scratch/refused" 2>&1
+grep -q 'call the log .mcap' "$scratch/refused" || fail "a log of that name: $(cat "$scratch/refused")"
+[[ ! -e $scratch/walk.txt ]] || fail "it was written all the same"
+echo "a run that was broken off fails"

@@ -88,6 +88,9 @@ swap 0 toe_off ./mine.so
 cp "$plugins/toe_off/icp_criteria.so" other.so && mv other.so mine.so
 swap 0 toe_off ./mine.so
 grep -q 'toe_off is icp_criteria now' swap.out || fail "the old code runs: $(cat swap.out)"
+gaitctl plugin list >list.out
+[[ $(awk '$1 == "*" && $2 == "toe_off" { print $3, $NF }' list.out) == "icp_criteria "*/mine.so ]] ||
+  fail "plugin list does not mark mine.so: $(cat list.out)"
 swap 1 toe_off "$bad/toe_off.so"
 grep -q 'longer than the period' swap.out || fail "$(cat swap.out)"
 swap 1 toe_off "$zoo/crash_in_create.so"

@@ -22,14 +22,25 @@ constexpr double kTravel = 1.85;
 constexpr double kStraddle = 0.35;
 constexpr double kLongestStraddle = 0.85;
 constexpr double kStraddleTime = 1.75;
+constexpr double kStraddleGain = 0.7;
 // Heights of the CoM, of a step from which on the foot has to keep a slower pace, and of one from
 // which on that gets no slower; mean speeds of the foot there, over sqrt(g h).
 constexpr double kLongStride = 0.62;
 constexpr double kLongestStride = 0.68;
 constexpr double kStrideSpeed = 1.09;
 constexpr double kLongestStrideSpeed = 0.825;
-constexpr double kStraddleGain = 0.7;
 constexpr double kNearestFeet = 0.8;  // of their distance in the nominal posture
+
+// m, in the heading of `stance`.
+Eigen::Vector3d seen_from(const GaitdPose& stance, const GaitdPose& foot) {
+  return sdk::from_yaw(-sdk::yaw_of(sdk::quaternion(stance.orientation))) *
+         (sdk::view(foot.position) - sdk::view(stance.position));
+}
+
+// m, on the map.
+double way_between(const GaitdPose& from, const GaitdPose& to) {
+  return (sdk::view(to.position) - sdk::view(from.position)).head<2>().norm();
+}
 
 }  // namespace
 
@@ -112,8 +123,7 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const
   }
   const Eigen::Vector3d rpy = sdk::roll_pitch_yaw(q);
   const double stance_yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
-  const Eigen::Vector3d d =
-      sdk::from_yaw(-stance_yaw) * (sdk::view(step.pose.position) - sdk::view(stance.position));
+  const Eigen::Vector3d d = seen_from(stance, step.pose);
   const double outwards = side_sign(step.side) * d.y();
   const double turn = std::remainder(rpy.z() - stance_yaw, 2.0 * M_PI);
   if (outwards < limits.least_separation - kEstimateError) {
@@ -134,7 +144,7 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const
         "(gait.longest_step); take more steps",
         number, side, d.x(), -limits.backward, limits.forward);
   }
-  const double travel = (sdk::view(step.pose.position) - sdk::view(from.position)).head<2>().norm();
+  const double travel = way_between(from, step.pose);
   if (travel > limits.travel + kEstimateError) {
     return refuse(
         "footstep %d (%s): %.3f m from where this foot stands before, at most %.3f expected "
@@ -164,35 +174,32 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const
 
 Refusal check_straddle(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
                        int number, const StepLimits& limits) {
-  const Eigen::Vector3d apart = sdk::from_yaw(-sdk::yaw_of(sdk::quaternion(stance.orientation))) *
-                                (sdk::view(stance.position) - sdk::view(from.position));
-  const double ahead = std::abs(apart.x()) / limits.com_height;
+  const double apart = std::abs(seen_from(stance, from).x());
+  const double ahead = apart / limits.com_height;
   if (ahead < kStraddle) return {};
   const double most = (kStraddleTime + kStraddleGain * (kLongestStraddle - ahead)) * limits.pace;
   if (step.transfer_duration <= most) return {};
   return refuse(
       "footstep %d (%s): a transfer of %.2f s with the feet %.2f m apart, at most %.2f s expected: "
       "legs do not stand in that straddle; let it take less, or take shorter steps",
-      number, step.side == GAITD_LEFT ? "left" : "right", step.transfer_duration,
-      std::abs(apart.x()), most);
+      number, step.side == GAITD_LEFT ? "left" : "right", step.transfer_duration, apart, most);
 }
 
 Refusal check_stride(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
                      int number, const StepLimits& limits) {
-  const Eigen::Vector3d apart = sdk::from_yaw(-sdk::yaw_of(sdk::quaternion(stance.orientation))) *
-                                (sdk::view(step.pose.position) - sdk::view(stance.position));
-  const double ahead = std::abs(apart.x()) / limits.com_height;
+  const double apart = std::abs(seen_from(stance, step.pose).x());
+  const double ahead = apart / limits.com_height;
   if (ahead <= kLongStride) return {};
   const double longer = std::min(1.0, (ahead - kLongStride) / (kLongestStride - kLongStride));
   const double most =
       std::lerp(kStrideSpeed, kLongestStrideSpeed, longer) * limits.com_height / limits.pace;
-  const double travel = (sdk::view(step.pose.position) - sdk::view(from.position)).head<2>().norm();
+  const double travel = way_between(from, step.pose);
   if (travel <= most * step.swing_duration) return {};
   return refuse(
       "footstep %d (%s): %.2f m in a swing of %.2f s to land %.2f m from the other foot, at least "
       "%.2f s expected: no body follows such a stride; let it take more, or take shorter steps",
-      number, step.side == GAITD_LEFT ? "left" : "right", travel, step.swing_duration,
-      std::abs(apart.x()), std::ceil(100.0 * travel / most) / 100.0);
+      number, step.side == GAITD_LEFT ? "left" : "right", travel, step.swing_duration, apart,
+      std::ceil(100.0 * travel / most) / 100.0);
 }
 
 }  // namespace gaitd::walking

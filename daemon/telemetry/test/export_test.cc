@@ -95,5 +95,24 @@ TEST(LogInfo, TellsWhatIsInTheFile) {
   }
 }
 
+TEST(LogInfo, ShowsEveryFaultOfALogWithManyEvents) {
+  const std::string path = test_path("log.mcap");
+  const std::string why(300, 'w');
+  std::string error;
+  {
+    LogWriter writer({{"time", "s", Kind::kReal, {}}});
+    ASSERT_TRUE(writer.open(path, {}, {}, &error)) << error;
+    for (int i = 0; i < 40; ++i) writer.write_event({.tick = i, .kind = "note", .text = "a note"});
+    writer.write_event({.tick = 40, .kind = "fault", .text = why + "END"});
+    writer.write_event({.tick = 41, .kind = "note", .text = "the last one"});
+  }
+  const auto log = LogReader::open(path, &error);
+  ASSERT_NE(log, nullptr) << error;
+  const std::string text = log_info_text(*log);
+  EXPECT_NE(text.find(why + "END"), std::string::npos) << text;
+  EXPECT_NE(text.find("... and 21 more"), std::string::npos) << text;
+  EXPECT_EQ(text.find("the last one"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace gaitd::daemon
