@@ -139,6 +139,7 @@ std::string result_text(const std::string& command, const std::string& method, c
     const bool weighs = payload.is_object() && payload.value("estimating", json()) == true;
     payload = payload_text(payload) + (weighs ? ", being weighed" : "");
   }
+  if (shown.contains("state")) shown["state"] = state_text(shown);
   if (shown.contains("handholds")) shown["handholds"] = handholds_text(shown["handholds"]);
   return object_text(shown, {"state", "mode", "phase", "support", "step_index", "time", "faults",
                              "robot", "backend", "clock", "log"});

@@ -126,7 +126,7 @@ void add_run_command(CLI::App* app, Context* context) {
       ->add_option("--log", arguments->log,
                    "Log file, or folder for several (ending in /); by default a new file in "
                    "$XDG_STATE_HOME/gaitd/logs (~/.local/state/gaitd/logs). The output of gaitd "
-                   "goes beside it as .txt")
+                   "goes beside it as FILE.txt")
       ->type_name("FILE|FOLDER/");
   command->add_flag("-v,--verbose", arguments->verbose, "Show every figure of the walk too");
   command->add_flag("--trust", arguments->trust,

@@ -31,8 +31,9 @@ using daemon::Issues;
 using daemon::Scenario;
 using nlohmann::json;
 
-// What gaitd prints.
-fs::path output_of(const fs::path& log) { return fs::path(log).replace_extension(".txt"); }
+// What gaitd prints. Not walk.txt beside walk.mcap, where somebody's own file may be: for example
+// what gaitctl prints in `gaitctl run walk --log walk.mcap >walk.txt`.
+fs::path output_of(const fs::path& log) { return log.string() + ".txt"; }
 
 // Takes the name for this run, so that another one, begun in the same second, does not write there.
 bool reserve(const fs::path& log) {
@@ -83,10 +84,6 @@ fs::path choose_log(const fs::path& asked, const std::string& scenario, std::str
 class WriteLock {
  public:
   explicit WriteLock(const fs::path& log) {
-    if (log == output_of(log)) {
-      reason_ = log.string() + " is where what gaitd prints is written; call the log .mcap";
-      return;
-    }
     std::error_code ignored;
     for (const fs::path& file : {log, output_of(log)}) {
       const fs::file_status status = fs::symlink_status(file, ignored);

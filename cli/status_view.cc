@@ -36,13 +36,6 @@ std::string right(const std::string& value, std::size_t width) {
   return value.size() < width ? std::string(width - value.size(), ' ') + value : value;
 }
 
-// What a control loop that hangs said last is not how the robot is now.
-std::string state(const json& status) {
-  const std::string last = text(at(status, "state"));
-  if (at(status, "stale") != true) return last;
-  return "STALE: no tick for " + number(at(status, "age"), 1) + " s, then " + last;
-}
-
 std::string faults(const json& status) {
   std::string names;
   const json list = at(status, "faults");
@@ -107,6 +100,14 @@ std::string pull(const json& external) {
 
 }  // namespace
 
+std::string state_text(const json& status) {
+  const std::string last = text(at(status, "state"));
+  if (at(status, "stale") != true) return last;
+  const json inside = at(status, "hangs_in");
+  const std::string where = inside.is_string() ? " (hangs in " + text(inside) + ")" : "";
+  return "STALE: no tick for " + number(at(status, "age"), 1) + " s" + where + ", then " + last;
+}
+
 std::string handholds_text(const json& handholds) {
   std::string words;
   for (const auto& [hand, handhold] : handholds.items()) {
@@ -137,7 +138,7 @@ std::vector<std::string> status_screen(const json& status) {
           text(at(status, "backend")) + ", " + text(at(status, "clock")) + "  tick " +
           text(at(status, "tick")) + "  " + number(at(status, "time"), 2) + " s",
       "",
-      "state      " + state(status),
+      "state      " + state_text(status),
       "faults     " + faults(status),
       "health     " + health(at(status, "health")),
       "gait       " + gait(status),
@@ -166,7 +167,7 @@ std::vector<std::string> status_screen(const json& status) {
 }
 
 std::string status_line(const json& status) {
-  return number(at(status, "time"), 2) + " s  " + state(status) + "  " + gait(status) + "  step " +
+  return number(at(status, "time"), 2) + " s  " + state_text(status) + "  " + gait(status) + "  step " +
          steps(status) + "  ICP error " + number(at(status, "icp_error"), 1, 1e-3) +
          " mm  margin " + number(at(status, "icp_margin"), 1, 1e-3) + " mm  tick " +
          number(at(status, "tick_longest_us"), 0) + " µs  faults " + faults(status);

@@ -42,8 +42,9 @@ expect 1 gaitctl run "$scratch/late.yaml" --log "$scratch/late.mcap" >"$scratch/
 grep -q 'ok  *no_fall' "$scratch/verdict" || fail "it fell: $(cat "$scratch/verdict")"
 grep -q 'FAIL  *played_to_the_end  *fault' "$scratch/verdict" || fail "$(cat "$scratch/verdict")"
 
-# What gaitd prints has its place beside the log.
-expect 1 gaitctl run "$scratch/late.yaml" --log "$scratch/walk.txt" >"$scratch/refused" 2>&1
-grep -q 'call the log .mcap' "$scratch/refused" || fail "a log of that name: $(cat "$scratch/refused")"
-[[ ! -e $scratch/walk.txt ]] || fail "it was written all the same"
+# What gaitd prints has its place beside the log, and is nobody else's file.
+echo precious >"$scratch/late.txt"
+expect 1 gaitctl run "$scratch/late.yaml" --log "$scratch/late.mcap" >/dev/null 2>&1
+[[ $(cat "$scratch/late.txt") == precious ]] || fail "a run overwrote late.txt"
+grep -q 'e-stop\|estop' "$scratch/late.mcap.txt" || fail "nothing of gaitd beside the log: $(ls "$scratch")"
 echo "a run that was broken off fails"

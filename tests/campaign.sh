@@ -40,6 +40,17 @@ heavy=$(awk "BEGIN { print ($(scale 1) > $(scale 3)) }")
 ((heavy ? $(force 000001) > $(force 000003) : $(force 000001) < $(force 000003))) ||
   fail "scales $(scale 1) and $(scale 3) gave forces $(force 000001) and $(force 000003)"
 
+# What no run can play is told after a few runs, not after all of them.
+cat >hopeless.yaml <<'CAMPAIGN'
+schema: gaitd.campaign/1
+scenarios: [stand]
+seeds: 40
+CAMPAIGN
+expect 1 gaitctl campaign hopeless.yaml -o hopeless --jobs 2 --set robot=nobody >hopeless.txt 2>&1
+grep -q "none of the first 4 runs could be judged.*no robot 'nobody'" hopeless.txt || fail "$(cat hopeless.txt)"
+(($(wc -l <hopeless/results.csv) < 10)) || fail "it played $(wc -l <hopeless/results.csv) runs"
+! grep 'running-' hopeless/results.csv || fail "the results name a file that no longer is"
+
 # A map of pushes in little, whose angle is the duration: a robot that gets better still holds short
 # ones of any force that is tried and none of the long ones, and a picture shows it.
 cat >map.yaml <<'MAP'

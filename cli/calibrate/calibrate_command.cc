@@ -180,7 +180,7 @@ void add_calibrate_command(CLI::App* app, Context* context) {
   command
       ->add_option("--log", arguments->simulated_log,
                    "With --simulate: log file; by default a new file in $XDG_STATE_HOME/gaitd/logs "
-                   "(~/.local/state/gaitd/logs). The output of gaitd goes beside it as .txt")
+                   "(~/.local/state/gaitd/logs). The output of gaitd goes beside it as FILE.txt")
       ->type_name("FILE");
   command->add_flag("--trust", arguments->trust,
                     "With --simulate: load libraries that the scenario or its robot.yaml names by "

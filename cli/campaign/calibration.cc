@@ -27,7 +27,7 @@ using daemon::Settings;
 constexpr const char* kMotions = "calibration";  // scenario
 
 // Beside the file that is measured: what gaitctl printed, the log while it is needed, and what
-// gaitd printed, which goes beside the log as .txt.
+// gaitd printed, which goes beside the log as .mcap.txt.
 fs::path beside(const Calibration& calibration, const char* extension) {
   return fs::path(calibration.file).replace_extension(extension);
 }
@@ -71,7 +71,7 @@ bool accept(const Calibration& calibration, int status, const fs::path& fresh) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
     fs::rename(fresh, calibration.file, error);
     if (!error) {
-      for (const char* extension : {".mcap", ".txt"}) {
+      for (const char* extension : {".mcap", ".mcap.txt"}) {
         fs::remove(beside(calibration, extension), error);
       }
       return true;

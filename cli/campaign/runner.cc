@@ -50,6 +50,15 @@ class Logs {
     return running_ / log(number, extension).filename();
   }
 
+  // What names a file while it is written names where it is going to be.
+  std::string settled(std::string text) const {
+    const std::string from = running_.string(), to = logs().string();
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+      text.replace(at, from.size(), to);
+    }
+    return text;
+  }
+
   // Those of the worst runs stay, or come from where they were written; all others go.
   void keep_worst(const CampaignResults& results) {
     int kept = 0;
@@ -75,7 +84,7 @@ class Logs {
     return campaign_log(folder_, number).replace_extension(extension);
   }
   void keep(int number) const {
-    for (const char* extension : {".mcap", ".txt"}) {
+    for (const char* extension : {".mcap", ".mcap.txt"}) {
       const fs::path from = running(number, extension), to = log(number, extension);
       std::error_code other_disk, ignored;
       fs::rename(from, to, other_disk);
@@ -86,7 +95,7 @@ class Logs {
   }
   void forget(int number) const {
     std::error_code ignored;
-    for (const char* extension : {".mcap", ".txt"}) {
+    for (const char* extension : {".mcap", ".mcap.txt"}) {
       fs::remove(log(number, extension), ignored);
       fs::remove(running(number, extension), ignored);
     }
@@ -215,10 +224,24 @@ PoolEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs
                       arguments_of(campaign, run, options, logs.running(run.number, ".mcap")),
                       logs.running(run.number, ".json").string(), "/dev/null", why);
   };
+  // What no run can play is no result of the campaign: it would say so as often as it has runs.
+  const auto hopeless = [&](const CampaignResult& result) {
+    const CampaignResults& all = results->results();
+    return options.part.empty() && static_cast<int>(all.size()) >= std::max(4, 2 * options.jobs) &&
+           !result.problem.empty() && std::none_of(all.begin(), all.end(), [](const auto& entry) {
+             return entry.second.problem.empty();
+           });
+  };
   const auto finish = [&](const ChildPool::End& end, std::string* why) {
-    const CampaignResult result =
+    CampaignResult result =
         result_of(campaign, end.number, end.status, logs.running(end.number, ".json"));
-    return append(result, why);
+    result.problem = logs.settled(result.problem);
+    if (!append(result, why)) return false;
+    if (!hopeless(result)) return true;
+    *why = "none of the first " + std::to_string(results->results().size()) +
+           " runs could be judged, so no more are played; run " + std::to_string(end.number) +
+           ": " + result.problem;
+    return false;
   };
   return work_off(&pool, {start, finish, [&] { progress(finished); }}, error);
 }

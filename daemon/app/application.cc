@@ -2,6 +2,7 @@
 #include "daemon/app/application.h"
 
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -309,14 +310,18 @@ int Application::run() {
                                  .refinements = &plans_->refinements(),
                                  .sight = sight_};
   loop_ = std::make_unique<ControlLoop>(options, parts);
-  status_->set_pulse(&loop_->pulse());
+  status_->set_loop(loop_.get());
   running_loop_ = loop_.get();
   if (stop_requested_) loop_->stop();
   LoopReport report;
   bool allowed = true;
   std::atomic<bool> running{true};
   auto manager = std::make_unique<ServiceManager>([this] { return loop_->pulse().rounds(); });
-  std::thread watch([&] { Watch(*telemetry_, *tick_watch_, manager.get()).run(running); });
+  Watch::Sources watched{
+      *telemetry_,          *tick_watch_, *loop_,
+      stop_requested_,      !paced,       [this](int layer) { return plugin_in(layer); },
+      [this] { give_up(); }};
+  std::thread watch([&] { Watch(watched, manager.get()).run(running); });
   std::thread control([&] {
     if (paced) allowed = become_realtime();
     if (allowed) report = loop_->run();
@@ -348,6 +353,22 @@ int Application::run() {
                simulated, report.ticks, factor, report.overruns, report.late_backend, end);
   if (!report.problem.empty()) spdlog::error("the run failed: {}", report.problem);
   return log_lost || !allowed || !report.problem.empty() ? 1 : 0;
+}
+
+std::string Application::plugin_in(int layer) const {
+  const std::string what(layer_name(layer));
+  return what + " " + (layer == GAITD_LAYER_BACKEND ? backend_id_ : swaps_->variant(layer));
+}
+
+// The control thread is inside a plugin and writes nothing any more; its motors are damped by their
+// drives, which get no more frames.
+void Application::give_up() {
+  std::string error;
+  const char* const end = kRunEndNames[static_cast<std::size_t>(RunEnd::kHung)];
+  if (!telemetry_->close({{"end", end}}, &error))
+    spdlog::error("the log is not complete: {}", error);
+  spdlog::shutdown();
+  _exit(1);
 }
 
 void Application::request_stop() {

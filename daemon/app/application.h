@@ -79,6 +79,10 @@ class Application {
   // On the control thread. False: not what is required.
   bool become_realtime();
   void report_issues(const Issues& issues) const;
+  // What runs in a layer or as backend, for people.
+  std::string plugin_in(int layer) const;
+  // Ends the process, whose control thread does not return from a plugin.
+  [[noreturn]] void give_up();
   // Where the value that holds for a key was written.
   Location place_of(std::string_view key) const;
   LogMetadata metadata() const;

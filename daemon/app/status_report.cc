@@ -234,10 +234,13 @@ json StatusReport::log() const {
 void StatusReport::add_age(json* status) const {
   constexpr double kStale = 0.1;          // s
   constexpr double kStaleLockstep = 1.0;  // s, where a tick may take its time
-  const LoopPulse* pulse = pulse_;
-  const double age = pulse == nullptr ? 0.0 : pulse->age();
+  const ControlLoop* loop = loop_;
+  const double age = loop == nullptr ? 0.0 : loop->pulse().age();
+  const bool stale = age > (sources_.lockstep ? kStaleLockstep : kStale);
+  const int inside = stale ? loop->inside() : -1;
   (*status)["age"] = age;
-  (*status)["stale"] = age > (sources_.lockstep ? kStaleLockstep : kStale);
+  (*status)["stale"] = stale;
+  (*status)["hangs_in"] = inside < 0 ? json() : json(layer_name(inside));
 }
 
 json StatusReport::joints() const {

@@ -8,7 +8,7 @@
 
 #include "daemon/app/realtime.h"
 #include "daemon/command/estop_flag.h"
-#include "daemon/control/loop_pulse.h"
+#include "daemon/control/control_loop.h"
 #include "daemon/control/tick_watch.h"
 #include "daemon/swap/swap_service.h"
 #include "daemon/telemetry/telemetry.h"
@@ -38,7 +38,7 @@ class StatusReport {
   // What there is of real time, so far.
   void set_realtime(const RealtimeReport& realtime);
   // Of the control loop, once there is one.
-  void set_pulse(const LoopPulse* pulse) { pulse_ = pulse; }
+  void set_loop(const ControlLoop* loop) { loop_ = loop; }
 
   nlohmann::json status() const;
   // Every joint as its sensors show it, for checks of signs and offsets.
@@ -50,7 +50,7 @@ class StatusReport {
   void add_age(nlohmann::json* status) const;
 
   const Sources sources_;
-  std::atomic<const LoopPulse*> pulse_{nullptr};
+  std::atomic<const ControlLoop*> loop_{nullptr};
   mutable std::mutex realtime_mutex_;
   RealtimeReport realtime_;
 };

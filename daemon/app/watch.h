@@ -4,20 +4,36 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <vector>
 
+#include "daemon/app/hang_guard.h"
 #include "daemon/app/service_manager.h"
+#include "daemon/control/control_loop.h"
 #include "daemon/control/tick_watch.h"
 #include "daemon/telemetry/telemetry.h"
 
 namespace gaitd::daemon {
 
 // Says on the terminal, and to systemd, what the control thread must not stop to say: faults, when
-// they come and go, ticks that were late, and where the log goes on or why it ended.
+// they come and go, ticks that were late, where the log goes on or why it ended, and that a plugin
+// does not return.
 class Watch {
  public:
   // All of it outlives the watch.
-  Watch(const Telemetry& telemetry, const TickWatch& ticks, ServiceManager* manager);
+  struct Sources {
+    const Telemetry& telemetry;
+    const TickWatch& ticks;
+    const ControlLoop& loop;
+    const std::atomic<bool>& stop_requested;
+    bool lockstep;
+    // What runs in a layer, for people.
+    std::function<std::string(int layer)> plugin;
+    // Ends the process without its control loop; does not return.
+    std::function<void()> give_up;
+  };
+  Watch(Sources sources, ServiceManager* manager);
 
   // Looks around twenty times a second while `running`.
   void run(const std::atomic<bool>& running);
@@ -26,10 +42,11 @@ class Watch {
   void tell_overruns();
   void tell_of_log();
   void tell_of_faults();
+  void look_for_hang();
 
-  const Telemetry& telemetry_;
-  const TickWatch& ticks_;
+  const Sources from_;
   ServiceManager* manager_;
+  HangGuard guard_;
   const int faults_signal_;
   const int state_signal_;
   std::vector<double> values_;

@@ -46,6 +46,20 @@ RunEnd end_of(ScenarioPlayer::End end) {
   }
 }
 
+// Says so while it lives.
+class Inside {
+ public:
+  explicit Inside(std::atomic<bool>* flag) : flag_(flag) {
+    flag_->store(true, std::memory_order_relaxed);
+  }
+  ~Inside() { flag_->store(false, std::memory_order_relaxed); }
+  Inside(const Inside&) = delete;
+  Inside& operator=(const Inside&) = delete;
+
+ private:
+  std::atomic<bool>* flag_;
+};
+
 }  // namespace
 
 ControlLoop::ControlLoop(const LoopOptions& options, const Parts& parts)
@@ -101,7 +115,7 @@ LoopReport ControlLoop::run() {
           break;
         }
       }
-      if (lockstep && backend_.vtable->advance(backend_.self) != GAITD_OK) {
+      if (lockstep && !advance()) {
         backend_failed("advance failed");
         end(RunEnd::kBackend, "the backend failed to advance the simulation");
       }
@@ -121,6 +135,26 @@ LoopReport ControlLoop::run() {
   return report_;
 }
 
+int ControlLoop::inside() const noexcept {
+  return inside_backend_.load(std::memory_order_relaxed) ? GAITD_LAYER_BACKEND
+                                                         : pipeline_->layers().running();
+}
+
+GaitdStatus ControlLoop::read() {
+  const Inside backend(&inside_backend_);
+  return backend_.vtable->read(backend_.self, &pipeline_->data().readings);
+}
+
+bool ControlLoop::write() {
+  const Inside backend(&inside_backend_);
+  return backend_.vtable->write(backend_.self, &pipeline_->data().commands) == GAITD_OK;
+}
+
+bool ControlLoop::advance() {
+  const Inside backend(&inside_backend_);
+  return backend_.vtable->advance(backend_.self) == GAITD_OK;
+}
+
 void ControlLoop::end(RunEnd how, const std::string& problem) {
   ended_ = true;
   report_.end = how;
@@ -132,12 +166,12 @@ ControlLoop::Outcome ControlLoop::tick() {
   const TickGuard guard;
   const Stopwatch watch;
   TickData& data = pipeline_->data();
-  const GaitdStatus read = backend_.vtable->read(backend_.self, &data.readings);
-  if (read == GAITD_NOT_READY) return Outcome::kNotReady;
-  if (read != GAITD_OK) return Outcome::kBackendFailed;
+  const GaitdStatus status = read();
+  if (status == GAITD_NOT_READY) return Outcome::kNotReady;
+  if (status != GAITD_OK) return Outcome::kBackendFailed;
   data.health = health();
   pipeline_->run(tick_);
-  const bool written = backend_.vtable->write(backend_.self, &data.commands) == GAITD_OK;
+  const bool written = write();
   data.times.total_us = watch.microseconds();
   watch_->add(tick_, data.times, pipeline_->layers().budgets());
   data.has_truth = backend_.vtable->truth != nullptr &&

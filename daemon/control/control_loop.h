@@ -70,10 +70,15 @@ class ControlLoop {
   LoopReport run();
   void stop() { stop_.store(true, std::memory_order_relaxed); }
   const LoopPulse& pulse() const { return pulse_; }
+  // [any thread] The plugin that it waits for, GAITD_LAYER_*, or -1.
+  int inside() const noexcept;
 
  private:
   enum class Outcome { kTicked, kNotReady, kBackendFailed };
   Outcome tick();
+  GaitdStatus read();
+  bool write();
+  bool advance();
   void take_estop();
   std::uint32_t health() const;
   void take_commands();
@@ -117,6 +122,7 @@ class ControlLoop {
   SwapPort* swaps_;
 
   LoopPulse pulse_;
+  std::atomic<bool> inside_backend_{false};
   GotoTask goto_;
   RefineTask refine_;
   SightTask sight_;

@@ -107,7 +107,9 @@ bool LayerChain::take_report(SwapReport* report) {
 template <int kLayer>
 bool LayerChain::run(const typename LayerSlot<kLayer>::Input& input,
                      typename LayerSlot<kLayer>::Output& output, TickTimes& times) {
+  running_.store(kLayer, std::memory_order_relaxed);
   const char* error = std::get<kLayer>(slots_).run(input, output, &times.layer_us[kLayer]);
+  running_.store(-1, std::memory_order_relaxed);
   if (error != nullptr) failure_ = {kLayer, error};
   return error == nullptr;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <tuple>
 
@@ -35,6 +36,9 @@ class LayerChain {
   bool adjust(TickData& data);
   bool toe_off(TickData& data);
   bool control(TickData& data);
+
+  // [any thread] The layer that runs, or -1.
+  int running() const noexcept { return running_.load(std::memory_order_relaxed); }
 
   // ---- Between ticks.
 
@@ -74,6 +78,7 @@ class LayerChain {
              LayerSlot<GAITD_LAYER_STEP_ADJUSTER>, LayerSlot<GAITD_LAYER_TOE_OFF>,
              LayerSlot<GAITD_LAYER_WHOLE_BODY_CONTROLLER>, LayerSlot<GAITD_LAYER_TASK_SOURCE>>
       slots_;
+  std::atomic<int> running_{-1};
   Failure failure_;
   double icp_error_before_ = 0.0;  // m, without any swap, its slow mean
 };

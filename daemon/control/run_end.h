@@ -12,9 +12,10 @@ enum class RunEnd {
   kDuration,     // the time of the scenario was over
   kFault,        // of the scenario: a fault that latched
   kBackend,      // the backend failed
-  kPush          // a push of the scenario could not be made
+  kPush,         // a push of the scenario could not be made
+  kHung          // a plugin did not return
 };
-inline constexpr std::array<const char*, 6> kRunEndNames = {"stopped", "settled", "duration",
-                                                            "fault",   "backend", "push"};
+inline constexpr std::array<const char*, 7> kRunEndNames = {
+    "stopped", "settled", "duration", "fault", "backend", "push", "hung"};
 
 }  // namespace gaitd::daemon

@@ -38,6 +38,7 @@ def campaign(
     Runs that fail are rows with success 0; nothing is raised. Raises :class:`ProgramError` where gaitctl refuses the
     campaign or is interrupted.
     """
+    made: Optional[Path] = None
     if isinstance(campaign, Mapping):
         name = str(campaign.get("name", "campaign"))
         target = Path(os.path.abspath(folder if folder is not None else f"{name}-results"))
@@ -45,6 +46,7 @@ def campaign(
             raise ProgramError(f"{folder}: expected a folder for the results")
         file = target.with_name(target.name + ".campaign.yaml")
         target.parent.mkdir(parents=True, exist_ok=True)
+        made = None if file.exists() else file
         write_yaml(file, {"schema": "gaitd.campaign/1", **campaign})
     else:
         file = Path(os.path.abspath(campaign))
@@ -54,7 +56,12 @@ def campaign(
         arguments += ["--jobs", str(jobs)]
     if trust:
         arguments.append("--trust")
-    gaitctl_json(arguments)
+    try:
+        gaitctl_json(arguments)
+    except ProgramError:
+        if made is not None and not target.exists():  # refused: it has left nothing, and neither do we
+            made.unlink()
+        raise
     return results(target)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from . import _native
 from .arrays import Array, Floats
 from .errors import DamagedLog, LogError
-from .model import Model
+from .model import Model, placed
 from .signal_table import Signal, choose, missing, signal_table
 from .verdict import Verdict
 
@@ -142,17 +142,25 @@ class Log(Mapping[str, Array]):
 
     def read(self, name: str, *, rows: slice = slice(None)) -> Array:
         """As ``log[name][rows]``, but reads only the blocks with those rows. The step must be positive."""
+        if not isinstance(name, str):
+            raise TypeError(f"log[{name!r}]: expected the name of a signal; a row of one is log['icp/x'][3]")
         if name not in self._signals:
             raise missing(name, list(self._signals))
-        start, stop, step = rows.indices(self.ticks)
-        if step < 1:
-            raise ValueError(f"step {step}: expected a positive one")
-        count = len(range(start, stop, step))
+        wanted = self._wanted(rows)
+        start, count, step = wanted.start, len(wanted), wanted.step
         try:
             values = self._native.read(self._index[name], start, count, step)
         except RuntimeError as error:
             raise LogError(str(error)) from None
         return self._signals[name].convert(values)
+
+    def _wanted(self, rows: slice) -> range:
+        if not isinstance(rows, slice):
+            raise TypeError(f"rows={rows!r}: expected a slice, for example slice(0, 1000) or log.rows_between(2, 3)")
+        wanted = range(*rows.indices(self.ticks))
+        if wanted.step < 1:
+            raise ValueError(f"step {wanted.step}: expected a positive one")
+        return wanted
 
     def match(self, *patterns: str) -> List[str]:
         """Names of the signals that the globs match, in their order; ``*`` matches slashes too.
@@ -163,6 +171,11 @@ class Log(Mapping[str, Array]):
 
     def rows_between(self, start: Optional[float] = None, end: Optional[float] = None, every: int = 1) -> slice:
         """Rows with start <= time <= end (s), every so many of them, for ``read`` and the like."""
+        for name, value in (("start", start), ("end", end)):
+            if value is not None and np.isnan(value):
+                raise ValueError(f"{name}={value}: expected a time in s, or None")
+        if every < 1:
+            raise ValueError(f"every={every}: expected at least 1")
         time = self.time
         first = 0 if start is None else int(np.searchsorted(time, start, "left"))
         last = self.ticks if end is None else int(np.searchsorted(time, end, "right"))
@@ -209,7 +222,7 @@ class Log(Mapping[str, Array]):
             raise ValueError(f"base={base!r}: expected 'estimate' or 'truth'")
         names = [prefix + part for part in _POSE]
         names += [f"joint/{joint.name}/position" for joint in self.model.joints]
-        wanted = range(*rows.indices(self.ticks))
+        wanted = self._wanted(rows)
         result = np.empty((len(wanted), 4, 4))
         for begin in range(0, len(wanted), _ROWS_AT_ONCE):
             part = wanted[begin : begin + _ROWS_AT_ONCE]
@@ -226,15 +239,17 @@ class Log(Mapping[str, Array]):
         rows: slice = slice(None),
     ) -> Floats:
         """Where a point of a link is in the world: shape (rows, 3), m. point: in the frame of the link, m."""
-        poses = self.poses(link, base=base, rows=rows)
-        placed: Floats = poses[:, :3, 3] + poses[:, :3, :3] @ np.asarray(point, dtype=float)
-        return placed
+        return placed(self.poses(link, base=base, rows=rows), point)
 
     # ---- Judgement.
 
     def verdict(self) -> Verdict:
-        """What the log shows, judged by what its scenario expected: reads the whole log again."""
+        """What the log shows, judged by what its scenario expected: reads the whole log again.
+
+        A damaged log does not pass, whatever is left of it shows.
+        """
         try:
-            return Verdict.of(json.loads(_native.verdict(self._path)))
+            verdict = Verdict.of(json.loads(_native.verdict(self._path)))
         except RuntimeError as error:
             raise LogError(str(error)) from None
+        return replace(verdict, passed=verdict.passed and not self.damage)

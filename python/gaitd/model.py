@@ -92,6 +92,13 @@ class Model:
         point: Tuple[float, float, float] = (0.0, 0.0, 0.0),
     ) -> Floats:
         """Where a point of a link is in the world: (n, 3), m. point: in the frame of the link, m; else as ``poses``."""
-        poses = self.poses(link, pelvis, joints)
-        placed: Floats = poses[..., :3, 3] + poses[..., :3, :3] @ np.asarray(point, dtype=float)
-        return placed
+        return placed(self.poses(link, pelvis, joints), point)
+
+
+def placed(poses: Floats, point: Tuple[float, float, float]) -> Floats:
+    """Where a point of a link is, for each of its poses: (..., 3), m. point: in the frame of the link, m."""
+    offset = np.asarray(point, dtype=float)
+    if offset.shape != (3,):
+        raise ValueError(f"point={point!r}: expected three numbers, x, y, z in m")
+    result: Floats = poses[..., :3, 3] + poses[..., :3, :3] @ offset
+    return result

@@ -40,6 +40,8 @@ def find_program(name: str) -> str:
 def assignments(settings: Optional[Mapping[str, Any]]) -> List[str]:
     """``--set KEY=VALUE`` for each; values in JSON, which is YAML."""
     arguments: List[str] = []
+    if settings is not None and not isinstance(settings, Mapping):
+        raise TypeError(f"set={settings!r}: expected a dict of keys and values, for example {{'seed': 2}}")
     for key, value in (settings or {}).items():
         text = value if isinstance(value, str) else json.dumps(plain(value), allow_nan=False)
         arguments += ["--set", f"{key}={text}"]

@@ -35,7 +35,9 @@ class Run:
 
     @property
     def log(self) -> Log:
-        """The log of the run, opened when it is asked for first."""
+        """The log of the run, opened when it is asked for first. Raises :class:`GaitdError` where there is none."""
+        if not self.log_file:
+            raise GaitdError(f"{self.scenario}: no log: " + "; ".join(self.problems))
         if "log" not in self._opened:
             self._opened["log"] = Log(self.log_file)
         return self._opened["log"]

@@ -82,6 +82,22 @@ class Values(unittest.TestCase):
         self.assertNotIn("icp/xx", log)
         self.assertIn("icp/x", log)
 
+    def test_what_makes_no_sense_is_told_in_the_words_of_the_argument(self):
+        log = run.log
+        for kind, words, call in (
+            (TypeError, "name of a signal", lambda: log[3]),
+            (TypeError, "name of a signal", lambda: log[None]),
+            (TypeError, "expected a slice", lambda: log.read("icp/x", rows=(5, 10))),
+            (TypeError, "expected a slice", lambda: log.positions("pelvis", rows=7)),
+            (ValueError, "start=nan", lambda: log.rows_between(float("nan"), 2.0)),
+            (ValueError, "end=nan", lambda: log.rows_between(0.0, float("nan"))),
+            (ValueError, "at least 1", lambda: log.rows_between(0.0, 1.0, every=0)),
+            (ValueError, "three numbers", lambda: log.positions("pelvis", (0, 0))),
+            (ValueError, "three numbers", lambda: log.model.positions("pelvis", np.zeros(6), np.zeros(30), (0, 0))),
+        ):
+            with self.assertRaisesRegex(kind, words):
+                call()
+
     def test_events_and_metadata(self):
         log = run.log
         told = json.loads(support.gaitctl("--json", "log", "info", run.log_file))
@@ -146,6 +162,7 @@ class Damage(unittest.TestCase):
         self.assertEqual(log.ticks, told["ticks"])
         self.assertTrue(0 < log.ticks < run.log.ticks)
         np.testing.assert_array_equal(log["icp/y"], run.log["icp/y"][: log.ticks])
+        self.assertFalse(log.verdict().passed)
 
     def test_what_is_no_log(self):
         for name, content in (("none.mcap", None), ("text.mcap", b"no log at all"), ("empty.mcap", b"")):

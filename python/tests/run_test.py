@@ -48,8 +48,12 @@ class Scenarios(unittest.TestCase):
         self.assertIn("did you mean 'flat-0.35'", run.problems[0])
         with self.assertRaisesRegex(gaitd.GaitdError, "flat-0.36"):
             run.figures["falls"]
+        with self.assertRaisesRegex(gaitd.GaitdError, "no log: .*flat-0.36"):
+            run.log
         run = gaitd.run({**support.WALK, "durration": 3})
         self.assertIn("durration", run.problems[0])
+        with self.assertRaisesRegex(TypeError, "expected a dict"):
+            gaitd.run("stand", set=[1])
 
     def test_no_programs(self):
         before = os.environ.get("GAITD_BIN")
@@ -103,6 +107,7 @@ class Campaigns(unittest.TestCase):
     def test_a_campaign_that_makes_no_sense(self):
         with self.assertRaisesRegex(gaitd.ProgramError, "scenarioz"):
             gaitd.campaign({"name": "wrong", "scenarioz": ["stand"]}, scratch("wrong"))
+        self.assertFalse(os.path.exists(scratch("wrong.campaign.yaml")))
 
 
 if __name__ == "__main__":

@@ -43,8 +43,9 @@ expect 1 timeout 30 gaitd --clock lockstep --log "$scratch/log" >"$scratch/start
 grep -q 'let somebody read the pipe' "$scratch/start.txt" || fail "$(cat "$scratch/start.txt")"
 echo "a start that hangs: ended"
 
-# A layer hangs: the status says that it is stale, an e-stop that nobody acts on it.
-start_daemon --clock lockstep --set log.enabled=false \
+# A layer hangs: the status says that it is stale and where, an e-stop that nobody acts on it. A
+# stop that was asked for does not wait for the layer.
+start_daemon --clock lockstep --log "$scratch/hangs.mcap" \
   --set "state_estimator.variant=$GAITD_BUILD/tests/bad_plugins/state_estimator.so"
 for _ in {1..600}; do
   [[ $(field state) == standing ]] && break
@@ -59,6 +60,15 @@ done
 [[ $status == *'"stale": true'* ]] || fail "the status is not stale: $status"
 expect 1 gaitctl estop >"$scratch/estop.txt" 2>&1
 grep -q 'use the e-stop of the robot' "$scratch/estop.txt" || fail "$(cat "$scratch/estop.txt")"
-kill -KILL "$daemon"
+[[ $status == *'"hangs_in": "state_estimator"'* ]] || fail "the status does not say where: $status"
+gaitctl status >"$scratch/status.txt"
+grep -q 'STALE: no tick for .* s (hangs in state_estimator)' "$scratch/status.txt" || fail "$(cat "$scratch/status.txt")"
+kill -TERM "$daemon"
+code=0
+wait "$daemon" || code=$?
 daemon=
-echo "a hanging layer: told"
+((code == 1)) || fail "a daemon that hangs ends with $code, expected 1"
+grep -q 'state_estimator faulty does not return; gaitd ends without it' "$scratch/gaitd.txt" || fail "nothing said of the end"
+gaitctl --json log info "$scratch/hangs.mcap" >"$scratch/info.json" || fail "the log cannot be read"
+grep -q '"hung"' "$scratch/info.json" || fail "the log does not say that it hung"
+echo "a hanging layer: told, and ended by SIGTERM"

@@ -42,7 +42,8 @@ function alerts(state, connection, view) {
       found.push([`gaitd has not answered for ${number(state.silent, 0)} s: all that is shown may be old`, 'bad']);
     }
     if (status.stale) {
-      found.push([`The control loop hangs: its last round was ${number(status.age, 1)} s ago`, 'bad']);
+      const where = status.hangs_in ? ` in ${status.hangs_in}` : '';
+      found.push([`The control loop hangs${where}: its last round was ${number(status.age, 1)} s ago`, 'bad']);
     }
     if (status.health && !status.health.healthy) found.push([`Not healthy: ${status.health.text}`, 'bad']);
     if (status.joints_dropped) found.push([`${status.joints_dropped} joints have failed and are damped`, 'bad']);
