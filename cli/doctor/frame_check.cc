@@ -82,7 +82,7 @@ class Frames {
   }
 
   void check_foot(int side) {
-    const char* name = side == GAITD_LEFT ? "left" : "right";
+    const char* name = walking::side_name(side);
     const GaitdFoot& foot = model_.feet[side];
     const Matrix3d sole = axes(foot.sole);
     if (sole(0, 0) < std::cos(kUpright)) {

@@ -7,6 +7,7 @@
 
 #include "daemon/config/node.h"
 #include "daemon/control/tick_data.h"
+#include "gaitd/walking/support.h"
 
 namespace gaitd::daemon {
 
@@ -24,9 +25,9 @@ void add_robot_metadata(const Robot& robot, LogMetadata* metadata) {
     const GaitdLeg& leg = model.legs[side];
     json names = json::array();
     for (int i = 0; i < leg.joint_count; ++i) names.push_back(model.joints[leg.joints[i]].name);
-    legs[side == GAITD_LEFT ? "left" : "right"] = {{"knee", model.joints[leg.knee].name},
-                                                   {"knee_bend_sign", leg.knee_bend_sign},
-                                                   {"joints", names}};
+    legs[walking::side_name(side)] = {{"knee", model.joints[leg.knee].name},
+                                      {"knee_bend_sign", leg.knee_bend_sign},
+                                      {"joints", names}};
   }
   json faults;
   for (std::size_t i = 0; i < kFaultNames.size(); ++i) faults[kFaultNames[i]] = i;
@@ -37,7 +38,7 @@ void add_robot_metadata(const Robot& robot, LogMetadata* metadata) {
     for (int i = 0; i < foot.point_count; ++i) {
       corners.push_back({foot.points[i][0], foot.points[i][1]});
     }
-    soles[side == GAITD_LEFT ? "left" : "right"] = corners;
+    soles[walking::side_name(side)] = corners;
   }
   const Eigen::Quaterniond& axes = robot.urdf_options.R_LB;
   (*metadata)["pelvis"] = model.bodies[0].name;

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "daemon/config/command_parse.h"
+#include "daemon/config/names.h"
 #include "daemon/config/scenario_sections.h"
 
 namespace gaitd::daemon {
@@ -20,8 +21,6 @@ std::string at_time(double time) {
   std::snprintf(text, sizeof text, "%g s", time);
   return text;
 }
-
-std::string_view side_name(int side) { return side == GAITD_LEFT ? "left" : "right"; }
 
 // Goes through the commands in the order of time. The robot of a simulation arms itself.
 class Story {
@@ -119,7 +118,7 @@ class Story {
   void check_side(int first) {
     if (!last_ || at_->at >= last_->until || first == GAITD_BOTH || first != last_->side) return;
     refuse(at_->method,
-           "it begins " + std::string(side_name(first)) + ", as the footsteps ahead of line " +
+           "it begins " + std::string(kSideNames[first]) + ", as the footsteps ahead of line " +
                std::to_string(last_->line) + " end",
            "let it begin with the other foot, or later when they are done");
   }
@@ -143,7 +142,7 @@ class Story {
       if (command.footsteps[i].side != command.footsteps[i - 1].side) continue;
       refuse(at_->method,
              "footsteps " + std::to_string(i) + " and " + std::to_string(i + 1) + " are both " +
-                 std::string(side_name(command.footsteps[i].side)),
+                 std::string(kSideNames[command.footsteps[i].side]),
              "let the sides alternate");
       break;
     }

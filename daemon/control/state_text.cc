@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "gaitd/sdk/layer_names.h"
+#include "gaitd/walking/support.h"
 
 namespace gaitd::daemon {
 namespace {
@@ -116,8 +117,8 @@ std::string_view surplus_text(double surplus, char* buffer, std::size_t size) {
 
 std::string_view bearing_text(int side, double share, char* buffer, std::size_t size) {
   Text text(buffer, size);
-  text.add(R"({"foot":"%s","what":"bears on %.0f %% of its foothold"})",
-           side == GAITD_LEFT ? "left" : "right", 100.0 * share);
+  text.add(R"({"foot":"%s","what":"bears on %.0f %% of its foothold"})", walking::side_name(side),
+           100.0 * share);
   return text.view();
 }
 
@@ -131,7 +132,7 @@ std::string_view handhold_text(int hand, walking::Handholds::Change change, char
                                     "lets go"};
   static_assert(std::size(kTexts) == static_cast<int>(walking::Handholds::Change::kReleased) + 1);
   Text text(buffer, size);
-  text.add(R"({"handhold":"%s","what":"%s"})", hand == GAITD_LEFT ? "left" : "right",
+  text.add(R"({"handhold":"%s","what":"%s"})", walking::side_name(hand),
            kTexts[static_cast<int>(change)]);
   return text.view();
 }
@@ -140,7 +141,7 @@ std::string_view hand_text(int hand, const GaitdHandReference& reference, char* 
                            std::size_t size) {
   Text text(buffer, size);
   text.add(R"({"hand":"%s","what":"stops %.3f m and %.3f rad off its goal",)",
-           hand == GAITD_LEFT ? "left" : "right", reference.position_error, reference.turn_error);
+           walking::side_name(hand), reference.position_error, reference.turn_error);
   text.add(R"("of_it_out_of_reach":[%.3f,%.3f]})", reference.reach_error[0],
            reference.reach_error[1]);
   return text.view();

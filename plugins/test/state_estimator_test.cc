@@ -424,6 +424,28 @@ TYPED_TEST(StateEstimator, ABiasedGyroscopeHardlyTiltsIt) {
   EXPECT_LT(tilt, 0.003);
 }
 
+// In long steps stance feet turn on the ground, and the robot with them.
+TEST(KinematicInertial, WhatTurnedInAWalkIsNotTurnedBackInTheStand) {
+  constexpr double kRate = 0.2;  // rad/s
+  Bench<KinematicInertial> b(0.0, {});
+  b.run_for(1.5);
+  b.gait.phase = GAITD_PHASE_TRANSFER;
+  b.run_for(0.5);
+  const auto yaw = [&] { return sdk::yaw_of(sdk::quaternion(b.state.pelvis_orientation)); };
+  b.tamper = [&] {
+    const Quaterniond mount = sdk::quaternion(atlas().imus[0].orientation);
+    sdk::view(b.sensors->imus[0].angular_rate) += mount.conjugate() * Vector3d(0, 0, kRate);
+  };
+  b.run_for(0.5);
+  b.tamper = nullptr;
+  b.run_for(0.3);
+  const double turned = yaw();
+  EXPECT_NEAR(turned, 0.5 * kRate, 0.01);
+  b.gait.phase = GAITD_PHASE_STAND;
+  b.run_for(3.0);
+  EXPECT_NEAR(yaw(), turned, 0.003);
+}
+
 TYPED_TEST(StateEstimator, TheBalanceShowsTheBiasOfTheAccelerometer) {
   Bench<TypeParam> b(0.0, {});
   b.accelerometer_bias = {0.08, -0.1, 0.0};

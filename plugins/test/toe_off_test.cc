@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "icp_criteria.h"
 #include "layer_inputs.h"
 #include "never.h"
@@ -151,6 +154,31 @@ TEST(IcpCriteria, TheAnkleAtItsLimitStartsItUnlessThePlanNeedsTheHeel) {
     w.tick();
     ASSERT_TRUE(w.run_until_stand());
     EXPECT_EQ(w.starts, needed ? 0 : 4);
+  }
+}
+
+// What the plan wants of the heel grows by e^(wT) until the end of the transfer.
+TEST(IcpCriteria, ALongTransferKeepsItsHeelForLonger) {
+  for (const double transfer : {0.2, 0.5, 1.0}) {
+    RollingWalk w(0.1);
+    constexpr double kBehind = 0.02;  // m, of the toe
+    w.planner = [&, planner = w.planner](const GaitdRobotState& robot, const GaitdGaitState& gait,
+                                         GaitdIcpPlan& plan) {
+      planner(robot, gait, plan);
+      if (gait.trailing_side == GAITD_BOTH) return;
+      const GaitdPose& trailing = gait.footholds[gait.trailing_side].pose;
+      plan.ecmp[0] = trailing.position[0] + atlas().feet[0].toe_point[0] - kBehind;
+      plan.ecmp[1] = trailing.position[1];
+    };
+    ASSERT_FALSE(
+        w.machine.walk({.steps = 4, .length = 0.35, .transfer_duration = transfer}).refused());
+    w.tick();
+    ASSERT_TRUE(w.run_until([&] { return w.starts == 1; }));
+    const double left = w.gait().time_remaining;
+    const double cost = kBehind * std::expm1(w.gait().omega * left);
+    EXPECT_LT(cost, 0.031) << transfer;  // m
+    EXPECT_LT(left, 0.33) << transfer;
+    EXPECT_GT(left, std::min(0.8 * transfer, 0.2)) << transfer;
   }
 }
 

@@ -102,8 +102,8 @@ Refusal CaptureCheck::check(const GaitdFoothold& stance, const GaitdFootstep* st
   return refuse(
       "footstep %d (%s): when the foot before it lands %.2f s early or late, the capture point is "
       "off by %.3f m, and a transfer of %.2f s and a swing of %.2f s bring back %.3f; %s",
-      number, steps[1].side == GAITD_LEFT ? "left" : "right", kLandingError / omega, r.error,
-      steps[1].transfer_duration, steps[1].swing_duration, r.capture, advice);
+      number, side_name(steps[1].side), kLandingError / omega, r.error, steps[1].transfer_duration,
+      steps[1].swing_duration, r.capture, advice);
 }
 
 }  // namespace gaitd::walking

@@ -57,7 +57,7 @@ double width(const ConvexPolygon& polygon) {
 Refusal check_contact_polygon(const GaitdModel& model, const GaitdFootstep& step, int number) {
   const int count = step.polygon_count;
   if (count == 0) return {};
-  const char* side = step.side == GAITD_LEFT ? "left" : "right";
+  const char* side = side_name(step.side);
   if (count < 3 || count > GAITD_MAX_FOOT_POINTS) {
     return refuse(
         "footstep %d (%s): contact_polygon of %d points, 3 to %d expected, or none for "

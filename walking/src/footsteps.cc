@@ -17,18 +17,14 @@ constexpr double kEstimateError = 0.005;  // m
 // Of the longest step forwards: one backwards, and the way of a foot from its foothold before.
 constexpr double kBackward = 0.6;
 constexpr double kTravel = 1.85;
-// Transfers with one foot this far ahead of the other (heights of the CoM) end in time: sqrt(h /
-// g), at the longest step of Atlas, and what a shorter one has more.
-constexpr double kStraddle = 0.35;
-constexpr double kLongestStraddle = 0.85;
-constexpr double kStraddleTime = 1.75;
-constexpr double kStraddleGain = 0.7;
 // Heights of the CoM, of a step from which on the foot has to keep a slower pace, and of one from
 // which on that gets no slower; mean speeds of the foot there, over sqrt(g h).
 constexpr double kLongStride = 0.62;
 constexpr double kLongestStride = 0.68;
 constexpr double kStrideSpeed = 1.09;
 constexpr double kLongestStrideSpeed = 0.825;
+// sqrt(h / g), of a transfer with the feet as far apart as in a longest stride, or further.
+constexpr double kStraddleTime = 1.75;
 constexpr double kNearestFeet = 0.8;  // of their distance in the nominal posture
 
 // m, in the heading of `stance`.
@@ -99,7 +95,7 @@ double tilt_of(const GaitdPose& pose) {
 
 Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
                        int number, const StepLimits& limits) {
-  const char* side = step.side == GAITD_LEFT ? "left" : "right";
+  const char* side = side_name(step.side);
   const Eigen::Quaterniond q = sdk::quaternion(step.pose.orientation);
   if (!sdk::view(step.pose.position).allFinite() || !q.coeffs().allFinite() ||
       std::abs(q.norm() - 1.0) > 1e-6) {
@@ -175,14 +171,12 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const
 Refusal check_straddle(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
                        int number, const StepLimits& limits) {
   const double apart = std::abs(seen_from(stance, from).x());
-  const double ahead = apart / limits.com_height;
-  if (ahead < kStraddle) return {};
-  const double most = (kStraddleTime + kStraddleGain * (kLongestStraddle - ahead)) * limits.pace;
-  if (step.transfer_duration <= most) return {};
+  const double most = kStraddleTime * limits.pace;
+  if (apart < kLongestStride * limits.com_height || step.transfer_duration <= most) return {};
   return refuse(
       "footstep %d (%s): a transfer of %.2f s with the feet %.2f m apart, at most %.2f s expected: "
       "legs do not stand in that straddle; let it take less, or take shorter steps",
-      number, step.side == GAITD_LEFT ? "left" : "right", step.transfer_duration, apart, most);
+      number, side_name(step.side), step.transfer_duration, apart, most);
 }
 
 Refusal check_stride(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
@@ -198,7 +192,7 @@ Refusal check_stride(const GaitdFootstep& step, const GaitdPose& stance, const G
   return refuse(
       "footstep %d (%s): %.2f m in a swing of %.2f s to land %.2f m from the other foot, at least "
       "%.2f s expected: no body follows such a stride; let it take more, or take shorter steps",
-      number, step.side == GAITD_LEFT ? "left" : "right", travel, step.swing_duration, apart,
+      number, side_name(step.side), travel, step.swing_duration, apart,
       std::ceil(100.0 * travel / most) / 100.0);
 }
 

@@ -105,7 +105,7 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
     const int next = other_side(queue_[kept - 1].side);
     if (first != GAITD_BOTH && first != next) {
       return refuse("walk: the last footstep ahead is %s, so the first must be %s",
-                    next == GAITD_LEFT ? "right" : "left", next == GAITD_LEFT ? "left" : "right");
+                    side_name(other_side(next)), side_name(next));
     }
     first = next;
   } else if (first == GAITD_BOTH) {
@@ -176,9 +176,8 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
     }
     if (expected != GAITD_BOTH && step.side != expected) {
       return refuse("footstep %d: side %s expected, because feet alternate%s, got %s", i + 1,
-                    expected == GAITD_LEFT ? "left" : "right",
-                    i == 0 ? " with the footsteps already ahead" : "",
-                    step.side == GAITD_LEFT ? "left" : "right");
+                    side_name(expected), i == 0 ? " with the footsteps already ahead" : "",
+                    side_name(step.side));
     }
     if (Refusal r = check(step, feet[other_side(step.side)], feet[step.side], i + 1); r.refused()) {
       return r;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/support.h"
 
 namespace gaitd::walking {
 namespace {
@@ -34,8 +35,6 @@ Eigen::Vector3d tangent_of(const Eigen::Vector3d& normal) {
   const Eigen::Vector3d other = level ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
   return (other - other.dot(normal) * normal).normalized();
 }
-
-const char* name_of(int hand) { return hand == GAITD_LEFT ? "left" : "right"; }
 
 }  // namespace
 
@@ -94,7 +93,7 @@ double Handholds::bearable(int side, const Eigen::Vector3d& normal,
 
 Refusal Handholds::take(const HandholdCommand& command, const GaitdRobotState& robot) {
   const int side = command.hand;
-  const char* name = name_of(side);
+  const char* name = side_name(side);
   if (arms_[side].size() == 0) {
     return refuse(
         "handhold.take: the robot has no %s hand; say where it is under `hands:` in "
@@ -153,7 +152,7 @@ Refusal Handholds::release(int hand) {
   }
   if (any) return {};
   if (hand == GAITD_BOTH) return refuse("handhold.release: no hand holds on to anything");
-  return refuse("handhold.release: the %s hand holds on to nothing", name_of(hand));
+  return refuse("handhold.release: the %s hand holds on to nothing", side_name(hand));
 }
 
 void Handholds::begin_to_let_go(Hand& hand) {

@@ -88,7 +88,7 @@ Refusal Motions::command(const MotionCommand& command, const GaitdRobotState& ro
     const int side = command.part == GAITD_PART_LEFT_ARM ? GAITD_LEFT : GAITD_RIGHT;
     if (arms_[side].size() == 0) {
       return refuse("pose: the robot has no %s hand; name it in robot.yaml: hands",
-                    side == GAITD_LEFT ? "left" : "right");
+                    side_name(side));
     }
     refusal = motion.kind == GAITD_MOTION_ARM ? check_arm(arms_[side], motion, references)
                                               : check_hand(arms_[side], motion, robot, references);

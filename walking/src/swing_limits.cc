@@ -50,7 +50,7 @@ SwingLimits::Angles SwingLimits::angles(const Leg& leg, double ahead, double bel
 Refusal SwingLimits::check(const GaitdFootstep& step, const GaitdPose& stance,
                            const GaitdPose& from, int number) const {
   const Leg& leg = legs_[step.side];
-  const char* side = step.side == GAITD_LEFT ? "left" : "right";
+  const char* side = side_name(step.side);
   // Heights over the sole that stands; ways along that of the foot, with the hip half-way.
   const double lift_off = from.position[2] - stance.position[2];
   const double touchdown = step.pose.position[2] - stance.position[2];

@@ -142,9 +142,8 @@ Refusal TurnReach::check(const GaitdFootstep& step, const GaitdPose& stance, int
   return refuse(
       "footstep %d (%s): turned by %.3f rad from the other foot, %s; the legs turn the feet so far "
       "by %.3f (%s and %s), at most %.3f expected; take more steps",
-      number, step.side == GAITD_LEFT ? "left" : "right", turn,
-      inwards ? "towards it" : "away from it", most, foot.joint.c_str(), other.joint.c_str(),
-      most + kShortOfYaw);
+      number, side_name(step.side), turn, inwards ? "towards it" : "away from it", most,
+      foot.joint.c_str(), other.joint.c_str(), most + kShortOfYaw);
 }
 
 }  // namespace gaitd::walking

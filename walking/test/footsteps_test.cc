@@ -185,7 +185,7 @@ TEST(FootstepGenerator, WhatAMachineAcceptsNeverBringsTheFeetTooClose) {
   EXPECT_LT(accepted, 450);
 }
 
-TEST(Straddle, ALongStepLeavesLessTimeForItsTransfer) {
+TEST(Straddle, ALongStepLeavesLittleTimeForItsTransfer) {
   const double separation = atlas().nominal_foot_separation;
   const auto refused = [&](double length, double transfer) {
     GaitdFootstep step = footstep(GAITD_RIGHT, 0.0, 0.0);
@@ -193,11 +193,11 @@ TEST(Straddle, ALongStepLeavesLessTimeForItsTransfer) {
     const GaitdPose stance = pose(length, separation, 0.0), from = pose(0.0, 0.0, 0.0);
     return check_straddle(step, stance, from, 1, limits()).refused();
   };
-  EXPECT_FALSE(refused(0.35, 5.0)) << "stands there as well as with its feet side by side";
-  EXPECT_FALSE(refused(-0.35, 5.0));
-  EXPECT_FALSE(refused(0.6, 0.65));
-  EXPECT_TRUE(refused(0.6, 0.75));
-  EXPECT_TRUE(refused(-0.6, 0.75));
+  EXPECT_FALSE(refused(0.78, 5.0)) << "stands there as well as with its feet side by side";
+  EXPECT_FALSE(refused(-0.78, 5.0));
+  EXPECT_TRUE(refused(0.82, 0.65));
+  EXPECT_TRUE(refused(-0.82, 0.65));
+  EXPECT_FALSE(refused(0.82, 0.6));
   EXPECT_FALSE(refused(1.0, 0.6));
   EXPECT_TRUE(refused(1.0, 0.65));
 }

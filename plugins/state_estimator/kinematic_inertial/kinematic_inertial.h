@@ -19,8 +19,8 @@ namespace gaitd::plugins {
 // acceleration that the command expects, so that rates are smooth without being late. In the legs
 // the contacts decide what a command does, and such a feed-forward would excite them.
 //
-// Attitude: the gyroscope is integrated, its heading corrected by the heading that each foot in
-// contact had when it came to rest (which also shows the gyroscope's bias). Position
+// Attitude: the gyroscope is integrated. While the robot stands, the heading is held by that which
+// each foot had when it came to a stand; how feet turn shows the gyroscope's bias. Position
 // and velocity: a third-order observer that integrates the accelerometer and is corrected by where
 // the anchored feet put the pelvis; its third state is the error of the accelerometer. The
 // horizontal part of that error is what a wrong tilt makes of gravity, free of the accelerations of

@@ -221,14 +221,15 @@ void KinematicInertial::update_anchors(const GaitdStateEstimatorInput& in, doubl
       f.anchored_point = point;
       f.anchor = sole_point(side, point);
     }
-    if (toe) f.orientation_anchored = false;
-    if (toe || !f.rests()) continue;
+    // In a walk feet turn under their load, as the gyroscope shows: what a foot has to keep is the
+    // heading that it has when the robot comes to a stand.
+    if (toe || !standing) f.orientation_anchored = false;
+    if (toe || !standing || !f.rests()) continue;
     const Eigen::Quaterniond now = sole_orientation(side);
     if (!f.orientation_anchored) {
       f.orientation_anchored = true;
       f.anchor_orientation = now;
     }
-    if (!standing) continue;
     // The heading only: under load a foot tilts by some milliradians.
     error.z() += f.normal_force * sdk::log_so3(f.anchor_orientation * now.conjugate()).z();
     total += f.normal_force;

@@ -117,7 +117,14 @@ bool IcpCriteria::evaluate(const GaitdToeOffInput& in, const Candidate& c, Gaitd
   ok[GAITD_TOE_OFF_COP] = value[GAITD_TOE_OFF_COP] <= kCopDistance * foot_length_;
   ok[GAITD_TOE_OFF_CMP] = value[GAITD_TOE_OFF_CMP] <= kCmpDistance * model_.nominal_com_height;
   ok[GAITD_TOE_OFF_ANKLE] = value[GAITD_TOE_OFF_ANKLE] <= 0.0;
-  return distance(predicted, view(in.plan->ecmp)) <= kCmpDistance * model_.nominal_com_height;
+  return heel_cost(in, predicted) <= kCmpDistance * model_.nominal_com_height;
+}
+
+double IcpCriteria::heel_cost(const GaitdToeOffInput& in, const ConvexPolygon& support) const {
+  const GaitdGaitState& gait = *in.gait;
+  const double after = gait.phase == GAITD_PHASE_SWING ? gait.adjusted[1].transfer_duration : 0.0;
+  const double growth = std::expm1(gait.omega * (gait.time_remaining + after));
+  return distance(support, view(in.plan->ecmp)) * std::max(1.0, growth);
 }
 
 bool IcpCriteria::rolling_on(const GaitdRobotState& robot, const GaitdGaitState& gait) const {
@@ -146,10 +153,10 @@ GaitdStatus IcpCriteria::process(const GaitdToeOffInput& in, GaitdToeOff& out) {
     state_.time_satisfied = 0.0;
   } else {
     const int32_t* ok = out.satisfied;
-    const bool all = ok[GAITD_TOE_OFF_ICP] && ok[GAITD_TOE_OFF_ICP_DISTANCE] &&
-                     ok[GAITD_TOE_OFF_COP] && ok[GAITD_TOE_OFF_CMP];
-    const bool limit = ok[GAITD_TOE_OFF_ICP] && ok[GAITD_TOE_OFF_ANKLE] && heel_free;
-    state_.time_satisfied = all || limit ? state_.time_satisfied + in.time.period : 0.0;
+    const bool all =
+        ok[GAITD_TOE_OFF_ICP_DISTANCE] && ok[GAITD_TOE_OFF_COP] && ok[GAITD_TOE_OFF_CMP];
+    const bool may = ok[GAITD_TOE_OFF_ICP] && heel_free && (all || ok[GAITD_TOE_OFF_ANKLE]);
+    state_.time_satisfied = may ? state_.time_satisfied + in.time.period : 0.0;
     out.active = state_.time_satisfied > kHoldTime ? 1 : 0;
   }
   state_.active = out.active;

@@ -45,11 +45,14 @@ class IcpCriteria {
     GaitdFoothold leading{};
   };
   Candidate candidate(const GaitdGaitState& gait) const;
-  // m, sole frame: the middle of the front edge, or of the part of the sole that stands on ground.
   bool rolling_on(const GaitdRobotState& robot, const GaitdGaitState& gait) const;
   bool far_enough(const GaitdFoothold& trailing, const GaitdFoothold& leading) const;
   // Whether the CMP of the plan can do without the heel.
   bool evaluate(const GaitdToeOffInput& in, const Candidate& c, GaitdToeOff& out) const;
+  // m, at most: by how much the ICP misses its plan at the end of the transfer when the CMP is held
+  // at the edge of `support` where the plan wants it behind. The way to that CMP only gets shorter
+  // in a transfer, so it counts as it is now; at its end it counts itself.
+  double heel_cost(const GaitdToeOffInput& in, const walking::ConvexPolygon& support) const;
 
   const GaitdModel model_;
   sdk::Parameters<P> p_{kParameters};

@@ -65,6 +65,8 @@ Eigen::Vector2d sole_middle(const GaitdFoothold& foothold);
 Eigen::Vector2d middle(const GaitdFoothold& a, const GaitdFoothold& b);
 
 inline int other_side(int side) { return side == GAITD_LEFT ? GAITD_RIGHT : GAITD_LEFT; }
+// For messages.
+inline const char* side_name(int side) { return side == GAITD_LEFT ? "left" : "right"; }
 // +1 for the left foot, -1 for the right one: the direction of "outwards" in y.
 inline double side_sign(int side) { return side == GAITD_LEFT ? 1.0 : -1.0; }
 
