@@ -167,8 +167,8 @@ std::vector<std::string> status_screen(const json& status) {
 }
 
 std::string status_line(const json& status) {
-  return number(at(status, "time"), 2) + " s  " + state_text(status) + "  " + gait(status) + "  step " +
-         steps(status) + "  ICP error " + number(at(status, "icp_error"), 1, 1e-3) +
+  return number(at(status, "time"), 2) + " s  " + state_text(status) + "  " + gait(status) +
+         "  step " + steps(status) + "  ICP error " + number(at(status, "icp_error"), 1, 1e-3) +
          " mm  margin " + number(at(status, "icp_margin"), 1, 1e-3) + " mm  tick " +
          number(at(status, "tick_longest_us"), 0) + " µs  faults " + faults(status);
 }

@@ -43,6 +43,7 @@ heavy=$(awk "BEGIN { print ($(scale 1) > $(scale 3)) }")
 # What no run can play is told after a few runs, not after all of them.
 cat >hopeless.yaml <<'CAMPAIGN'
 schema: gaitd.campaign/1
+name: hopeless
 scenarios: [stand]
 seeds: 40
 CAMPAIGN

@@ -119,7 +119,7 @@ TEST_F(Run, PassesScenarioClockSocketLogAndSettingsOn) {
   const Outcome outcome = run(workspace_.file("stand.yaml") + " --set duration=3.0 --set seed=4" +
                               " --log " + workspace_.file("my.mcap"));
   EXPECT_EQ(outcome.exit_code, 1);
-  const std::string arguments = workspace_.read("my.txt");
+  const std::string arguments = workspace_.read("my.mcap.txt");
   EXPECT_HAS(arguments, "--scenario " + workspace_.file("stand.yaml") + " --clock lockstep");
   EXPECT_HAS(arguments, "--socket /");
   EXPECT_HAS(arguments, "--log " + workspace_.file("my.mcap"));

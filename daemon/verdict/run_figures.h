@@ -34,8 +34,9 @@ struct RunFigures {
   double saturation = kNotMeasured;          // fraction of ticks with any leg joint at its limit
   WorstJoint torque_step;                    // largest change per tick / effort limit, walking
   double stance_knee_torque = kNotMeasured;  // N m, RMS of what is commanded, over single support
-  double cost_of_transport = kNotMeasured;   // sum of |commanded power| of the joints / (weight * way)
-  WorstJoint chatter;                        // RMS change of the torque per tick / effort limit
+  double cost_of_transport =
+      kNotMeasured;    // sum of |commanded power| of the joints / (weight * way)
+  WorstJoint chatter;  // RMS change of the torque per tick / effort limit
   double drive_speed_error = kNotMeasured;   // relative; daemon/verdict/drive_speed.h
   double contact_lost_ticks = kNotMeasured;  // standing, since both feet first stood
   std::array<double, 3> final_pelvis = {kNotMeasured, kNotMeasured, kNotMeasured};  // x, y, yaw

@@ -239,32 +239,6 @@ TEST(StepPlan, ATransferIsShortenedByALeadOfTheIcpOnly) {
   EXPECT_GE(w.gait().phase_duration + out.time_shift, shortest * time - 1e-9);
 }
 
-// A plan may use the feet up to their edge; the margin of the feedback is no error of the ICP that
-// would grow for as long as the transfer lasts.
-TEST(StepPlan, APlanAtTheEdgeOfTheFeetMovesNoFoothold) {
-  SyntheticWalk w;
-  ASSERT_FALSE(w.machine.walk({.steps = 5, .length = 0.4, .transfer_duration = 1.0}).refused());
-  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 3));
-  w.tick();
-  const double omega = w.gait().omega;
-  const GaitdFoothold& trailing = w.gait().footholds[w.gait().trailing_side];
-  const walking::SoleExtent sole =
-      walking::sole_extent(walking::whole_sole(atlas(), w.gait().trailing_side, trailing.pose));
-  const Vector2d end = sdk::view(w.plan.icp_end);
-  for (const double inside : {0.02, 0.001}) {
-    const Vector2d edge(trailing.pose.position[0] + sole.x_min + inside, trailing.pose.position[1]);
-    const double growth = std::exp(omega * w.gait().time_remaining);
-    SyntheticWalk at_edge = w;
-    sdk::view(at_edge.plan.icp) = edge + (end - edge) / growth;
-    sdk::view(at_edge.plan.offset).setZero();
-    sdk::view(at_edge.plan.ecmp) = edge;
-    sdk::view(at_edge.robot.icp) = sdk::view(at_edge.plan.icp);
-    const GaitdStepAdjustment out = with_error(at_edge, 0.0, 0.0);
-    EXPECT_EQ(out.time_shift, 0.0) << inside;
-    EXPECT_EQ(out.shift[0], 0.0) << inside;
-  }
-}
-
 TEST(StepPlan, GoesOnFromAShiftThatAnotherVariantMade) {
   SyntheticWalk w = in_swing();
   StepPlan first(atlas());

@@ -228,14 +228,8 @@ StepProblem StepPlan::problem(const GaitdStepAdjusterInput& in) const {
   const Eigen::Vector2d ecmp = growth > 1.0 + 1e-6
                                    ? walking::planned_cmp(planned, view(in.plan->icp_end), growth)
                                    : Eigen::Vector2d(view(in.plan->ecmp));
-  // The margin is kept for the feedback. What the plan counts on is no error as far as the feet
-  // can do it: a CMP that was held back by 1 cm for a second would cost a step of 0.2 m.
-  const Eigen::Vector2d planned_cmp = walking::cmp_of(ecmp, c.com, c.kappa);
-  const walking::ConvexPolygon feet = walking::support_region(model_, gait, *in.robot);
   c.cmp_region = feedback_.cmp_region(gait, *in.robot);
-  if (!feet.empty()) c.cmp_region.add(feet.closest_point(planned_cmp));
-  c.cmp_region.make_hull();
-  c.cmp = c.cmp_region.closest_point(planned_cmp);
+  c.cmp = c.cmp_region.closest_point(walking::cmp_of(ecmp, c.com, c.kappa));
   c.commanded = view(step.pose.position).head<2>();
   c.foot = view(in.robot->feet[gait.next_side].position).head<2>();
   return c;
