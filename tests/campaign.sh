@@ -47,8 +47,8 @@ name: hopeless
 scenarios: [stand]
 seeds: 40
 CAMPAIGN
-expect 1 gaitctl campaign hopeless.yaml -o hopeless --jobs 2 --set robot=nobody >hopeless.txt 2>&1
-grep -q "none of the first 4 runs could be judged.*no robot 'nobody'" hopeless.txt || fail "$(cat hopeless.txt)"
+expect 1 gaitctl campaign hopeless.yaml -o hopeless --jobs 2 --set toe_off.variant=nobody >hopeless.txt 2>&1
+grep -q "none of the first 4 runs could be judged.*no variant 'nobody'" hopeless.txt || fail "$(cat hopeless.txt)"
 (($(wc -l <hopeless/results.csv) < 10)) || fail "it played $(wc -l <hopeless/results.csv) runs"
 ! grep 'running-' hopeless/results.csv || fail "the results name a file that no longer is"
 
