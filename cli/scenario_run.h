@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,9 @@
 #include "daemon/verdict/verdict.h"
 
 namespace gaitd::cli {
+
+/// Extensions of what a run writes: its log, and what gaitd printed beside it.
+inline constexpr std::array kRunFiles = {".mcap", ".mcap.txt"};
 
 /// The daemon's program: it stands beside this one, in a build tree and installed.
 std::filesystem::path gaitd_program();

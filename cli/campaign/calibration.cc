@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "cli/campaign/settings.h"
+#include "cli/scenario_run.h"
 #include "cli/stop_signals.h"
 #include "cli/whole_file.h"
 #include "daemon/config/paths.h"
@@ -71,7 +72,7 @@ bool accept(const Calibration& calibration, int status, const fs::path& fresh) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
     fs::rename(fresh, calibration.file, error);
     if (!error) {
-      for (const char* extension : {".mcap", ".mcap.txt"}) {
+      for (const char* extension : kRunFiles) {
         fs::remove(beside(calibration, extension), error);
       }
       return true;

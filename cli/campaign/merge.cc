@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "cli/campaign/runner.h"
+#include "cli/scenario_run.h"
 #include "cli/whole_file.h"
 
 namespace gaitd::cli {
@@ -68,7 +69,7 @@ void add_logs(const CampaignPlan& plan, const CampaignResults& results, const So
     const fs::path from = campaign_log(sources.at(result->number), result->number);
     const bool keep = fs::exists(from, ignored) && kept++ < plan.campaign.keep_logs;
     if (keep && from == to) continue;
-    for (const char* extension : {".mcap", ".mcap.txt"}) {
+    for (const char* extension : kRunFiles) {
       const fs::path one = fs::path(to).replace_extension(extension);
       if (keep) {
         share_file(fs::path(from).replace_extension(extension), one);

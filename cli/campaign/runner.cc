@@ -16,6 +16,7 @@
 #include "cli/campaign/calibration.h"
 #include "cli/child_pool.h"
 #include "cli/gauntlet/gauntlet.h"
+#include "cli/scenario_run.h"
 #include "cli/stop_signals.h"
 #include "cli/whole_file.h"
 
@@ -84,7 +85,7 @@ class Logs {
     return campaign_log(folder_, number).replace_extension(extension);
   }
   void keep(int number) const {
-    for (const char* extension : {".mcap", ".mcap.txt"}) {
+    for (const char* extension : kRunFiles) {
       const fs::path from = running(number, extension), to = log(number, extension);
       std::error_code other_disk, ignored;
       fs::rename(from, to, other_disk);
@@ -95,7 +96,7 @@ class Logs {
   }
   void forget(int number) const {
     std::error_code ignored;
-    for (const char* extension : {".mcap", ".mcap.txt"}) {
+    for (const char* extension : kRunFiles) {
       fs::remove(log(number, extension), ignored);
       fs::remove(running(number, extension), ignored);
     }

@@ -8,9 +8,9 @@
 namespace gaitd::doctor {
 namespace {
 
-constexpr double kLeastLoad = 0.8;  // s
-constexpr double kLeast = 0.005;    // of the mass of the robot
-constexpr double kNext = 0.2;       // s: the force is judged once it has settled
+constexpr double kLeastLoad = 0.8;    // s
+constexpr double kLeastMass = 0.005;  // of that of the robot
+constexpr double kNext = 0.2;         // s: the force is judged once it has settled
 
 // The last in which the robot was under control and `wrong` was not 0.
 std::optional<Episode> episode_of(const LogCase& log, const daemon::Column& wrong) {
@@ -54,7 +54,7 @@ Findings check_load(const LogCase& log) {
   const auto settled = episode->begin + static_cast<std::size_t>(kNext / log.period());
   for (std::size_t i = settled; i < episode->end; ++i, ++count) sum += (*load)[i];
   const double mass = -sum / static_cast<double>(count) / model->gravity;
-  if (!(std::abs(mass) > kLeast * model->total_mass)) return check_surplus(log, *model);
+  if (!(std::abs(mass) > kLeastMass * model->total_mass)) return check_surplus(log, *model);
   Finding finding = log_finding(
       log, "load", episode->begin,
       format("%.1f kg were %s the standing robot, which did not know of them for %.1f s",
