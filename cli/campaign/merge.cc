@@ -31,7 +31,9 @@ bool add_results(const ResultFormat& format, const fs::path& folder, CampaignRes
       return false;
     }
     there->second = result;
-    if (fresh || !has_log((*sources)[number], number)) (*sources)[number] = folder;
+    if (fresh || !left_files(campaign_log((*sources)[number], number))) {
+      (*sources)[number] = folder;
+    }
   }
   return true;
 }
@@ -67,7 +69,7 @@ void add_logs(const CampaignPlan& plan, const CampaignResults& results, const So
   for (const CampaignResult* result : worst_first(results)) {
     const fs::path to = campaign_log(target, result->number);
     const fs::path from = campaign_log(sources.at(result->number), result->number);
-    const bool keep = fs::exists(from, ignored) && kept++ < plan.campaign.keep_logs;
+    const bool keep = left_files(from) && kept++ < plan.campaign.keep_logs;
     if (keep && from == to) continue;
     for (const char* extension : kRunFiles) {
       const fs::path one = fs::path(to).replace_extension(extension);

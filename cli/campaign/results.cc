@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "cli/one_line.h"
+#include "cli/scenario_run.h"
 #include "cli/whole_file.h"
 
 namespace gaitd::cli {
@@ -256,6 +257,13 @@ fs::path campaign_log(const fs::path& folder, int number) {
 bool has_log(const fs::path& folder, int number) {
   std::error_code ignored;
   return fs::exists(campaign_log(folder, number), ignored);
+}
+
+bool left_files(const fs::path& log) {
+  return std::any_of(kRunFiles.begin(), kRunFiles.end(), [&](const char* extension) {
+    std::error_code ignored;
+    return fs::exists(fs::path(log).replace_extension(extension), ignored);
+  });
 }
 
 }  // namespace gaitd::cli

@@ -91,5 +91,7 @@ class ResultFile {
 /// The log of a run in the folder of its campaign, and whether it was kept.
 std::filesystem::path campaign_log(const std::filesystem::path& folder, int number);
 bool has_log(const std::filesystem::path& folder, int number);
+/// Whether a run left a log here, or only what gaitd printed because it ended before it had one.
+bool left_files(const std::filesystem::path& log);
 
 }  // namespace gaitd::cli

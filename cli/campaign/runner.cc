@@ -63,12 +63,11 @@ class Logs {
   // Those of the worst runs stay, or come from where they were written; all others go.
   void keep_worst(const CampaignResults& results) {
     int kept = 0;
-    std::error_code ignored;
     for (const CampaignResult* result : worst_first(results)) {
       const int number = result->number;
       if (deleted_.contains(number)) continue;
-      const bool fresh = fs::exists(running(number, ".mcap"), ignored);
-      if ((fresh || has_log(folder_, number)) && kept++ < keep_) {
+      const bool fresh = left_files(running(number, ".mcap"));
+      if ((fresh || left_files(campaign_log(folder_, number))) && kept++ < keep_) {
         if (fresh) keep(number);
         continue;
       }

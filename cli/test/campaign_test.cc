@@ -351,10 +351,12 @@ TEST_F(CampaignTest, ALogIsThereBeforeItsRow) {
 
 TEST_F(CampaignTest, WhatCouldNotBeJudgedIsNoSuccessAndTriedAgain) {
   campaign("scenarios: [" + file("good.yaml") + "]\nseeds: 2\n");
-  gaitd("kill -SEGV $$");
+  gaitd("echo about to crash; kill -SEGV $$");
   const Outcome crashed = run("--json");
   EXPECT_EQ(crashed.exit_code, 1);
   EXPECT_HAS(json::parse(crashed.out)["worst"][0]["problem"].get<std::string>(), "SIGSEGV");
+  // Without a log, what gaitd printed is all there is to read.
+  EXPECT_HAS(workspace_.read("results/logs/000001.mcap.txt"), "about to crash");
   gaitd("");
   EXPECT_EQ(run().exit_code, 0);
 }

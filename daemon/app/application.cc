@@ -71,7 +71,6 @@ void Application::read_configuration(Issues* all) {
   config_ = read_daemon_config(&settings_, &issues);
   read_height_map(&issues);
   read_backend(&issues);
-  if (scenario_ && options_.robot.empty()) config_.robot = scenario_->robot;
   if (options_.require_rt) config_.realtime.require = true;
   const auto robot_file = paths_.robot(config_.robot);
   if (!robot_file) {

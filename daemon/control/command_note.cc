@@ -52,6 +52,7 @@ const char* command_note(const Command& command, SafetyState state, const GaitdG
                                               : "walking: from the next step on";
     case CommandType::kWalk:
     case CommandType::kFootsteps:
+    case CommandType::kGoto:
       return gait.paused != 0 ? "paused: the footsteps wait for `gaitctl resume`" : nullptr;
     case CommandType::kPause:
       return pause_note(gait);

@@ -37,8 +37,9 @@ TEST(CommandNote, SaysThatThereIsNothingToDo) {
 
 TEST(CommandNote, SaysWhatWaits) {
   EXPECT_NE(note(CommandType::kPause, kStanding).find("resume"), std::string::npos);
-  EXPECT_NE(note(CommandType::kWalk, kStanding, GAITD_PHASE_STAND, 1).find("resume"),
-            std::string::npos);
+  for (const CommandType type : {CommandType::kWalk, CommandType::kFootsteps, CommandType::kGoto}) {
+    EXPECT_NE(note(type, kStanding, GAITD_PHASE_STAND, 1).find("resume"), std::string::npos);
+  }
   EXPECT_NE(note(CommandType::kMode, kWalking, GAITD_PHASE_SWING), "");
 }
 
