@@ -26,6 +26,7 @@ constexpr double kForceError = 0.03;    // of the weight: the IMU, the masses, l
 constexpr double kMomentError = 0.01;   // of the weight times the height of the CoM
 constexpr double kForcePrior = 10.0;    // of the weight: wrenches that nothing tells are small
 constexpr double kFastest = 4.0;        // of the velocity limit: more is a jump of an encoder
+constexpr double kUntold = 1000.0;      // of the effort limit, of a joint that tells no torque
 
 Matrix3d inertia_of(const GaitdBody& body) {
   const double* i = body.inertia;
@@ -43,28 +44,31 @@ FootWrenches::FootWrenches(const GaitdModel& model)
       subtrees_(static_cast<std::size_t>(model.body_count)),
       q_(Eigen::VectorXd::Zero(model.joint_count)),
       rate_(Eigen::VectorXd::Zero(model.joint_count)),
+      once_(Eigen::VectorXd::Zero(model.joint_count)),
       torque_(Eigen::VectorXd::Zero(model.joint_count)) {
   for (const GaitdLeg& leg : model_.legs) {
     rows_.insert(rows_.end(), leg.joints, leg.joints + leg.joint_count);
   }
+  leg_rows_ = kBaseSize + static_cast<int>(rows_.size());
+  in_leg_.assign(static_cast<std::size_t>(model_.joint_count), false);
+  tells_torque_ = in_leg_;
+  for (const int joint : rows_) in_leg_[static_cast<std::size_t>(joint)] = true;
+  for (int j = 0; j < model_.joint_count; ++j) {
+    if (!in_leg_[static_cast<std::size_t>(j)]) rows_.push_back(j);
+  }
   const int rows = kBaseSize + static_cast<int>(rows_.size());
   for (Rows* r : {&momentum_, &expected_, &last_momentum_, &first_, &residual_}) r->setZero(rows);
-  map_.setZero(rows, kUnknowns);
+  map_.setZero(leg_rows_, kUnknowns);
   weights_.setIdentity(rows, rows);
   mass_matrix_.setZero(rows, model_.joint_count);
   Dynamics standing(model_);
   const Eigen::Map<const Eigen::VectorXd> q(model_.nominal_position, model_.joint_count);
   standing.update(Vector3d::Zero(), Quaterniond::Identity(), Vector6d::Zero(), q,
                   Eigen::VectorXd::Zero(model_.joint_count));
-  in_leg_.assign(static_cast<std::size_t>(model_.joint_count), false);
-  for (const int joint : rows_) in_leg_[static_cast<std::size_t>(joint)] = true;
   mass_matrix_.topRows(kBaseSize) = standing.mass_matrix().topRightCorner(kBaseSize, q.size());
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     mass_matrix_.row(kBaseSize + static_cast<int>(i)) =
         standing.mass_matrix().row(kBaseSize + rows_[i]).tail(q.size());
-  }
-  for (int j = 0; j < model_.joint_count; ++j) {
-    if (!in_leg_[static_cast<std::size_t>(j)]) mass_matrix_.col(j).setZero();
   }
   for (Vector6d& wrench : wrench_) wrench.setZero();
 }
@@ -86,30 +90,54 @@ void FootWrenches::set_weights(double bandwidth) {
   bandwidth_ = bandwidth;
   const double pole = 2.0 * M_PI * bandwidth;
   const double jerk = kEncoderError * pole * pole;
-  Weights covariance = jerk * jerk * mass_matrix_ * mass_matrix_.transpose();
+  Eigen::MatrixXd moved = jerk * mass_matrix_;
+  for (std::size_t j = 0; j < in_leg_.size(); ++j) {
+    if (stands_still(j)) moved.col(static_cast<Eigen::Index>(j)).setZero();
+  }
+  Weights covariance = moved * moved.transpose();
   const double weight = model_.total_mass * model_.gravity;
   const double moment = kMomentError * weight * model_.nominal_com_height;
   const double force = kForceError * weight;
   covariance.diagonal().head<3>().array() += moment * moment;
   covariance.diagonal().segment<3>(3).array() += force * force;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const double error = kDriveError * model_.joints[rows_[i]].effort_limit;
+    const double share = stands_still(static_cast<std::size_t>(rows_[i])) ? kUntold : kDriveError;
+    const double error = share * model_.joints[rows_[i]].effort_limit;
     covariance(kBaseSize + static_cast<int>(i), kBaseSize + static_cast<int>(i)) += error * error;
   }
   weights_ = covariance.llt().solve(Weights::Identity(covariance.rows(), covariance.cols()));
 }
 
-void FootWrenches::read_joints(const GaitdSensors& sensors, double dt) {
+// Once told, always: a frame that is lost now and then changes no weights.
+void FootWrenches::hear_torques(const GaitdSensors& sensors) {
+  bool more = false;
   for (int j = 0; j < model_.joint_count; ++j) {
     const GaitdJointSensor& joint = sensors.joints[j];
-    rate_[j] = 0.0;
-    if (!sdk::usable(joint) || !std::isfinite(joint.torque)) continue;
+    if (tells_torque_[static_cast<std::size_t>(j)] || !sdk::usable(joint) ||
+        !std::isfinite(joint.torque)) {
+      continue;
+    }
+    more = tells_torque_[static_cast<std::size_t>(j)] = true;
+  }
+  if (more) set_weights(bandwidth_);
+}
+
+void FootWrenches::read_joints(const GaitdSensors& sensors, double share, double dt) {
+  for (int j = 0; j < model_.joint_count; ++j) {
+    const GaitdJointSensor& joint = sensors.joints[j];
+    const bool in_leg = in_leg_[static_cast<std::size_t>(j)];
+    if (in_leg) rate_[j] = 0.0;
+    if (!sdk::usable(joint)) continue;
     const double limit = kFastest * model_.joints[j].velocity_limit;
-    if (begun_ && in_leg_[static_cast<std::size_t>(j)]) {
-      rate_[j] = std::clamp((joint.position - q_[j]) / dt, -limit, limit);
+    const double rate = begun_ ? std::clamp((joint.position - q_[j]) / dt, -limit, limit) : 0.0;
+    if (in_leg) {
+      rate_[j] = rate;
+    } else if (!stands_still(static_cast<std::size_t>(j))) {
+      once_[j] += share * (rate - once_[j]);
+      rate_[j] += share * (once_[j] - rate_[j]);
     }
     q_[j] = joint.position;
-    torque_[j] = joint.torque;
+    if (std::isfinite(joint.torque)) torque_[j] = joint.torque;
   }
 }
 
@@ -172,6 +200,7 @@ void FootWrenches::gather_joint(int row, int joint_index) {
     expected_[row] += axis.dot(s.moment - p.cross(s.force)) + axis_rate.dot(about) -
                       axis.dot(Vector3d(twist.tail<3>()).cross(s.linear));
   }
+  if (row >= leg_rows_) return;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdFoot& foot = model_.feet[side];
     if ((kinematics_.support_mask(foot.body) >> joint_index & 1) == 0) continue;
@@ -186,7 +215,9 @@ void FootWrenches::gather_joint(int row, int joint_index) {
 void FootWrenches::update(const Motion& motion, double bandwidth, double dt,
                           const GaitdSensors& sensors) {
   if (bandwidth != bandwidth_) set_weights(bandwidth);
-  read_joints(sensors, dt);
+  hear_torques(sensors);
+  const double share = -std::expm1(-2.0 * M_PI * bandwidth * dt);
+  read_joints(sensors, share, dt);
   const sdk::ImuPlace imu = sdk::imu_place(model_, motion.imu, q_.data(), rate_.data());
   const Vector3d rate = motion.rate - imu.rate;
   Vector6d twist;  // with which the point of the IMU, the origin, is at rest
@@ -202,21 +233,28 @@ void FootWrenches::update(const Motion& motion, double bandwidth, double dt,
   }
   if (loaded_anew_) last_momentum_ = momentum_;
   loaded_anew_ = false;
-  const double share = -std::expm1(-2.0 * M_PI * bandwidth * dt);
   first_ += share * ((momentum_ - last_momentum_) / dt - expected_ - first_);
   residual_ += share * (first_ - residual_);
   last_momentum_ = momentum_;
   begun_ = residual_.allFinite();
-  if (begun_) solve();
+  if (begun_) solve(motion.orientation.toRotationMatrix());
 }
 
-void FootWrenches::solve() {
+// The weights hold in the axes of the pelvis. Only joints of the legs carry feet.
+void FootWrenches::solve(const Matrix3d& pelvis) {
   const double weight = model_.total_mass * model_.gravity;
+  Rows residual = residual_;
+  for (const int row : {0, 3}) {
+    residual.segment<3>(row) = pelvis.transpose() * residual_.segment<3>(row);
+    map_.middleRows<3>(row) = (pelvis.transpose() * map_.middleRows<3>(row)).eval();
+  }
+  Rows told;
+  told.noalias() = weights_ * residual;
   Map weighted;
-  weighted.noalias() = weights_ * map_;
+  weighted.noalias() = weights_.topLeftCorner(leg_rows_, leg_rows_) * map_;
   Eigen::Matrix<double, kUnknowns, kUnknowns> normal;
   normal.noalias() = map_.transpose() * weighted;
-  Eigen::Matrix<double, kUnknowns, 1> right = weighted.transpose() * residual_;
+  Eigen::Matrix<double, kUnknowns, 1> right = map_.transpose() * told.head(leg_rows_);
   const double force = 1.0 / std::pow(kForcePrior * weight, 2);
   const double moment = force / std::pow(0.1 * model_.nominal_com_height, 2);
   for (int i = 0; i < kUnknowns; ++i) normal(i, i) += i % 6 < 3 ? moment : force;

@@ -14,12 +14,12 @@
 
 namespace gaitd::dynamics {
 
-// Estimates the wrenches of both feet from the torques of the leg joints, the encoders and one IMU.
+// Estimates the wrenches of both feet from the torques of the joints, the encoders and one IMU.
 //
 // Residuals of the generalised momentum (De Luca, Albu-Schaeffer, Haddadin, Hirzinger, "Collision
 // detection and safe reaction with the DLR-III lightweight robot arm", 2006): what changes the
 // momentum beside gravity and the drives is the ground. There are six of them for the robot as a
-// whole, moment and force, and one for every joint of the legs. They are taken in a frame that
+// whole, moment and force, and one for every joint. They are taken in a frame that
 // neither turns nor moves against the IMU's point; what accelerates that frame is gravity to
 // everything in it, so that the IMU's specific force is all that has to be known of the motion of
 // the robot: neither its position nor its velocity, which an estimator would need the feet for.
@@ -30,8 +30,10 @@ namespace gaitd::dynamics {
 // squares). So a straight leg, whose knee says nothing of the load, is decided by the balance of
 // the whole robot, and a bent one by both.
 //
-// Joints above the legs count as standing still: the play of a waist looks like a jolt of the
-// trunk, and how the trunk really moves against the pelvis is slow.
+// Joints above the legs carry no foot. But the trunk is half of the robot, and what the encoder of
+// a waist with play says of its acceleration is worth little. What the drive of that waist gives is
+// worth more: its residual tells the error of the acceleration, and the covariance carries it into
+// the balance of the robot. A joint that never told its torque counts as standing still.
 //
 // A foot cannot pull: where that comes out, the other one carries all.
 class FootWrenches {
@@ -60,11 +62,12 @@ class FootWrenches {
   const Vector6d& wrench(int side) const { return wrench_[side]; }
 
  private:
-  static constexpr int kMaxRows = kBaseSize + GAITD_MAX_FEET * 12;
+  static constexpr int kMaxRows = kBaseSize + GAITD_MAX_JOINTS;
+  static constexpr int kMaxLegRows = kBaseSize + GAITD_MAX_FEET * 12;
   static constexpr int kUnknowns = 6 * GAITD_MAX_FEET;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRows, 1>;
   using Weights = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxRows, kMaxRows>;
-  using Map = Eigen::Matrix<double, Eigen::Dynamic, kUnknowns, 0, kMaxRows, kUnknowns>;
+  using Map = Eigen::Matrix<double, Eigen::Dynamic, kUnknowns, 0, kMaxLegRows, kUnknowns>;
 
   // Momentum and wrench of gravity of a body and all that it carries, about the IMU's point.
   struct Subtree {
@@ -73,21 +76,25 @@ class FootWrenches {
   };
 
   void set_weights(double bandwidth);
-  void read_joints(const GaitdSensors& sensors, double dt);
+  void hear_torques(const GaitdSensors& sensors);
+  void read_joints(const GaitdSensors& sensors, double share, double dt);
+  bool stands_still(std::size_t joint) const { return !in_leg_[joint] && !tells_torque_[joint]; }
   void gather_robot(const Eigen::Vector3d& gravity);
   void gather_joint(int row, int joint);
-  void solve();
+  void solve(const Eigen::Matrix3d& pelvis);
 
   const std::vector<GaitdBody> own_;
   GaitdModel model_;  // its bodies with the loads
   GaitdLoads loads_{};
   bool loaded_anew_ = false;  // since the last update
   Kinematics kinematics_;
-  std::vector<bool> in_leg_;  // by joint
-  std::vector<int> rows_;     // joint of each row behind those of the base
+  std::vector<bool> in_leg_, tells_torque_;  // by joint
+  std::vector<int> rows_;  // joint of each row behind those of the base, legs first
+  int leg_rows_ = 0;       // of the base and the legs
   std::vector<Subtree> subtrees_;
-  Eigen::VectorXd q_, rate_, torque_;
-  Eigen::MatrixXd mass_matrix_;  // rows of the residuals, columns of the joints, standing
+  Eigen::VectorXd q_, rate_, once_, torque_;  // once_: rad/s, low-passed
+  // Rows of the residuals, those of the robot in the axes of the pelvis; columns of the joints.
+  Eigen::MatrixXd mass_matrix_;
   Weights weights_;
   double bandwidth_ = 0.0;
   bool begun_ = false;
