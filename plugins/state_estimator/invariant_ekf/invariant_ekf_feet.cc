@@ -34,9 +34,10 @@ void InvariantEkf::read_forces(const GaitdStateEstimatorInput& in, GaitdRobotSta
     Foot& f = feet_[side];
     GaitdFootState& state = out.feet[side];
     const bool sensed = sdk::has_force_sensor(model_.feet[side]);
-    const sdk::Vector6d wrench = sensed
-                                     ? sdk::sole_wrench(model_.feet[side], in.sensors->feet[side])
-                                     : ground_->wrench(side);
+    const bool in_air = f.contact == GAITD_CONTACT_NONE && swings(*in.gait, side);
+    const sdk::Vector6d wrench =
+        sensed ? sdk::sole_wrench(model_.feet[side], in.sensors->feet[side])
+               : f.tare.less(ground_->wrench(side), in_air, model_, in.time.period);
     view(state.wrench) = wrench;
     f.normal_force += (sensed ? share : 1.0) * (std::max(0.0, wrench[5]) - f.normal_force);
     const double held = f.contact == GAITD_CONTACT_NONE ? 1.0 : kContactOff;
@@ -68,10 +69,10 @@ void InvariantEkf::update_trust(const GaitdStateEstimatorInput& in) {
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     Foot& f = feet_[side];
     const double share = f.normal_force / std::max(total, least);
-    const bool swings = in.gait->phase == GAITD_PHASE_SWING && in.gait->next_side == side;
-    f.time_above = share > kTrustOn && !swings ? f.time_above + in.time.period : 0.0;
+    const bool swinging = swings(*in.gait, side);
+    f.time_above = share > kTrustOn && !swinging ? f.time_above + in.time.period : 0.0;
     const bool earned = f.time_above >= kTrustDelay;
-    f.trusted = earned || (f.trusted && share >= kTrustOff && !swings);
+    f.trusted = earned || (f.trusted && share >= kTrustOff && !swinging);
     f.time_trusted = f.trusted ? f.time_trusted + in.time.period : 0.0;
   }
 }

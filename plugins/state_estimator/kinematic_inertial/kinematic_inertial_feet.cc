@@ -56,7 +56,10 @@ void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobot
     GaitdFootState& state = out.feet[side];
     Foot& f = feet_[side];
     const bool sensed = sdk::has_force_sensor(foot);
-    const sdk::Vector6d wrench = sensed ? sdk::sole_wrench(foot, sensor) : ground_->wrench(side);
+    const bool in_air = f.contact == GAITD_CONTACT_NONE && swings(*in.gait, side);
+    const sdk::Vector6d wrench =
+        sensed ? sdk::sole_wrench(foot, sensor)
+               : f.tare.less(ground_->wrench(side), in_air, model_, in.time.period);
     view(state.wrench) = wrench;
     const Eigen::Vector3d moment = wrench.head<3>();
     const Eigen::Vector3d force = wrench.tail<3>();
@@ -132,7 +135,7 @@ void KinematicInertial::update_trust(const GaitdStateEstimatorInput& in, double 
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     Foot& f = feet_[side];
     const double share = f.normal_force / std::max(total, least);
-    const bool swinging = in.gait->phase == GAITD_PHASE_SWING && in.gait->next_side == side;
+    const bool swinging = swings(*in.gait, side);
     f.time_above = share > kTrustOn && !swinging ? f.time_above + dt : 0.0;
     const bool was = f.trusted;
     if (!f.trusted) f.trusted = f.time_above >= kTrustDelay;
