@@ -99,7 +99,6 @@ void GaitMachine::apply_pending_mode() { state_.mode = pending_mode_; }
 void GaitMachine::begin_stand() {
   apply_pending_mode();
   goals_ = {};
-  returning_ = false;
   state_.phase = GAITD_PHASE_STAND;
   state_.support = GAITD_BOTH;
   state_.next_side = GAITD_BOTH;
@@ -186,7 +185,6 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   state_.early_contact = early ? 1 : 0;
   if (!recovering_) goals_[side] = {queue_[0], true};
   queue_.pop();
-  if (returning_ && comes_back()) push_return(other_side(side));
   path_offset_.setZero();
   if (queue_.size() > 0) path_offset_ = following(shift_, queue_[0], landed.pose);
   if (recovering_) close_after_recovery();

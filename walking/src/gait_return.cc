@@ -11,7 +11,7 @@ namespace {
 
 // Heights of the CoM, by which a step comes back to the commanded way at most.
 constexpr double kMostBack = 0.1274;
-constexpr double kArrived = 0.2;  // nominal distances of the feet: as good as where it was told
+constexpr double kArrived = 0.2;  // nominal distances of the feet
 
 }  // namespace
 
@@ -50,26 +50,33 @@ bool GaitMachine::comes_back() const {
   }
   // On feet that bear on an edge, steps in place lead further away than they bring back.
   if (!rolls_foot(model_, GAITD_LEFT)) return false;
-  const double arrived = kArrived * model_.nominal_foot_separation;
   return goals_[GAITD_LEFT].known && goals_[GAITD_RIGHT].known &&
-         std::max(astray(GAITD_LEFT).norm(), astray(GAITD_RIGHT).norm()) > arrived;
+         std::max(astray(GAITD_LEFT).norm(), astray(GAITD_RIGHT).norm()) > arrived();
 }
 
-void GaitMachine::push_return(int side) {
-  GaitdFootstep step = goals_[side].step;
-  step.closing = 1;
-  complete(step);
-  queue_.push(step);
-  --returns_left_;
-}
+double GaitMachine::arrived() const { return kArrived * model_.nominal_foot_separation; }
 
+// All steps of the way at once, for a plan that knows what follows: a step that it took for the
+// last one leaves the ICP between the feet, where no short transfer gets it over the next foot.
 void GaitMachine::begin_return(const GaitdRobotState& robot) {
-  const Eigen::Vector3d off = 0.5 * (astray(GAITD_LEFT) + astray(GAITD_RIGHT));
-  const int side = recovery_side(robot, -off.head<2>());
-  push_return(side);
-  path_offset_ = following(off, queue_[0], state_.footholds[other_side(side)].pose);
+  double away[GAITD_MAX_FEET] = {astray(GAITD_LEFT).norm(), astray(GAITD_RIGHT).norm()};
+  Eigen::Vector3d offset = 0.5 * (astray(GAITD_LEFT) + astray(GAITD_RIGHT));
+  int side = recovery_side(robot, -offset.head<2>());
+  GaitdPose stance = state_.footholds[other_side(side)].pose;
+  while (returns_left_ > 0 && std::max(away[GAITD_LEFT], away[GAITD_RIGHT]) > arrived()) {
+    GaitdFootstep step = goals_[side].step;
+    step.closing = 1;
+    complete(step);
+    queue_.push(step);
+    --returns_left_;
+    offset = following(offset, step, stance);
+    if (queue_.size() == 1) path_offset_ = offset;
+    away[side] = offset.norm();
+    stance = step.pose;
+    sdk::view(stance.position) += offset;
+    side = other_side(side);
+  }
   recovering_ = false;
-  returning_ = true;
   begin_transfer(robot, GAITD_BOTH);
 }
 

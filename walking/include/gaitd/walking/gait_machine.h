@@ -106,9 +106,8 @@ class GaitMachine {
   Eigen::Vector3d astray(int side) const;
   // Whether all footsteps are taken, but the feet do not stand where the last ones led.
   bool comes_back() const;
-  // One more step of that foot to where it was last told to be.
-  void push_return(int side);
-  // From standing, or the end of the transfer to it.
+  double arrived() const;  // m, from its goal, within which a foot is as good as there
+  // From standing, or the end of the transfer to it: steps to where the feet were last told to be.
   void begin_return(const GaitdRobotState& robot);
   // Standing, or on the way to it: whether only a step can catch the robot; begins that step.
   bool recover(double dt, const GaitdRobotState& robot);
@@ -173,7 +172,6 @@ class GaitMachine {
   };
   std::array<Goal, GAITD_MAX_FEET> goals_{};  // last footstep of each foot since the robot stood
   int returns_left_ = 0;        // steps that may lead back to the goals after the last footstep
-  bool returning_ = false;      // such a step is under way
   double height_offset_ = 0.0;  // m, measured minus commanded height of the ground so far
   int pending_mode_ = GAITD_MODE_WALK_BENT;
   std::uint32_t next_id_ = 1;
