@@ -35,20 +35,33 @@ inline bool pulled(const GaitdStateEstimatorInput& in) {
 }
 
 // What drives and their play feign on a foot in the air where there is no force sensor. It changes
-// with the swing, a contact comes at once: in the air its mean over the last moments is no load.
+// with the swing, a contact comes at once: in the air its mean over the last moments is no load,
+// and neither is what lies within its noise.
 class SwingTare {
  public:
   // The wrench of a foot, moment first, less what is none. `in_air`: it swings and touched nothing.
-  sdk::Vector6d less(const sdk::Vector6d& wrench, bool in_air, const GaitdModel& model, double dt) {
-    constexpr double kMemory = 0.19;  // sqrt(h/g)
-    const double time = kMemory * std::sqrt(model.nominal_com_height / model.gravity);
+  // most: N, that is a contact however noisy it is.
+  sdk::Vector6d less(const sdk::Vector6d& wrench, bool in_air, double most, const GaitdModel& model,
+                     double dt) {
+    constexpr double kMean = 0.19, kNoise = 1.1;  // sqrt(h/g), of which it remembers
+    constexpr double kBeyond = 6.0;               // standard deviations: a contact
+    constexpr double kLeast = 0.4;                // of `most`, of which less is none
+    const double scale = std::sqrt(model.nominal_com_height / model.gravity);
     const double force = std::max(0.0, wrench[5]);
-    tare_ += -std::expm1(-dt / time) * ((in_air ? force : 0.0) - tare_);
-    return force > 0.0 ? sdk::Vector6d(std::max(0.0, 1.0 - tare_ / force) * wrench) : wrench;
+    const double off = force - mean_;
+    mean_ += -std::expm1(-dt / (kMean * scale)) * ((in_air ? force : 0.0) - mean_);
+    if (in_air) variance_ += -std::expm1(-dt / (kNoise * scale)) * (off * off - variance_);
+    contact_ = std::clamp(kBeyond * std::sqrt(variance_), kLeast * most, most);
+    const double left = force - mean_;
+    const bool none = left <= (in_air ? contact_ : 0.0);
+    return none ? sdk::Vector6d(sdk::Vector6d::Zero()) : sdk::Vector6d(left / force * wrench);
   }
+  double contact() const { return contact_; }  // N
 
  private:
-  double tare_ = 0.0;  // N
+  double mean_ = 0.0;      // N
+  double variance_ = 1e6;  // N^2: what the noise is has to be seen first
+  double contact_ = 0.0;
 };
 
 // Whether the gait lifts this foot.

@@ -228,12 +228,13 @@ void InvariantEkf::set_covariance(const Eigen::Vector3d& centre, bool levelled) 
   // The axes of the pelvis are close enough to level.
   filter_.covariance.diagonal().segment<3>(F::kGyroBias) =
       Eigen::Vector3d(kStartGyroBias, kStartGyroBias, kStartTurnBias).cwiseAbs2();
-  add(F::kAccelerometerBias, kStartAccelerometerBias);
+  const double bias = ground_ ? 0.0 : kStartAccelerometerBias;
+  add(F::kAccelerometerBias, bias);
   if (!levelled) return;
   Eigen::Matrix3d by_bias;  // the tilt that an error of the accelerometer makes
   by_bias << 0, -1, 0, 1, 0, 0, 0, 0, 0;
   by_bias = by_bias * filter_.orientation.toRotationMatrix() / model_.gravity;
-  const double bias_variance = kStartAccelerometerBias * kStartAccelerometerBias;
+  const double bias_variance = bias * bias;
   const Eigen::Matrix<double, 9, 3> joint = bias_variance * turn * by_bias;
   filter_.covariance.topLeftCorner<9, 9>() += joint * by_bias.transpose() * turn.transpose();
   filter_.covariance.block<9, 3>(0, F::kAccelerometerBias) = joint;
@@ -268,7 +269,7 @@ void InvariantEkf::predict(const GaitdStateEstimatorInput& in, const GaitdRobotS
   noise.gyro = p_[P::kGyroNoise];
   noise.accelerometer = p_[P::kAccelerometerNoise];
   noise.gyro_bias = p_[P::kGyroBiasNoise];
-  noise.accelerometer_bias = p_[P::kAccelerometerBiasNoise];
+  noise.accelerometer_bias = ground_ ? 0.0 : p_[P::kAccelerometerBiasNoise];
   // In a walk every foot turns and settles a little under its load.
   const double share = in.gait->phase == GAITD_PHASE_STAND ? kStandingShare : 1.0;
   noise.foot_horizontal = share * p_[P::kContactNoise];

@@ -34,15 +34,16 @@ void InvariantEkf::read_forces(const GaitdStateEstimatorInput& in, GaitdRobotSta
     Foot& f = feet_[side];
     GaitdFootState& state = out.feet[side];
     const bool sensed = sdk::has_force_sensor(model_.feet[side]);
+    const double most = p_[P::kContactOn] * weight_;
     const bool in_air = f.contact == GAITD_CONTACT_NONE && swings(*in.gait, side);
     const sdk::Vector6d wrench =
         sensed ? sdk::sole_wrench(model_.feet[side], in.sensors->feet[side])
-               : f.tare.less(ground_->wrench(side), in_air, model_, in.time.period);
+               : f.tare.less(ground_->wrench(side), in_air, most, model_, in.time.period);
     view(state.wrench) = wrench;
     f.normal_force += (sensed ? share : 1.0) * (std::max(0.0, wrench[5]) - f.normal_force);
     const double held = f.contact == GAITD_CONTACT_NONE ? 1.0 : kContactOff;
-    f.contact = f.normal_force > held * p_[P::kContactOn] * weight_ ? GAITD_CONTACT_FULL
-                                                                    : GAITD_CONTACT_NONE;
+    const double least = sensed ? most : f.tare.contact();
+    f.contact = f.normal_force > held * least ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
     state.contact = f.contact;
     state.normal_force = f.normal_force;
     state.cop_valid = f.contact != GAITD_CONTACT_NONE && wrench[5] > 0.01 * weight_ ? 1 : 0;
@@ -117,7 +118,7 @@ void InvariantEkf::correct(const GaitdStateEstimatorInput& in, const GaitdRobotS
 void InvariantEkf::observe_balance(const GaitdStateEstimatorInput& in,
                                    const GaitdRobotState& robot) {
   if (sdk::first_usable_imu(model_, *in.sensors) < 0) return;
-  if (pulled(in)) return;
+  if (pulled(in) || ground_) return;  // without sensors the load is computed with this gravity
   double load = 0.0;
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), loaded = Eigen::Vector3d::Zero();
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
