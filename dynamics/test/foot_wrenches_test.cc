@@ -82,6 +82,7 @@ class Bench {
   int imu = 0;
   std::function<double()> encoder_noise = [] { return 0.0; };
   std::function<double(int joint)> drive_error = [](int) { return 0.0; };
+  std::function<bool(int joint)> tells_torque = [](int) { return true; };
 
   void tick(FootWrenches* feet) {
     const double t = kPeriod * ticks_++;
@@ -105,7 +106,7 @@ class Bench {
     for (int j = 0; j < model().joint_count; ++j) {
       sensors_->joints[j].info.valid = 1;
       sensors_->joints[j].position = pose.q[j] + encoder_noise();
-      sensors_->joints[j].torque = torque[6 + j] + drive_error(j);
+      sensors_->joints[j].torque = tells_torque(j) ? torque[6 + j] + drive_error(j) : NAN;
     }
     const GaitdFrame& frame = model().imus[imu];
     const Vector6d bias = dynamics_.frame_bias_acceleration(frame.body, view(frame.origin));
@@ -199,6 +200,44 @@ TEST(FootWrenches, FollowARobotThatMoves) {
     }
     EXPECT_LT(worst, 0.03 * kWeight) << "IMU " << imu;
   }
+}
+
+bool in_leg(int joint) {
+  const std::string name = model().joints[joint].name;
+  return name.starts_with("l_leg_") || name.starts_with("r_leg_");
+}
+
+// Half of the robot moves against the pelvis, wherever that looks.
+TEST(FootWrenches, KnowATrunkAndArmsThatMove) {
+  for (const double yaw : {0.0, 2.0}) {
+    Bench bench([yaw](double t) {
+      Pose pose = bent(0.4);
+      for (int j = 0; j < model().joint_count; ++j) {
+        if (!in_leg(j)) pose.q[j] = 0.1 * std::sin(9.0 * t + j);
+      }
+      pose.orientation = sdk::from_yaw(yaw);
+      return pose;
+    });
+    bench.left[5] = 0.4 * kWeight;
+    FootWrenches feet(model());
+    double worst = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+      bench.tick(&feet);
+      if (i < 100) continue;
+      worst = std::max(worst, std::abs(feet.wrench(GAITD_LEFT)[5] - bench.left[5]));
+    }
+    EXPECT_LT(worst, 0.03 * kWeight) << yaw;
+  }
+}
+
+TEST(FootWrenches, TakeAJointThatTellsNoTorqueForStill) {
+  Bench bench([](double) { return bent(0.4); });
+  bench.tells_torque = [](int joint) { return in_leg(joint); };
+  bench.left[5] = 0.3 * kWeight;
+  FootWrenches feet(model());
+  for (int i = 0; i < 200; ++i) bench.tick(&feet);
+  EXPECT_NEAR(feet.wrench(GAITD_LEFT)[5], bench.left[5], 0.003 * kWeight);
+  EXPECT_NEAR(feet.wrench(GAITD_RIGHT)[5], bench.right[5], 0.003 * kWeight);
 }
 
 TEST(FootWrenches, ShowATouchdownWithinTenMilliseconds) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "walking/test/synthetic_walk.h"
 
@@ -29,12 +30,15 @@ class PushedWalk : public SyntheticWalk {
   // m, sideways, of the middles of the soles of a step that comes back, at least.
   double closest = 1.0;
   int swings = 0;
+  std::vector<int> ahead = {};  // by step: the footsteps that the plan knew in its swing
 
  private:
   void check_feet() {
     const GaitdGaitState& g = gait();
     swings = std::max(swings, static_cast<int>(g.step_index));
     if (g.phase != GAITD_PHASE_SWING || g.step_index <= step_) return;
+    ahead.resize(g.step_index + 1, 0);
+    ahead[g.step_index] = g.footstep_count;
     const double apart = g.adjusted[0].pose.position[1] - g.footholds[g.support].pose.position[1];
     closest = std::min(closest, side_sign(g.next_side) * apart);
   }
@@ -63,6 +67,19 @@ TEST(GaitReturn, EndsWhereItWasToldAfterAPushInTheLastSteps) {
     w.run_for(2.0);
     EXPECT_EQ(w.gait().phase, GAITD_PHASE_STAND);
   }
+}
+
+// A step that is planned as the last one leaves the ICP between the feet.
+TEST(GaitReturn, PlansEveryStepButTheLastWithTheOneThatFollows) {
+  PushedWalk w(4, 0.0, 0.4);
+  w.run_for(0.1);
+  ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3, .first_side = GAITD_RIGHT}).refused());
+  w.run_for(0.5);
+  ASSERT_TRUE(w.run_until_stand());
+  constexpr int kFirst = 6;  // four steps, and one that closes
+  ASSERT_GT(w.swings, kFirst + 1);
+  for (int step = kFirst; step < w.swings; ++step) EXPECT_GE(w.ahead[step], 2) << step;
+  EXPECT_EQ(w.ahead[w.swings], 1);
 }
 
 TEST(GaitReturn, AWalkThatWasNotMovedTakesTheStepsItWasTold) {

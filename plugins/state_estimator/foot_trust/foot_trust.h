@@ -48,6 +48,7 @@ class SwingTare {
     constexpr double kLeast = 0.4;                // of `most`, of which less is none
     const double scale = std::sqrt(model.nominal_com_height / model.gravity);
     const double force = std::max(0.0, wrench[5]);
+    if (variance_ < 0.0) variance_ = std::pow(most / kBeyond, 2);
     const double off = force - mean_;
     mean_ += -std::expm1(-dt / (kMean * scale)) * ((in_air ? force : 0.0) - mean_);
     if (in_air) variance_ += -std::expm1(-dt / (kNoise * scale)) * (off * off - variance_);
@@ -59,9 +60,9 @@ class SwingTare {
   double contact() const { return contact_; }  // N
 
  private:
-  double mean_ = 0.0;      // N
-  double variance_ = 1e6;  // N^2: what the noise is has to be seen first
-  double contact_ = 0.0;
+  double mean_ = 0.0;       // N
+  double variance_ = -1.0;  // N^2; negative: nothing is known of the noise
+  double contact_ = 0.0;    // N
 };
 
 // Whether the gait lifts this foot.

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foot_trust.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace gaitd::plugins {
+namespace {
+
+constexpr double kPeriod = 0.001;  // s
+constexpr double kMost = 40.0;     // N
+
+struct Swing {
+  Swing() {
+    model.nominal_com_height = 0.7;
+    model.gravity = 9.81;
+  }
+  // N, that is left of a force on the foot.
+  double tick(double force, bool in_air = true) {
+    sdk::Vector6d wrench = sdk::Vector6d::Zero();
+    wrench[0] = 0.01 * force;
+    wrench[5] = force;
+    return tare.less(wrench, in_air, kMost, model, kPeriod)[5];
+  }
+  GaitdModel model{};
+  SwingTare tare;
+};
+
+TEST(SwingTare, WhatIsThereInTheAirIsNoLoadAndASuddenForceIs) {
+  Swing swing;
+  double most = 0.0;
+  for (int i = 0; i < 400; ++i) most = std::max(most, swing.tick(25.0 + 10.0 * std::sin(0.02 * i)));
+  EXPECT_EQ(most, 0.0);
+  EXPECT_GT(swing.tick(90.0), kMost);
+  // Once it stands, nothing is taken off for long.
+  for (int i = 0; i < 300; ++i) swing.tick(90.0, false);
+  EXPECT_NEAR(swing.tick(90.0, false), 90.0, 0.5);
+}
+
+TEST(SwingTare, TheLessNoiseTheLighterAContact) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  double last = 0.0;
+  for (const double noise : {0.1, 4.0, 50.0}) {
+    Swing swing;
+    for (int i = 0; i < 3000; ++i) swing.tick(noise * std::abs(normal(random)));
+    EXPECT_GT(swing.tare.contact(), last) << noise;
+    EXPECT_LE(swing.tare.contact(), kMost) << noise;
+    last = swing.tare.contact();
+  }
+  EXPECT_EQ(last, kMost);
+}
+
+TEST(SwingTare, NothingIsKnownOfTheNoiseAtFirst) {
+  Swing swing;
+  EXPECT_EQ(swing.tick(0.9 * kMost), 0.0);
+}
+
+}  // namespace
+}  // namespace gaitd::plugins
