@@ -40,19 +40,20 @@ inline bool pulled(const GaitdStateEstimatorInput& in) {
 class SwingTare {
  public:
   // The wrench of a foot, moment first, less what is none. `in_air`: it swings and touched nothing.
-  // most: N, that is a contact however noisy it is.
-  sdk::Vector6d less(const sdk::Vector6d& wrench, bool in_air, double most, const GaitdModel& model,
-                     double dt) {
+  // least: N, of which less is no contact.
+  sdk::Vector6d less(const sdk::Vector6d& wrench, bool in_air, double least,
+                     const GaitdModel& model, double dt) {
     constexpr double kMean = 0.19, kNoise = 1.1;  // sqrt(h/g), of which it remembers
     constexpr double kBeyond = 6.0;               // standard deviations: a contact
-    constexpr double kLeast = 0.4;                // of `most`, of which less is none
+    constexpr double kMost = 0.12;                // weights: a contact however noisy it is
     const double scale = std::sqrt(model.nominal_com_height / model.gravity);
+    const double most = std::max(least, kMost * model.total_mass * model.gravity);
     const double force = std::max(0.0, wrench[5]);
     if (variance_ < 0.0) variance_ = std::pow(most / kBeyond, 2);
     const double off = force - mean_;
     mean_ += -std::expm1(-dt / (kMean * scale)) * ((in_air ? force : 0.0) - mean_);
     if (in_air) variance_ += -std::expm1(-dt / (kNoise * scale)) * (off * off - variance_);
-    contact_ = std::clamp(kBeyond * std::sqrt(variance_), kLeast * most, most);
+    contact_ = std::clamp(kBeyond * std::sqrt(variance_), least, most);
     const double left = force - mean_;
     const bool none = left <= (in_air ? contact_ : 0.0);
     return none ? sdk::Vector6d(sdk::Vector6d::Zero()) : sdk::Vector6d(left / force * wrench);

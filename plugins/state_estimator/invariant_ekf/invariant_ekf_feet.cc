@@ -34,16 +34,16 @@ void InvariantEkf::read_forces(const GaitdStateEstimatorInput& in, GaitdRobotSta
     Foot& f = feet_[side];
     GaitdFootState& state = out.feet[side];
     const bool sensed = sdk::has_force_sensor(model_.feet[side]);
-    const double most = p_[P::kContactOn] * weight_;
+    const double least = p_[P::kContactOn] * weight_;
     const bool in_air = f.contact == GAITD_CONTACT_NONE && swings(*in.gait, side);
     const sdk::Vector6d wrench =
         sensed ? sdk::sole_wrench(model_.feet[side], in.sensors->feet[side])
-               : f.tare.less(ground_->wrench(side), in_air, most, model_, in.time.period);
+               : f.tare.less(ground_->wrench(side), in_air, least, model_, in.time.period);
     view(state.wrench) = wrench;
     f.normal_force += (sensed ? share : 1.0) * (std::max(0.0, wrench[5]) - f.normal_force);
     const double held = f.contact == GAITD_CONTACT_NONE ? 1.0 : kContactOff;
-    const double least = sensed ? most : f.tare.contact();
-    f.contact = f.normal_force > held * least ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
+    const double enough = sensed ? least : f.tare.contact();
+    f.contact = f.normal_force > held * enough ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
     state.contact = f.contact;
     state.normal_force = f.normal_force;
     state.cop_valid = f.contact != GAITD_CONTACT_NONE && wrench[5] > 0.01 * weight_ ? 1 : 0;

@@ -56,19 +56,19 @@ void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobot
     GaitdFootState& state = out.feet[side];
     Foot& f = feet_[side];
     const bool sensed = sdk::has_force_sensor(foot);
-    const double most = p_[P::kContactOn] * weight_;
+    const double least = p_[P::kContactOn] * weight_;
     const bool in_air = f.contact == GAITD_CONTACT_NONE && swings(*in.gait, side);
     const sdk::Vector6d wrench =
         sensed ? sdk::sole_wrench(foot, sensor)
-               : f.tare.less(ground_->wrench(side), in_air, most, model_, in.time.period);
+               : f.tare.less(ground_->wrench(side), in_air, least, model_, in.time.period);
     view(state.wrench) = wrench;
     const Eigen::Vector3d moment = wrench.head<3>();
     const Eigen::Vector3d force = wrench.tail<3>();
     f.normal_force += (sensed ? blend : 1.0) * (std::max(0.0, force.z()) - f.normal_force);
     state.normal_force = f.normal_force;
     const double held = f.contact == GAITD_CONTACT_NONE ? 1.0 : kContactOff;
-    const double least = sensed ? most : f.tare.contact();
-    f.contact = f.normal_force > held * least ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
+    const double enough = sensed ? least : f.tare.contact();
+    f.contact = f.normal_force > held * enough ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
     state.contact = f.contact;
     state.cop_valid = f.contact != GAITD_CONTACT_NONE && force.z() > 0.01 * weight_ ? 1 : 0;
     if (state.cop_valid != 0) {
