@@ -61,6 +61,7 @@ FootWrenches::FootWrenches(const GaitdModel& model)
   map_.setZero(leg_rows_, kUnknowns);
   weights_.setIdentity(rows, rows);
   mass_matrix_.setZero(rows, model_.joint_count);
+  moved_ = mass_matrix_;
   Dynamics standing(model_);
   const Eigen::Map<const Eigen::VectorXd> q(model_.nominal_position, model_.joint_count);
   standing.update(Vector3d::Zero(), Quaterniond::Identity(), Vector6d::Zero(), q,
@@ -90,11 +91,11 @@ void FootWrenches::set_weights(double bandwidth) {
   bandwidth_ = bandwidth;
   const double pole = 2.0 * M_PI * bandwidth;
   const double jerk = kEncoderError * pole * pole;
-  Eigen::MatrixXd moved = jerk * mass_matrix_;
+  moved_ = jerk * mass_matrix_;
   for (std::size_t j = 0; j < in_leg_.size(); ++j) {
-    if (stands_still(j)) moved.col(static_cast<Eigen::Index>(j)).setZero();
+    if (stands_still(j)) moved_.col(static_cast<Eigen::Index>(j)).setZero();
   }
-  Weights covariance = moved * moved.transpose();
+  Weights covariance = moved_ * moved_.transpose();
   const double weight = model_.total_mass * model_.gravity;
   const double moment = kMomentError * weight * model_.nominal_com_height;
   const double force = kForceError * weight;

@@ -94,7 +94,7 @@ class FootWrenches {
   std::vector<Subtree> subtrees_;
   Eigen::VectorXd q_, rate_, once_, torque_;  // once_: rad/s, low-passed
   // Rows of the residuals, those of the robot in the axes of the pelvis; columns of the joints.
-  Eigen::MatrixXd mass_matrix_;
+  Eigen::MatrixXd mass_matrix_, moved_;  // moved_: times what the encoders err
   Weights weights_;
   double bandwidth_ = 0.0;
   bool begun_ = false;
