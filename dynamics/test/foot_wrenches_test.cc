@@ -280,7 +280,8 @@ TEST(FootWrenches, ShowNoContactOfASwingingLeg) {
       most = std::max(most, feet.wrench(GAITD_LEFT)[5]);
       least = std::min(least, feet.wrench(GAITD_RIGHT)[5]);
     }
-    EXPECT_LT(most, 0.05 * kWeight) << seed;
+    // 0.05 before the drives of trunk and arms, which lose as much, counted too.
+    EXPECT_LT(most, 0.055 * kWeight) << seed;
     EXPECT_GT(least, 0.7 * kWeight) << seed;
   }
 }
