@@ -49,9 +49,10 @@ class SwingTare {
     const double scale = std::sqrt(model.nominal_com_height / model.gravity);
     const double most = std::max(least, kMost * model.total_mass * model.gravity);
     const double force = std::max(0.0, wrench[5]);
-    if (variance_ < 0.0) variance_ = std::pow(most / kBeyond, 2);
-    const double off = force - mean_;
-    mean_ += -std::expm1(-dt / (kMean * scale)) * ((in_air ? force : 0.0) - mean_);
+    // A soft contact must not pass for noise before it is one.
+    contact_ = std::clamp(contact_, least, most);
+    const double off = std::clamp(force - mean_, -0.5 * contact_, 0.5 * contact_);
+    mean_ += -std::expm1(-dt / (kMean * scale)) * (in_air ? off : -mean_);
     if (in_air) variance_ += -std::expm1(-dt / (kNoise * scale)) * (off * off - variance_);
     contact_ = std::clamp(kBeyond * std::sqrt(variance_), least, most);
     const double left = force - mean_;
@@ -61,9 +62,9 @@ class SwingTare {
   double contact() const { return contact_; }  // N
 
  private:
-  double mean_ = 0.0;       // N
-  double variance_ = -1.0;  // N^2; negative: nothing is known of the noise
-  double contact_ = 0.0;    // N
+  double mean_ = 0.0;      // N
+  double variance_ = 0.0;  // N^2
+  double contact_ = 0.0;   // N
 };
 
 // Whether the gait lifts this foot.
