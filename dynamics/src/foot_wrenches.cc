@@ -109,26 +109,20 @@ void FootWrenches::set_weights(double bandwidth) {
   weights_ = covariance.llt().solve(Weights::Identity(covariance.rows(), covariance.cols()));
 }
 
-// Once told, always: a frame that is lost now and then changes no weights.
-void FootWrenches::hear_torques(const GaitdSensors& sensors) {
-  bool more = false;
-  for (int j = 0; j < model_.joint_count; ++j) {
-    const GaitdJointSensor& joint = sensors.joints[j];
-    if (tells_torque_[static_cast<std::size_t>(j)] || !sdk::usable(joint) ||
-        !std::isfinite(joint.torque)) {
-      continue;
-    }
-    more = tells_torque_[static_cast<std::size_t>(j)] = true;
-  }
-  if (more) set_weights(bandwidth_);
-}
-
-void FootWrenches::read_joints(const GaitdSensors& sensors, double share, double dt) {
+// Whether a joint told its torque for the first time. Once told, always: a frame that is lost now
+// and then changes no weights.
+bool FootWrenches::read_joints(const GaitdSensors& sensors, double share, double dt) {
+  bool told = false;
   for (int j = 0; j < model_.joint_count; ++j) {
     const GaitdJointSensor& joint = sensors.joints[j];
     const bool in_leg = in_leg_[static_cast<std::size_t>(j)];
     if (in_leg) rate_[j] = 0.0;
     if (!sdk::usable(joint)) continue;
+    if (std::isfinite(joint.torque)) {
+      told |= !tells_torque_[static_cast<std::size_t>(j)];
+      tells_torque_[static_cast<std::size_t>(j)] = true;
+      torque_[j] = joint.torque;
+    }
     const double limit = kFastest * model_.joints[j].velocity_limit;
     const double rate = begun_ ? std::clamp((joint.position - q_[j]) / dt, -limit, limit) : 0.0;
     if (in_leg) {
@@ -138,8 +132,8 @@ void FootWrenches::read_joints(const GaitdSensors& sensors, double share, double
       rate_[j] += share * (once_[j] - rate_[j]);
     }
     q_[j] = joint.position;
-    if (std::isfinite(joint.torque)) torque_[j] = joint.torque;
   }
+  return told;
 }
 
 // Momentum of the whole robot and what gravity changes it by.
@@ -215,10 +209,8 @@ void FootWrenches::gather_joint(int row, int joint_index) {
 
 void FootWrenches::update(const Motion& motion, double bandwidth, double dt,
                           const GaitdSensors& sensors) {
-  if (bandwidth != bandwidth_) set_weights(bandwidth);
-  hear_torques(sensors);
   const double share = -std::expm1(-2.0 * M_PI * bandwidth * dt);
-  read_joints(sensors, share, dt);
+  if (read_joints(sensors, share, dt) || bandwidth != bandwidth_) set_weights(bandwidth);
   const sdk::ImuPlace imu = sdk::imu_place(model_, motion.imu, q_.data(), rate_.data());
   const Vector3d rate = motion.rate - imu.rate;
   Vector6d twist;  // with which the point of the IMU, the origin, is at rest

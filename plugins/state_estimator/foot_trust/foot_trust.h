@@ -7,6 +7,7 @@
 
 #include "gaitd/abi/plugin.h"
 #include "gaitd/sdk/parameter.h"
+#include "gaitd/sdk/sensors.h"
 #include "gaitd/sdk/views.h"
 
 namespace gaitd::plugins {
@@ -71,5 +72,37 @@ class SwingTare {
 inline bool swings(const GaitdGaitState& gait, int side) {
   return gait.phase == GAITD_PHASE_SWING && gait.next_side == side;
 }
+
+// What a foot carries, and whether it touches anything.
+struct FootLoad {
+  int contact = GAITD_CONTACT_NONE;
+  double normal_force = 0.0;  // N, filtered
+  SwingTare tare;
+
+  // Writes wrench, force, contact and the CoP in the sole. `computed`: the wrench of a foot without
+  // force sensor. least: N, of which less is no contact. filter: share of the force sensor's
+  // reading that a tick takes over. weight: N.
+  void read(const GaitdStateEstimatorInput& in, const GaitdModel& model, int side,
+            const sdk::Vector6d* computed, double least, double filter, double weight,
+            GaitdFootState& state) {
+    const bool sensed = sdk::has_force_sensor(model.feet[side]);
+    const bool in_air = contact == GAITD_CONTACT_NONE && swings(*in.gait, side);
+    const sdk::Vector6d wrench = sensed
+                                     ? sdk::sole_wrench(model.feet[side], in.sensors->feet[side])
+                                     : tare.less(*computed, in_air, least, model, in.time.period);
+    sdk::view(state.wrench) = wrench;
+    normal_force += (sensed ? filter : 1.0) * (std::max(0.0, wrench[5]) - normal_force);
+    const double held = contact == GAITD_CONTACT_NONE ? 1.0 : kContactOff;
+    const double enough = sensed ? least : tare.contact();
+    contact = normal_force > held * enough ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
+    state.contact = contact;
+    state.normal_force = normal_force;
+    state.cop_valid = contact != GAITD_CONTACT_NONE && wrench[5] > 0.01 * weight ? 1 : 0;
+    if (state.cop_valid != 0) {
+      state.cop[0] = -wrench[1] / wrench[5];
+      state.cop[1] = wrench[0] / wrench[5];
+    }
+  }
+};
 
 }  // namespace gaitd::plugins

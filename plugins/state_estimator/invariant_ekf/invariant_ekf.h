@@ -71,13 +71,10 @@ class InvariantEkf {
 
  private:
   enum Point { kToe, kHeel };
-  struct Foot {
+  struct Foot : FootLoad {
     bool trusted = false;
-    double time_above = 0.0;    // s, load share above the threshold
-    double time_trusted = 0.0;  // s
-    int contact = GAITD_CONTACT_NONE;
-    double normal_force = 0.0;  // N, filtered
-    SwingTare tare;
+    double time_above = 0.0;                           // s, load share above the threshold
+    double time_trusted = 0.0;                         // s
     std::array<Eigen::Vector3d, 2> points;             // m, sole frame, by Point
     Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  // m, W: sole origin when last trusted
     double anchor_yaw = 0.0;

@@ -30,27 +30,10 @@ double per_sample(double density, double dt) { return density / std::sqrt(dt); }
 
 void InvariantEkf::read_forces(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
   const double share = 1.0 - std::exp(-2.0 * M_PI * p_[P::kForceFilter] * in.time.period);
+  const double least = p_[P::kContactOn] * weight_;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    Foot& f = feet_[side];
-    GaitdFootState& state = out.feet[side];
-    const bool sensed = sdk::has_force_sensor(model_.feet[side]);
-    const double least = p_[P::kContactOn] * weight_;
-    const bool in_air = f.contact == GAITD_CONTACT_NONE && swings(*in.gait, side);
-    const sdk::Vector6d wrench =
-        sensed ? sdk::sole_wrench(model_.feet[side], in.sensors->feet[side])
-               : f.tare.less(ground_->wrench(side), in_air, least, model_, in.time.period);
-    view(state.wrench) = wrench;
-    f.normal_force += (sensed ? share : 1.0) * (std::max(0.0, wrench[5]) - f.normal_force);
-    const double held = f.contact == GAITD_CONTACT_NONE ? 1.0 : kContactOff;
-    const double enough = sensed ? least : f.tare.contact();
-    f.contact = f.normal_force > held * enough ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
-    state.contact = f.contact;
-    state.normal_force = f.normal_force;
-    state.cop_valid = f.contact != GAITD_CONTACT_NONE && wrench[5] > 0.01 * weight_ ? 1 : 0;
-    if (state.cop_valid != 0) {
-      state.cop[0] = -wrench[1] / wrench[5];
-      state.cop[1] = wrench[0] / wrench[5];
-    }
+    feet_[side].read(in, model_, side, ground_ ? &ground_->wrench(side) : nullptr, least, share,
+                     weight_, out.feet[side]);
   }
 }
 

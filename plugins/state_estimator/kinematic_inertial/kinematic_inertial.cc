@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "gaitd/sdk/imu_place.h"
 #include "gaitd/sdk/sensors.h"
@@ -101,7 +102,7 @@ void KinematicInertial::set_state(const GaitdStateEstimatorState& s) {
   time_unsupported_ = 0.0;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     Foot& foot = feet_[side];
-    foot = {.normal_force = foot.normal_force};
+    foot.normal_force = std::exchange(foot, Foot{}).normal_force;
     foot.contact = s.contact[side];
     foot.anchor = view(s.anchor[side]);
     foot.anchor_orientation = sdk::from_yaw(s.anchor_yaw[side]);

@@ -63,13 +63,10 @@ class KinematicInertial {
   // 1/s: what the drives shake the IMU by averages out.
   static constexpr double kShakingPole = 50.0;
 
-  struct Foot {
+  struct Foot : FootLoad {
     bool trusted = false;
-    double time_above = 0.0;    // s, load share above the threshold
-    double time_trusted = 0.0;  // s
-    int contact = GAITD_CONTACT_NONE;
-    double normal_force = 0.0;  // N, filtered
-    SwingTare tare;
+    double time_above = 0.0;                           // s, load share above the threshold
+    double time_trusted = 0.0;                         // s
     Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  // m, W: the anchored point of the sole
     Eigen::Vector3d anchored_point = Eigen::Vector3d::Zero();  // m, sole frame
     Eigen::Quaterniond anchor_orientation = Eigen::Quaterniond::Identity();

@@ -48,37 +48,17 @@ double low_pass(double hertz, double dt) { return 1.0 - std::exp(-2.0 * M_PI * h
 
 void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobotState& out) {
   const double blend = low_pass(p_[P::kForceFilter], in.time.period);
+  const double least = p_[P::kContactOn] * weight_;
   Eigen::Vector2d weighted = Eigen::Vector2d::Zero();
   double total = 0.0;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    const GaitdFoot& foot = model_.feet[side];
-    const GaitdFootForceSensor& sensor = in.sensors->feet[side];
     GaitdFootState& state = out.feet[side];
-    Foot& f = feet_[side];
-    const bool sensed = sdk::has_force_sensor(foot);
-    const double least = p_[P::kContactOn] * weight_;
-    const bool in_air = f.contact == GAITD_CONTACT_NONE && swings(*in.gait, side);
-    const sdk::Vector6d wrench =
-        sensed ? sdk::sole_wrench(foot, sensor)
-               : f.tare.less(ground_->wrench(side), in_air, least, model_, in.time.period);
-    view(state.wrench) = wrench;
-    const Eigen::Vector3d moment = wrench.head<3>();
-    const Eigen::Vector3d force = wrench.tail<3>();
-    f.normal_force += (sensed ? blend : 1.0) * (std::max(0.0, force.z()) - f.normal_force);
-    state.normal_force = f.normal_force;
-    const double held = f.contact == GAITD_CONTACT_NONE ? 1.0 : kContactOff;
-    const double enough = sensed ? least : f.tare.contact();
-    f.contact = f.normal_force > held * enough ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
-    state.contact = f.contact;
-    state.cop_valid = f.contact != GAITD_CONTACT_NONE && force.z() > 0.01 * weight_ ? 1 : 0;
-    if (state.cop_valid != 0) {
-      state.cop[0] = -moment.y() / force.z();
-      state.cop[1] = moment.x() / force.z();
-    }
+    feet_[side].read(in, model_, side, ground_ ? &ground_->wrench(side) : nullptr, least, blend,
+                     weight_, state);
     view(state.cop_world) = sole_point(side, {state.cop[0], state.cop[1], 0.0});
     if (state.cop_valid != 0) {
-      weighted += f.normal_force * view(state.cop_world).head<2>();
-      total += f.normal_force;
+      weighted += state.normal_force * view(state.cop_world).head<2>();
+      total += state.normal_force;
     }
   }
   if (total > 0.0) last_cop_ = weighted / total;

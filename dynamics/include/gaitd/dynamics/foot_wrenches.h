@@ -76,8 +76,7 @@ class FootWrenches {
   };
 
   void set_weights(double bandwidth);
-  void hear_torques(const GaitdSensors& sensors);
-  void read_joints(const GaitdSensors& sensors, double share, double dt);
+  bool read_joints(const GaitdSensors& sensors, double share, double dt);
   bool stands_still(std::size_t joint) const { return !in_leg_[joint] && !tells_torque_[joint]; }
   void gather_robot(const Eigen::Vector3d& gravity);
   void gather_joint(int row, int joint);
