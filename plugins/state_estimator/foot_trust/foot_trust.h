@@ -83,13 +83,12 @@ struct FootLoad {
   // force sensor. least: N, of which less is no contact. filter: share of the force sensor's
   // reading that a tick takes over. weight: N.
   void read(const GaitdStateEstimatorInput& in, const GaitdModel& model, int side,
-            const sdk::Vector6d* computed, double least, double filter, double weight,
+            const sdk::Vector6d& computed, double least, double filter, double weight,
             GaitdFootState& state) {
     const bool sensed = sdk::has_force_sensor(model.feet[side]);
     const bool in_air = contact == GAITD_CONTACT_NONE && swings(*in.gait, side);
-    const sdk::Vector6d wrench = sensed
-                                     ? sdk::sole_wrench(model.feet[side], in.sensors->feet[side])
-                                     : tare.less(*computed, in_air, least, model, in.time.period);
+    const sdk::Vector6d wrench = sensed ? sdk::sole_wrench(model.feet[side], in.sensors->feet[side])
+                                        : tare.less(computed, in_air, least, model, in.time.period);
     sdk::view(state.wrench) = wrench;
     normal_force += (sensed ? filter : 1.0) * (std::max(0.0, wrench[5]) - normal_force);
     const double held = contact == GAITD_CONTACT_NONE ? 1.0 : kContactOff;

@@ -32,8 +32,9 @@ void InvariantEkf::read_forces(const GaitdStateEstimatorInput& in, GaitdRobotSta
   const double share = 1.0 - std::exp(-2.0 * M_PI * p_[P::kForceFilter] * in.time.period);
   const double least = p_[P::kContactOn] * weight_;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    feet_[side].read(in, model_, side, ground_ ? &ground_->wrench(side) : nullptr, least, share,
-                     weight_, out.feet[side]);
+    const sdk::Vector6d computed =
+        ground_ ? ground_->wrench(side) : sdk::Vector6d(sdk::Vector6d::Zero());
+    feet_[side].read(in, model_, side, computed, least, share, weight_, out.feet[side]);
   }
 }
 

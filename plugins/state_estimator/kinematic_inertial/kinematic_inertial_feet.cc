@@ -53,8 +53,9 @@ void KinematicInertial::read_feet(const GaitdStateEstimatorInput& in, GaitdRobot
   double total = 0.0;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     GaitdFootState& state = out.feet[side];
-    feet_[side].read(in, model_, side, ground_ ? &ground_->wrench(side) : nullptr, least, blend,
-                     weight_, state);
+    const sdk::Vector6d computed =
+        ground_ ? ground_->wrench(side) : sdk::Vector6d(sdk::Vector6d::Zero());
+    feet_[side].read(in, model_, side, computed, least, blend, weight_, state);
     view(state.cop_world) = sole_point(side, {state.cop[0], state.cop[1], 0.0});
     if (state.cop_valid != 0) {
       weighted += state.normal_force * view(state.cop_world).head<2>();
