@@ -53,7 +53,8 @@ SampleWalk::SampleWalk(const GaitdModel& model)
   gait_.reset(set_.robot);
   set_.gait = gait_.state();
   objectives_.reset(set_.robot, set_.gait);
-  planner_.update(kPeriod, set_.robot, set_.gait, {}, set_.plan);
+  planner_.update(kPeriod, set_.robot, set_.gait, walking::CmpOffsets(model_.nominal_com_height),
+                  set_.plan);
 }
 
 // Every kind of motion that the robot is able to.
@@ -201,7 +202,8 @@ void SampleWalk::decide() {
   }
   gait_.update(kPeriod, set_.robot, set_.plan, set_.toe_off, set_.adjustment);
   set_.gait = gait_.state();
-  planner_.update(kPeriod, set_.robot, set_.gait, {}, set_.plan);
+  planner_.update(kPeriod, set_.robot, set_.gait, walking::CmpOffsets(model_.nominal_com_height),
+                  set_.plan);
   GaitdStepAdjustment& a = set_.adjustment;
   const double omega = set_.gait.omega;
   a.kappa = 1.0;

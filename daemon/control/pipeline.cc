@@ -287,6 +287,7 @@ CommandReply Pipeline::execute(const Command& command) {
   const bool steps = command.type == CommandType::kWalk ||
                      command.type == CommandType::kFootsteps ||
                      command.type == CommandType::kGoto ||
+                     (command.type == CommandType::kResume && gait_.state().footstep_count > 0) ||
                      (command.type == CommandType::kDrive && !command.drive.ends);
   if (steps && handholds_.busy()) {
     return refused(command, data_.time.tick,

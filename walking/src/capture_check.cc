@@ -52,7 +52,7 @@ CaptureCheck::Room CaptureCheck::room(const GaitdFoothold& stance, const GaitdFo
   gait.footholds[gait.support] = stance;
   gait.footstep_count = std::min(count, kAhead);
   for (int i = 0; i < gait.footstep_count; ++i) gait.adjusted[i] = steps[i];
-  const CmpOffsets offsets;
+  const CmpOffsets offsets(model_.nominal_com_height);
   IcpTrajectory plan;
   plan.build(model_, gait, offsets);
   const IcpTrajectory::Sample end = plan.evaluate(0.0);

@@ -38,6 +38,11 @@ void FootContact::land(double off) {
   high_as_told_ = std::abs(off) < kHighAsTold;
 }
 
+void FootContact::doubt() {
+  reset();
+  high_as_told_ = false;
+}
+
 void FootContact::reset() {
   lie_.reset();
   share_ = 1.0;

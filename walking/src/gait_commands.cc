@@ -97,7 +97,7 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
   for (int side = 0; side < 2; ++side) {
     feet[side].position[2] -= height_offset_;
     // On the commanded way, also where a push has moved a foot off it.
-    if (kept > 0 && goals_[side].known) feet[side] = goals_[side].step.pose;
+    if (kept > 0 && goals_[side].stood_on) feet[side] = goals_[side].step.pose;
   }
   for (int i = 0; i < kept; ++i) feet[queue_[i].side] = queue_[i].pose;
   int first = walk.first_side;
@@ -140,7 +140,7 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
       r.refused()) {
     return r;
   }
-  queue_.truncate(kept);
+  keep_first(kept);
   returns_left_ = kMostReturning;
   drive_.end();
   FootstepGenerator generator(walk, middle, first, width, least);
@@ -160,7 +160,9 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
   }
   // A transfer has chosen its foot: its footstep may be replaced by one of the same side only.
   const bool committed = state_.phase == GAITD_PHASE_TRANSFER && state_.transfer_final == 0;
-  const int kept = replace ? std::min(first_free(), queue_.size()) : left_by_another();
+  const int kept = !replace       ? left_by_another()
+                   : recovering() ? begun()  // that step is not to be had otherwise
+                                  : std::min(first_free(), queue_.size());
   if (count < 1 && !(replace && !committed))
     return refuse("steps: at least one expected, got none");
   if (Refusal r = check_room(count - (queue_.size() - kept)); r.refused()) return r;
@@ -186,7 +188,7 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
     expected = other_side(step.side);
   }
   if (Refusal r = check_capture(steps, count, kept, count); r.refused()) return r;
-  queue_.truncate(kept);
+  keep_first(kept);
   returns_left_ = kMostReturning;
   drive_.end();
   for (int i = 0; i < count; ++i) {
@@ -264,6 +266,12 @@ Refusal GaitMachine::stop() {
   drive_.end();
   returns_left_ = 0;
   state_.paused = 0;
+  if (recovering()) {  // it catches itself and closes its feet: that is how it comes to a stand
+    keep_first(own_steps_);
+    publish_footsteps();
+    changed();
+    return {};
+  }
   const int kept = std::min(first_free(), queue_.size());
   GaitdPose stance;
   int side;
@@ -275,13 +283,13 @@ Refusal GaitMachine::stop() {
     stance = state_.footholds[other_side(side)].pose;
     stance.position[2] -= height_offset_;
   } else {
-    queue_.truncate(0);
+    keep_first(0);
     publish_footsteps();
     changed();
     return {};
   }
   const GaitdFootstep current = queue_[0];
-  queue_.truncate(kept);
+  keep_first(kept);
   GaitdFootstep step = closing_step(stance, side);
   GaitdPose standing = state_.footholds[side].pose;
   standing.position[2] -= height_offset_;
@@ -309,7 +317,7 @@ Refusal GaitMachine::abort() {
   drive_.end();
   returns_left_ = 0;
   state_.paused = 0;
-  queue_.truncate(begun());
+  keep_first(begun());
   publish_footsteps();
   changed();
   return {};

@@ -72,7 +72,7 @@ GaitdFootstep GaitMachine::drive_step(const GaitdPose& middle, int side,
 }
 
 void GaitMachine::drive_on(int kept, int landed, const Eigen::Vector3d& missed) {
-  queue_.truncate(kept);
+  keep_first(kept);
   returns_left_ = 0;  // a velocity leads nowhere
   GaitdPose feet[2] = {state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose};
   for (GaitdPose& foot : feet) foot.position[2] -= height_offset_;

@@ -32,13 +32,6 @@ constexpr double kReadyFor = 0.01;  // s, that it has to last: a measured ICP is
 // ICP closer than this to the edge of both feet is not held by them (m).
 constexpr double kHeldMargin = 0.01;
 
-// Back into the landing region of the footstep, where it has one.
-void keep_in_region(GaitdFootstep& step) {
-  if (step.region_count < 3) return;
-  auto position = sdk::view(step.pose.position).head<2>();
-  position = landing_region(step).closest_point(position);
-}
-
 }  // namespace
 
 GaitMachine::GaitMachine(const GaitdModel& model)
@@ -71,6 +64,13 @@ GaitMachine::GaitMachine(const GaitdModel& model)
   }
 }
 
+void GaitMachine::keep_first(int kept) {
+  queue_.truncate(kept);
+  own_steps_ = std::min(own_steps_, kept);
+  if (kept == 0) path_offset_.setZero();
+  for (int i = 2 * kept; i < StepTiming::kPhases; ++i) time_changes_[i] = 0.0;
+}
+
 void GaitMachine::set_parameter(int index, double value) { parameters_.set(index, value); }
 
 void GaitMachine::reset(const GaitdRobotState& robot) {
@@ -81,7 +81,7 @@ void GaitMachine::reset(const GaitdRobotState& robot) {
   time_shift_ = 0.0;
   height_offset_ = 0.0;
   time_unheld_ = 0.0;
-  recovering_ = false;
+  own_steps_ = 0;
   state_.step_index = 0;
   state_.paused = 0;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
@@ -114,7 +114,7 @@ void GaitMachine::begin_stand() {
 }
 
 void GaitMachine::begin_transfer(const GaitdRobotState& robot, int trailing_side) {
-  const bool final = queue_.size() == 0 || state_.paused != 0;
+  const bool final = queue_.size() == 0 || (state_.paused != 0 && !recovering());
   state_.phase = GAITD_PHASE_TRANSFER;
   state_.support = GAITD_BOTH;
   state_.trailing_side = trailing_side;
@@ -128,7 +128,7 @@ void GaitMachine::begin_transfer(const GaitdRobotState& robot, int trailing_side
     state_.next_side = GAITD_BOTH;
   } else {
     state_.phase_duration = queue_[0].transfer_duration;
-    if (trailing_side == GAITD_BOTH && !recovering_) {
+    if (trailing_side == GAITD_BOTH && !recovering()) {
       state_.phase_duration = std::max(state_.phase_duration, kInitialTransfer);
     }
     state_.next_side = queue_[0].side;
@@ -143,7 +143,7 @@ void GaitMachine::begin_transfer(const GaitdRobotState& robot, int trailing_side
 void GaitMachine::time_step(const GaitdRobotState& robot) {
   const bool wanted =
       parameters_.flag(Gait::kStepTiming) && state_.mode == GAITD_MODE_WALK_STRAIGHT;
-  if (!wanted || recovering_) return;
+  if (!wanted || recovering()) return;
   time_changes_ = timing_.solve(state_, sdk::view(robot.com).head<2>(), {});
   state_.phase_duration += time_changes_[0];
   publish_footsteps();
@@ -183,15 +183,20 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   sdk::view(landed.pose.position) = sdk::view(robot.feet[side].position);
   state_.footholds[side] = told_[side] = bearing_of(model_, landed);
   state_.early_contact = early ? 1 : 0;
-  if (!recovering_) goals_[side] = {queue_[0], true};
+  const bool own = recovering();
+  if (own) {
+    contacts_[side].doubt();
+    goals_[side].stood_on = false;
+    --own_steps_;
+  } else {
+    goals_[side] = {queue_[0], true, !drive_.active()};
+  }
   queue_.pop();
   path_offset_.setZero();
-  if (queue_.size() > 0) path_offset_ = following(shift_, queue_[0], landed.pose);
-  if (recovering_) close_after_recovery();
-  if (drive_.active() && !recovering_) {
-    path_offset_.setZero();  // the way begins anew where the foot is
-    drive_on(0, side, missed);
-  }
+  if (queue_.size() > 0) path_offset_ = offset_of(0, shift_, landed.pose);
+  if (recovering() && queue_.size() == 1 && closed()) keep_first(0);
+  // The way of a velocity begins anew where the foot is.
+  if (drive_.active() && !own) drive_on(0, side, missed);
   time_shift_ = 0.0;
   apply_pending_mode();
   begin_transfer(robot, other_side(side));
@@ -320,7 +325,6 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
         } else if (over && comes_back()) {
           begin_return(robot);
         } else if (over) {
-          recovering_ = false;
           begin_stand();
         }
         break;
@@ -351,7 +355,8 @@ void GaitMachine::update(double dt, const GaitdRobotState& robot, const GaitdIcp
 
 void GaitMachine::publish_footsteps() {
   // Paused on the way: the plan ends after the step that has begun.
-  const int visible = state_.paused != 0 && walking() ? 1 : GAITD_MAX_FOOTSTEPS;
+  const int visible =
+      state_.paused != 0 && walking() ? std::max(own_steps_, 1) : GAITD_MAX_FOOTSTEPS;
   state_.footstep_count = std::min<int>(queue_.size(), visible);
   // The way goes on from where the last foot really landed and comes back to the commanded one.
   Eigen::Vector3d offset = state_.phase == GAITD_PHASE_SWING ? shift_ : path_offset_;
@@ -360,10 +365,9 @@ void GaitMachine::publish_footsteps() {
     state_.adjusted[i] = queue_[i];
     auto position = sdk::view(state_.adjusted[i].pose.position);
     position += offset;
-    if (i > 0) keep_in_region(state_.adjusted[i]);
     position.z() += height_offset_;
     if (i + 1 < state_.footstep_count) {
-      offset = following(offset, queue_[i + 1], state_.adjusted[i].pose);
+      offset = offset_of(i + 1, offset, state_.adjusted[i].pose);
     }
     if (2 * i + 1 < StepTiming::kPhases) {
       state_.adjusted[i].transfer_duration += time_changes_[2 * i];

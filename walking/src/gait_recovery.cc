@@ -19,7 +19,6 @@ constexpr double kSideways = 1.7;    // away sideways by this much more than alo
 // Heights of the CoM, of the ICP past the edge of the feet at which the robot steps: an ICP at the
 // edge comes back as often as not.
 constexpr double kPastEdge = 0.017;
-constexpr double kClosedGap = 0.05;  // m, feet that are as good as side by side
 
 }  // namespace
 
@@ -89,27 +88,27 @@ bool GaitMachine::recover(double dt, const GaitdRobotState& robot) {
   const int side = recovery_side(robot, away);
   GaitdFootstep step = recovery_step(robot, side);
   complete(step);
-  // Footsteps that waited for a resume begin from a place where the robot no longer is.
-  queue_.truncate(0);
+  GaitdPose landed = step.pose;
+  landed.position[2] += height_offset_;
+  GaitdFootstep closing = closing_step(landed, other_side(side));
+  closing.pose.position[2] -= height_offset_;
+  complete(closing);
+  // Footsteps that waited for a resume begin from a place where the robot no longer is. The pause
+  // lasts: what is sent now waits, too.
+  keep_first(0);
   queue_.push(step);
-  state_.paused = 0;
-  path_offset_.setZero();
-  recovering_ = true;
+  queue_.push(closing);
+  own_steps_ = queue_.size();
+  // A foot that is pushed over its own edge has not found an edge of the ground.
+  for (FootContact& contact : contacts_) contact.doubt();
   begin_transfer(robot, GAITD_BOTH);
   return true;
 }
 
-void GaitMachine::close_after_recovery() {
-  if (queue_.size() > 0) return;  // the operator has sent others
-  const int landed = state_.next_side;
-  GaitdPose stance = state_.footholds[landed].pose;
-  GaitdFootstep step = closing_step(stance, other_side(landed));
-  const GaitdPose& standing = state_.footholds[other_side(landed)].pose;
-  const Eigen::Vector3d gap = sdk::view(standing.position) - sdk::view(step.pose.position);
-  if (gap.head<2>().norm() < kClosedGap) return;
-  step.pose.position[2] = stance.position[2] - height_offset_;
-  complete(step);
-  queue_.push(step);
+bool GaitMachine::closed() const {
+  const Eigen::Vector3d goal = sdk::view(queue_[0].pose.position) + path_offset_;
+  const Eigen::Vector3d gap = sdk::view(state_.footholds[queue_[0].side].pose.position) - goal;
+  return gap.head<2>().norm() < arrived();
 }
 
 }  // namespace gaitd::walking

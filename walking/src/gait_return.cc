@@ -13,6 +13,14 @@ namespace {
 constexpr double kMostBack = 0.1274;
 constexpr double kArrived = 0.2;  // nominal distances of the feet
 
+// m, of `offset` what leaves `next` in its landing region, where it has one.
+Eigen::Vector3d in_region(const GaitdFootstep& next, const Eigen::Vector3d& offset) {
+  if (next.region_count < 3) return offset;
+  const Eigen::Vector2d told = sdk::view(next.pose.position).head<2>();
+  const Eigen::Vector2d there = landing_region(next).closest_point(told + offset.head<2>());
+  return {there.x() - told.x(), there.y() - told.y(), offset.z()};
+}
+
 }  // namespace
 
 // Coming back at once would take steps that are too long for the legs.
@@ -36,6 +44,13 @@ Eigen::Vector3d GaitMachine::following(const Eigen::Vector3d& shift, const Gaitd
   return offset;
 }
 
+// The step that closes the feet is beside the one that caught the robot, wherever that landed.
+Eigen::Vector3d GaitMachine::offset_of(int place, const Eigen::Vector3d& shift,
+                                       const GaitdPose& stance) const {
+  const GaitdFootstep& next = queue_[place];
+  return place < own_steps_ ? shift : in_region(next, following(shift, next, stance));
+}
+
 Eigen::Vector3d GaitMachine::astray(int side) const {
   Eigen::Vector3d off =
       sdk::view(state_.footholds[side].pose.position) - sdk::view(goals_[side].step.pose.position);
@@ -44,8 +59,8 @@ Eigen::Vector3d GaitMachine::astray(int side) const {
 }
 
 bool GaitMachine::comes_back() const {
-  if (returns_left_ <= 0 || queue_.size() > 0 || state_.mode != pending_mode_ ||
-      state_.mode == GAITD_MODE_STAND) {
+  if (returns_left_ <= 0 || queue_.size() > 0 || state_.paused != 0 ||
+      state_.mode != pending_mode_ || state_.mode == GAITD_MODE_STAND) {
     return false;
   }
   // On feet that bear on an edge, steps in place lead further away than they bring back.
@@ -69,14 +84,13 @@ void GaitMachine::begin_return(const GaitdRobotState& robot) {
     complete(step);
     queue_.push(step);
     --returns_left_;
-    offset = following(offset, step, stance);
+    offset = in_region(step, following(offset, step, stance));
     if (queue_.size() == 1) path_offset_ = offset;
     away[side] = offset.norm();
     stance = step.pose;
     sdk::view(stance.position) += offset;
     side = other_side(side);
   }
-  recovering_ = false;
   begin_transfer(robot, GAITD_BOTH);
 }
 

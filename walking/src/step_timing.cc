@@ -72,7 +72,7 @@ StepTiming::Excess StepTiming::evaluate(const Eigen::Vector2d& com, const Timing
     gait_.adjusted[1].transfer_duration = durations_[2] + changes[2];
     gait_.adjusted[1].swing_duration = durations_[3] + changes[3];
   }
-  trajectory_.build(model_, gait_, CmpOffsets{});
+  trajectory_.build(model_, gait_, CmpOffsets(model_.nominal_com_height));
   std::array<Eigen::Vector2d, kPhases> at;
   trajectory_.com_at_ends(com, at);
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "walking/test/synthetic_walk.h"
@@ -296,6 +297,41 @@ TEST(GaitCommands, AModeChangesAtTheNextTouchdownWhenWalking) {
   }
   EXPECT_EQ(w.gait().mode, GAITD_MODE_WALK_STRAIGHT);
   EXPECT_EQ(w.gait().step_index, 3);
+}
+
+// Where the feet really are says nothing of how far the footsteps before were moved.
+TEST(GaitCommands, WhatComesInThePlaceOfAMovedFootstepIsNotMoved) {
+  for (const char* how : {"stop", "replace", "pause, stop, walk"}) {
+    SCOPED_TRACE(how);
+    SyntheticWalk w;
+    walk(w);
+    ASSERT_TRUE(w.run_until_fraction(2, 0.3));
+    w.adjustment.active = 1;
+    w.adjustment.shift[0] = 0.1;
+    w.adjustment.shift[1] = 0.05 * side_sign(w.gait().next_side);
+    const std::string_view command = how;
+    if (command == "pause, stop, walk") {
+      ASSERT_FALSE(w.machine.pause().refused());
+      ASSERT_TRUE(w.run_until([&] { return w.gait().phase == GAITD_PHASE_TRANSFER; }, 2.0));
+      w.adjustment = {};
+      ASSERT_TRUE(w.run_until_stand());
+      ASSERT_FALSE(w.machine.stop().refused());
+      walk(w, 1, 0.2);
+    } else {
+      ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 3));
+      w.adjustment = {};
+      w.run_for(0.05);
+      const GaitdFootstep next = w.gait().commanded[0];
+      if (command == "stop") ASSERT_FALSE(w.machine.stop().refused());
+      if (command == "replace") ASSERT_FALSE(w.machine.footsteps(&next, 1, true).refused());
+    }
+    w.tick();
+    const GaitdFootstep& moved = w.gait().adjusted[0];
+    const GaitdFootstep& commanded = w.gait().commanded[0];
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_NEAR(moved.pose.position[k], commanded.pose.position[k], 1e-12) << k;
+    }
+  }
 }
 
 TEST(GaitCommands, TheModeStandStopsAWalk) {

@@ -358,6 +358,8 @@ TEST(GaitMachine, FootstepsAheadStayInTheirLandingRegions) {
   w.adjustment.shift[0] = 0.08;
   w.tick();
   EXPECT_NEAR(w.gait().adjusted[1].pose.position[0], x + 0.01, 1e-12);
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 2));
+  EXPECT_NEAR(w.gait().adjusted[0].pose.position[0], x + 0.01, 1e-12);
 }
 
 TEST(GaitMachine, ATransferIsShortenedByTheAdjuster) {

@@ -232,10 +232,10 @@ TEST(IcpReference, AnotherInstanceContinuesFromItsState) {
   bool handed_over = false;
   double difference = 0.0;
   w.planner = [&](const GaitdRobotState& r, const GaitdGaitState& g, GaitdIcpPlan& p) {
-    a.update(w.dt, r, g, {}, p);
+    a.update(w.dt, r, g, CmpOffsets(atlas().nominal_com_height), p);
     if (!handed_over) return;
     GaitdIcpPlan other{};
-    b.update(w.dt, r, g, {}, other);
+    b.update(w.dt, r, g, CmpOffsets(atlas().nominal_com_height), other);
     difference = std::max(
         difference,
         (Eigen::Vector2d(sdk::view(p.icp)) - Eigen::Vector2d(sdk::view(other.icp))).norm());

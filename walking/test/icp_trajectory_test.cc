@@ -27,7 +27,7 @@ GaitdGaitState in_swing(double length = 0.4, int steps = 6) {
 
 IcpTrajectory built(const GaitdGaitState& gait) {
   IcpTrajectory trajectory;
-  trajectory.build(atlas(), gait, {});
+  trajectory.build(atlas(), gait, CmpOffsets(atlas().nominal_com_height));
   return trajectory;
 }
 
@@ -53,8 +53,10 @@ TEST(IcpTrajectory, TheCmpMovesLinearlyFromEntryToExitOfTheStanceFoot) {
   const IcpTrajectory t = built(gait);
   const int side = gait.support;
   const GaitdFoothold landing = foothold_of(atlas(), gait.adjusted[0]);
-  const Eigen::Vector2d entry = entry_cmp(gait.footholds[side], side, {});
-  const Eigen::Vector2d exit = exit_cmp(gait.footholds[side], side, &landing, {});
+  const Eigen::Vector2d entry =
+      entry_cmp(gait.footholds[side], side, CmpOffsets(atlas().nominal_com_height));
+  const Eigen::Vector2d exit =
+      exit_cmp(gait.footholds[side], side, &landing, CmpOffsets(atlas().nominal_com_height));
   EXPECT_LT((t.evaluate(gait.phase_duration).ecmp - entry).norm(), 1e-12);
   EXPECT_LT((t.evaluate(0.0).ecmp - exit).norm(), 1e-12);
   EXPECT_LT((t.evaluate(0.5 * gait.phase_duration).ecmp - 0.5 * (entry + exit)).norm(), 1e-12);
@@ -65,7 +67,7 @@ TEST(IcpTrajectory, EntryAndExitLieInsideTheFootholdByTheMargin) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int run = 0; run < 200; ++run) {
-    CmpOffsets o;
+    CmpOffsets o(atlas().nominal_com_height);
     o.entry_x = 2 * uniform(random);
     o.entry_y = 2 * uniform(random);
     o.exit_x = 2 * uniform(random);
@@ -86,7 +88,7 @@ TEST(IcpTrajectory, EntryAndExitLieInsideTheFootholdByTheMargin) {
 }
 
 TEST(IcpTrajectory, PositiveSidewaysOffsetsPointTowardsTheOtherFoot) {
-  CmpOffsets o;
+  CmpOffsets o(atlas().nominal_com_height);
   o.entry_y = o.exit_y = 0.3;
   for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
     const GaitdFoothold foothold = foothold_of(atlas(), footstep(side, 0, 0));
@@ -104,7 +106,7 @@ TEST(IcpTrajectory, APartialFootholdKeepsItsCmpsOnTheLoadablePart) {
     step.contact_polygon[i][1] = half[i][1];
   }
   const GaitdFoothold foothold = foothold_of(atlas(), step);
-  CmpOffsets o;
+  CmpOffsets o(atlas().nominal_com_height);
   o.entry_x = -1.0;
   EXPECT_NEAR(entry_cmp(foothold, GAITD_LEFT, o).x(), 1.0 + o.margin, 1e-12);
 }
@@ -121,7 +123,8 @@ TEST(IcpTrajectory, AFootholdThatIsNoRectangleKeepsItsCmpsInside) {
   ConvexPolygon sole;
   add_foothold(foothold, atlas().feet[GAITD_LEFT].toe_point, sole);
   sole.make_hull();
-  const CmpOffsets o;  // of a whole sole: the entry lies outside of the triangle
+  const CmpOffsets o(
+      atlas().nominal_com_height);  // of a whole sole: the entry lies outside of the triangle
   EXPECT_GE(sole.inside_distance(entry_cmp(foothold, GAITD_LEFT, o)), o.margin - 1e-9);
   EXPECT_GE(sole.inside_distance(exit_cmp(foothold, GAITD_LEFT, nullptr, o)), o.margin - 1e-9);
 }

@@ -73,13 +73,13 @@ class SyntheticWalk {
   GaitdToeOff toe_off{};
   GaitdStepAdjustment adjustment{};
   Planner planner;
-  walking::CmpOffsets offsets;      // of the planner
-  std::function<void()> on_update;  // after the machine, before the planner
-  double landing_delay = 0.0;       // s after the planned end of the swing; negative: early
-  double landing_load = 2.0;        // of the weight, on a foot that is down
-  double ground_error = 0.0;        // m, of the ground under the swing foot
-  double icp_error = 0.0;           // m, forwards
-  double icp_error_left = 0.0;      // m
+  walking::CmpOffsets offsets{atlas().nominal_com_height};  // of the planner
+  std::function<void()> on_update;                          // after the machine, before the planner
+  double landing_delay = 0.0;   // s after the planned end of the swing; negative: early
+  double landing_load = 2.0;    // of the weight, on a foot that is down
+  double ground_error = 0.0;    // m, of the ground under the swing foot
+  double icp_error = 0.0;       // m, forwards
+  double icp_error_left = 0.0;  // m
   int ticks = 0;
 
  private:

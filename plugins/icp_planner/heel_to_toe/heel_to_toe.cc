@@ -2,24 +2,16 @@
 #include "heel_to_toe.h"
 
 namespace gaitd::plugins {
-namespace {
 
-// Heights of the CoM: a step from which on the whole of exit_x is used, and how far the CMPs stay
-// inside the foothold.
-constexpr double kExitStepLength = 0.1699;
-constexpr double kMargin = 0.01274;
-
-}  // namespace
-
-HeelToToe::HeelToToe(const GaitdModel& model) : scale_(model), reference_(model) {}
+HeelToToe::HeelToToe(const GaitdModel& model)
+    : height_(model.nominal_com_height), reference_(model) {}
 
 GaitdStatus HeelToToe::process(const GaitdIcpPlannerInput& in, GaitdIcpPlan& out) {
-  const walking::CmpOffsets offsets{.entry_x = p_[P::kEntryX],
-                                    .entry_y = p_[P::kEntryY],
-                                    .exit_x = p_[P::kExitX],
-                                    .exit_y = p_[P::kExitY],
-                                    .exit_x_step_length = kExitStepLength * scale_.length,
-                                    .margin = kMargin * scale_.length};
+  walking::CmpOffsets offsets(height_);
+  offsets.entry_x = p_[P::kEntryX];
+  offsets.entry_y = p_[P::kEntryY];
+  offsets.exit_x = p_[P::kExitX];
+  offsets.exit_y = p_[P::kExitY];
   reference_.update(in.time.period, *in.robot, *in.gait, offsets, out);
   return GAITD_OK;
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "gaitd/sdk/layer.h"
-#include "gaitd/walking/gait_scale.h"
 #include "gaitd/walking/icp_reference.h"
 
 namespace gaitd::plugins {
@@ -33,7 +32,7 @@ class HeelToToe {
 
  private:
   sdk::Parameters<P> p_{kParameters};
-  walking::GaitScale scale_;
+  double height_;  // m, of the CoM in the nominal posture
   walking::IcpReference reference_;
 };
 

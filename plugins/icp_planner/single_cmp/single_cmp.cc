@@ -4,8 +4,9 @@
 namespace gaitd::plugins {
 
 GaitdStatus SingleCmp::process(const GaitdIcpPlannerInput& in, GaitdIcpPlan& out) {
-  const walking::CmpOffsets middle{
-      .entry_x = 0.0, .entry_y = p_[P::kInwards], .exit_x = 0.0, .exit_y = p_[P::kInwards]};
+  walking::CmpOffsets middle(height_);
+  middle.entry_x = middle.exit_x = 0.0;
+  middle.entry_y = middle.exit_y = p_[P::kInwards];
   reference_.update(in.time.period, *in.robot, *in.gait, middle, out);
   return GAITD_OK;
 }

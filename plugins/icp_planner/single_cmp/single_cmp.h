@@ -16,7 +16,8 @@ class SingleCmp {
                           "CMP from the middle of the foothold; low: outer edge tips, high: inner"),
   };
 
-  explicit SingleCmp(const GaitdModel& model) : reference_(model) {}
+  explicit SingleCmp(const GaitdModel& model)
+      : height_(model.nominal_com_height), reference_(model) {}
   void set_parameter(int index, double value) { p_.set(index, value); }
   GaitdStatus process(const GaitdIcpPlannerInput& in, GaitdIcpPlan& out);
   void reset() { reference_.reset(); }
@@ -25,6 +26,7 @@ class SingleCmp {
 
  private:
   sdk::Parameters<P> p_{kParameters};
+  double height_;  // m, of the CoM in the nominal posture
   walking::IcpReference reference_;
 };
 

@@ -77,6 +77,7 @@ void InvariantEkf::reset() {
   hangs_ = false;
   for (Foot& foot : feet_) {
     foot.trusted = false;
+    foot.tare = {};
     foot.time_above = 0.0;
     foot.time_trusted = 0.0;
     foot.contact = GAITD_CONTACT_NONE;

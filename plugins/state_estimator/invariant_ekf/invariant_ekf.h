@@ -53,9 +53,9 @@ class InvariantEkf {
       sdk::porting(sdk::real_parameter(
           "gyro_bias_noise", "rad/s^2/sqrtHz", 0, 1, 2e-5,
           "random walk; low: a drifting bias stays, high: a walk is taken for one")),
-      sdk::porting(sdk::real_parameter(
-          "accelerometer_bias_noise", "m/s^3/sqrtHz", 0, 1, 5e-4,
-          "random walk; low: a drifting bias stays, high: a push is taken for one")),
+      sdk::porting(sdk::real_parameter("accelerometer_bias_noise", "m/s^3/sqrtHz", 0, 1, 5e-4,
+                                       "random walk, with foot sensors only; low: a drifting bias "
+                                       "stays, high: a push is taken for one")),
       sdk::real_parameter(
           "contact_noise", "m/s/sqrtHz", 0, 4, 0.004,
           "random walk of a foot in contact; low: slips are motion, high: it drifts"),

@@ -12,9 +12,10 @@ namespace {
 
 constexpr int kUnknownPhase = -1;
 constexpr double kLeastGamma = 0.2;
-constexpr double kRestMargin = 0.04;  // m, of an ICP that comes to rest, to the edge of the feet
-constexpr double kLeastSpeed = 0.1;   // m/s, of the ICP, that time is reckoned with
-constexpr double kClearance = 0.02;   // m, between soles that pass each other
+// Heights of the CoM, of an ICP that comes to rest, to the edge of the feet.
+constexpr double kRestMargin = 0.034;
+constexpr double kLeastSpeed = 0.1;  // m/s, of the ICP, that time is reckoned with
+constexpr double kClearance = 0.02;  // m, between soles that pass each other
 // sqrt(h/g), before touchdown: no leg follows a change any more.
 constexpr double kHold = 0.09;
 constexpr double kLeastLeft = 1.3 * kHold;
@@ -182,7 +183,8 @@ LaterPhase StepPlan::next_transfer(const GaitdGaitState& gait, const GaitdIcpPla
   walking::add_foothold(walking::bearing_of(model_, gait.adjusted[0]),
                         model_.feet[gait.next_side].toe_point, phase.region);
   phase.region.make_hull();
-  phase.region = phase.region.inset(last ? kRestMargin : feedback_[walking::Feedback::kMargin]);
+  phase.region =
+      phase.region.inset(last ? kRestMargin * length_ : feedback_[walking::Feedback::kMargin]);
   const double settling = gait.omega * kSettling * time_;
   if (last) {
     // All the time to come to rest: the ICP stays where the CMP is, once that follows. A step that

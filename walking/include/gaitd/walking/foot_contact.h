@@ -18,6 +18,8 @@ class FootContact {
  public:
   // The foot has come down `off` heights of the CoM above or below where it was told to.
   void land(double off);
+  // Nobody told where it is, or it was pushed off: nothing is found out until it lands again.
+  void doubt();
   // The foot is in the air or rolls on purpose: what was found out is over.
   void reset();
   // One tick of `dt` seconds of a foot that should lie flat on `foothold`, whose polygon becomes

@@ -113,8 +113,14 @@ class GaitMachine {
   bool recover(double dt, const GaitdRobotState& robot);
   GaitdFootstep recovery_step(const GaitdRobotState& robot, int side) const;
   int recovery_side(const GaitdRobotState& robot, const Eigen::Vector2d& away) const;
-  // After a recovery: the step that brings the feet side by side again, if they are not.
-  void close_after_recovery();
+  bool recovering() const { return own_steps_ > 0; }
+  // Drops the footsteps behind the first `kept`, and what belonged to them.
+  void keep_first(int kept);
+  // m, of the footstep at `place` in the queue, where the one before it lands at `stance` (W), off
+  // by `shift`.
+  Eigen::Vector3d offset_of(int place, const Eigen::Vector3d& shift, const GaitdPose& stance) const;
+  // Whether the feet are side by side but for the step that would close them.
+  bool closed() const;
   double ready_across(const GaitdIcpPlan& plan) const;
   bool icp_ready(const GaitdRobotState& robot, const GaitdIcpPlan& plan) const;
   // Copies the queue into the state, with shifts and height offset.
@@ -165,10 +171,11 @@ class GaitMachine {
   double time_unheld_ = 0.0;            // s, since the feet cannot hold the ICP
   double ready_time_ = 0.0;             // s, for which the ICP has been ready
   double landed_impulse_ = 0.0;         // N s, of the load on the swing foot since it came
-  bool recovering_ = false;             // the steps of now are the robot's own
+  int own_steps_ = 0;  // first in the queue: those with which the robot catches itself
   struct Goal {
     GaitdFootstep step;
     bool known;
+    bool stood_on;  // by this foot since, as far as no push moved it
   };
   std::array<Goal, GAITD_MAX_FEET> goals_{};  // last footstep of each foot since the robot stood
   int returns_left_ = 0;        // steps that may lead back to the goals after the last footstep

@@ -12,14 +12,17 @@ namespace gaitd::walking {
 // Where the eCMP enters and leaves a foothold, as fractions of half the length (x, towards the
 // toe) and half the width (y, towards the other foot) of its loadable part, from its middle.
 struct CmpOffsets {
+  // Of a robot whose CoM is at `height` (m) in the nominal posture.
+  explicit CmpOffsets(double height)
+      : exit_x_step_length(0.1699 * height), margin(0.01274 * height) {}
   double entry_x = -0.08;
   double entry_y = -0.08;
   double exit_x = 0.73;
   double exit_y = 0.31;
   // Forward distance of the next foothold at which the full exit_x is used (m); shorter and
   // backward steps leave the foot proportionally further back.
-  double exit_x_step_length = 0.2;
-  double margin = 0.015;  // m, kept from the edge
+  double exit_x_step_length;
+  double margin;  // m, kept from the edge
 };
 
 // Piecewise linear eCMP reference with the ICP that belongs to it (Englsberger 2014; theory
