@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bus_claim.h"
 #include "can_bus.h"
 #include "estop_monitor.h"
 #include "gaitd/abi/backend.h"
@@ -68,6 +69,7 @@ class CanRobot {
     std::atomic<uint32_t> late{0}, missing{0}, duplicate{0}, stale{0};
   };
   struct BusState {
+    BusClaim claim;
     std::unique_ptr<CanBus> bus;
     bool down = false;
     bool fell = false;  // went down since the last look at the conditions

@@ -48,6 +48,7 @@ void CanRobot::stop() {
   for (BusState& bus : buses_) {
     open = open || bus.bus != nullptr;
     bus.bus.reset();
+    bus.claim = BusClaim();
   }
   for (size_t i = 0; open && i < senders_.size(); ++i) {
     const Counters& c = counters_[i];

@@ -217,6 +217,21 @@ TEST(CanRobot, StopsTheMotorsOfABusWhoseQueueIsFullAsSoonAsItTakesFrames) {
   EXPECT_LE(slept, 50);
 }
 
+TEST(CanRobot, ASecondOneOnTheSameBusIsRefusedAndSwitchesNothingOff) {
+  Bench bench;
+  bench.wire.take();
+  std::vector<std::string> errors;
+  {
+    RobotOptions options;
+    options.clocks = &bench.clocks;
+    CanRobot second(bench.wiring, bench.model, options, [](int, const std::string&) {});
+    EXPECT_FALSE(second.start(&errors));
+  }
+  ASSERT_EQ(errors.size(), 1);
+  EXPECT_NE(errors[0].find("another process commands its motors"), std::string::npos) << errors[0];
+  EXPECT_TRUE(bench.wire.take().empty());
+}
+
 TEST(CanRobot, GivesUpOnABusThatTakesNothingAndSaysSo) {
   Bench b;
   b.cycle(GAITD_JOINT_MODE_TORQUE, 4);

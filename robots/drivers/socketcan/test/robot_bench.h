@@ -45,6 +45,7 @@ struct Bench {
   std::vector<std::unique_ptr<Slcan>> wires;
   Slcan& wire;
   GaitdModel model{};
+  Wiring wiring;
   TestClocks clocks;
   std::vector<std::string> lines;  // of the log
   std::unique_ptr<CanRobot> robot;
@@ -57,7 +58,6 @@ struct Bench {
   explicit Bench(const Kit& kit = {})
       : wires(make_wires(kit.buses)), wire(*wires[0]), dialect(*kit.dialect) {
     model.joint_count = kit.buses;
-    Wiring wiring;
     for (int i = 0; i < kit.buses; ++i) {
       std::snprintf(model.joints[i].name, GAITD_NAME_SIZE, "knee%d", i);
       wiring.buses.push_back({"leg" + std::to_string(i), wires[i]->name(), {}});
