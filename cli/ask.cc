@@ -87,7 +87,12 @@ int ask(const Context& context, const std::string& command, const std::string& m
     return fail(context, command, method, *error);
   }
   if (method == "arm" || method == "sim.reset") {
-    wait_while(client.get(), "readying", kReadying);  // until it takes commands
+    // Until it takes commands.
+    if (const std::string faults = wait_while(client.get(), "readying", kReadying);
+        !faults.empty()) {
+      waiting.reset();
+      return fail(context, kFailed, command, faults);
+    }
   }
   waiting.reset();
   json& value = std::get<json>(result);
@@ -123,15 +128,22 @@ CLI::Option* add_number(CLI::App* command, const std::string& option,
       });
 }
 
-void wait_while(RpcClient* client, const std::string& state, std::chrono::milliseconds longest) {
+std::string wait_while(RpcClient* client, const std::string& state,
+                       std::chrono::milliseconds longest) {
   using Clock = std::chrono::steady_clock;
   for (const auto end = Clock::now() + longest; Clock::now() < end && !StopSignals::requested();) {
     const daemon::RpcResult result = client->call("status", nullptr, std::chrono::seconds(2));
     const json* status = std::get_if<json>(&result);
-    if (status == nullptr || !status->is_object()) return;
-    if (status->value("state", json()) != state) return;
+    if (status == nullptr || !status->is_object()) return "";
+    const json now = status->value("state", json());
+    if (now == "fault") {
+      return "the robot is in fault: " + status->value("faults", json::array()).dump() +
+             "; `gaitctl status` says more";
+    }
+    if (now != state) return "";
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
+  return "";
 }
 
 }  // namespace gaitd::cli

@@ -81,8 +81,9 @@ int drive(const Context& context, const DriveOptions& options) {
   if (!context.json && answer.is_object()) answer.erase("note");  // has been told
   driving.emplace("coming to a stand");
   // Or somebody else has given it something to do.
-  wait_while(client.get(), "walking", kStop);
+  const std::string faults = wait_while(client.get(), "walking", kStop);
   driving.reset();
+  if (!faults.empty()) return fail(context, kFailed, "drive", faults);
   std::cout << (context.json ? json_text(answer) : result_text("drive", "drive", answer))
             << std::flush;
   return kDone;

@@ -38,10 +38,25 @@ std::string number(const json& value) {
   return text;
 }
 
+struct Refused {
+  std::string method;
+  daemon::RpcError error;
+};
+
 json call(RpcClient* client, const std::string& method, const json& params) {
-  const daemon::RpcResult result = client->call(method, params);
-  const json* value = std::get_if<json>(&result);
-  return value != nullptr ? *value : json();
+  daemon::RpcResult result = client->call(method, params);
+  if (auto* error = std::get_if<daemon::RpcError>(&result)) throw Refused{method, *error};
+  return std::get<json>(std::move(result));
+}
+
+// What a command does, with the error of gaitd that ended it.
+template <class Action>
+int run(const Context& context, const std::string& command, const Action& action) {
+  try {
+    return action();
+  } catch (const Refused& refused) {
+    return fail(context, command, refused.method, refused.error);
+  }
 }
 
 json find_joint(RpcClient* client, const std::string& name) {
@@ -77,12 +92,10 @@ int test(const Context& context, const JointArguments& arguments) {
   const auto client = connect(context, command, daemon::Role::kAdminister);
   if (!client) return kNoDaemon;
   const json before = find_joint(client.get(), arguments.joint);
-  const daemon::RpcResult started = client->call("joint.test", {{"joint", arguments.joint},
-                                                                {"amplitude", arguments.amplitude},
-                                                                {"duration", arguments.duration}});
-  if (const auto* error = std::get_if<daemon::RpcError>(&started)) {
-    return fail(context, command, "joint.test", *error);
-  }
+  call(client.get(), "joint.test",
+       {{"joint", arguments.joint},
+        {"amplitude", arguments.amplitude},
+        {"duration", arguments.duration}});
   const double start = before.value("position", 0.0);
   double farthest = 0.0;
   double torque = 0.0;
@@ -120,7 +133,11 @@ void add_joint_commands(CLI::App* app, Context* context) {
   auto* joint = app->add_subcommand("joint", "Look at joints and try one, for the bring-up");
   joint->require_subcommand(1);
   auto* show = joint->add_subcommand("list", "Every joint: position, limits, torque");
-  show->callback([context] { context->action = [context] { return list(*context); }; });
+  show->callback([context] {
+    context->action = [context] {
+      return run(*context, "joint list", [context] { return list(*context); });
+    };
+  });
 
   auto* command = joint->add_subcommand(
       "test", "Move one joint a little and back, the others off; the robot hangs, disarmed");
@@ -135,7 +152,9 @@ void add_joint_commands(CLI::App* app, Context* context) {
       ->check(CLI::Range(0.5, 20.0))
       ->capture_default_str();
   command->callback([context, arguments] {
-    context->action = [context, arguments] { return test(*context, *arguments); };
+    context->action = [context, arguments] {
+      return run(*context, "joint test", [&] { return test(*context, *arguments); });
+    };
   });
 }
 

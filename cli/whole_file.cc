@@ -20,4 +20,13 @@ bool write_file(const std::filesystem::path& file, const std::string& text, std:
   return static_cast<bool>(out);
 }
 
+bool replace_file(const std::filesystem::path& file, const std::string& text, std::string* error) {
+  const std::filesystem::path fresh = file.string() + ".new";
+  if (!write_file(fresh, text, error)) return false;
+  std::error_code code;
+  std::filesystem::rename(fresh, file, code);
+  if (code) *error = file.string() + ": cannot write: " + code.message();
+  return !code;
+}
+
 }  // namespace gaitd::cli

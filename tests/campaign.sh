@@ -30,6 +30,28 @@ expect 0 gaitctl campaign campaign.yaml -o out
 (($(wc -l <out/results.csv) == 5)) || fail "expected 4 runs in results.csv"
 grep -q 'campaign: passed' out/summary.txt || fail "summary: $(cat out/summary.txt)"
 
+# A scenario that says something else makes another campaign of it; what would make all runs the same
+# is refused.
+cp short.yaml before.yaml
+sed -i 's/^duration: .*/duration: 1.1/' short.yaml
+expect 1 gaitctl campaign campaign.yaml -o out >other.txt 2>&1
+grep -q 'a scenario of it' other.txt || fail "$(cat other.txt)"
+cp before.yaml short.yaml
+expect 0 gaitctl campaign campaign.yaml -o out
+expect 1 gaitctl campaign campaign.yaml -o same --set seed=5 >same.txt 2>&1
+grep -q "each run has a seed of the campaign's 'seeds'" same.txt || fail "$(cat same.txt)"
+sed 's/\[kinematic_inertial, invariant_ekf\]/[invariant_ekf, invariant_ekf]/' campaign.yaml >twice.yaml
+expect 1 gaitctl campaign twice.yaml -o twice >twice.txt 2>&1
+grep -q 'each value once' twice.txt || fail "$(cat twice.txt)"
+# A folder in which nothing can be written says so, and is none of another campaign afterwards.
+(
+  ulimit -f 0
+  trap '' XFSZ
+  expect 1 gaitctl campaign campaign.yaml -o full >/dev/null 2>&1
+) || true
+[[ ! -e full/campaign.yaml ]] || fail "a campaign that was cut off stands for the whole: $(cat full/campaign.yaml)"
+expect 0 gaitctl campaign campaign.yaml -o full --set toe_off.variant=never
+
 # Another robot: the heavier of two torsos stands on more force.
 force() {
   gaitctl log export "out/logs/$1.mcap" --signals 'truth/foot/*/force/z' |
@@ -65,6 +87,8 @@ success: no_fall
 keep_logs: 0
 plot: {angle: disturbances.0.duration, scale: 0.1, label: impulse (N s)}
 MAP
+expect 1 gaitctl campaign map.yaml -o map --set disturbances.0.force=400 >level.txt 2>&1
+grep -q 'the campaign searches along it' level.txt || fail "$(cat level.txt)"
 expect 0 gaitctl campaign map.yaml -o map
 (($(wc -l <map/results.csv) <= 25)) || fail "expected at most 24 runs: $(cat map/results.csv)"
 limits() { python3 -c 'import json; print(*(c["'"$1"'"] for c in json.load(open("map/summary.json"))["cells"]))'; }

@@ -10,6 +10,14 @@ expect 1 gaitd --log none/log.mcap >out.txt 2>&1
 grep -qF 'log.file: expected a directory, got none' out.txt ||
   { cat out.txt; fail "a folder that is not there is not reported"; }
 
+# A second gaitd that is refused its socket has not touched the log of the first one.
+start_daemon --clock realtime --log taken.mcap
+wait_for state standing 120
+expect 1 gaitd --clock realtime --log taken.mcap >out.txt 2>&1
+grep -q 'another gaitd listens there already' out.txt || { cat out.txt; fail "two on one socket"; }
+stop_daemon 0
+expect 0 gaitctl log info taken.mcap >info.txt
+
 # A limit on the size of files stands for the disk: 4 MB, a few seconds of log.
 ulimit -S -f 4096
 start_daemon --clock realtime --log log.mcap

@@ -39,11 +39,13 @@ bool add_results(const ResultFormat& format, const fs::path& folder, CampaignRes
 }
 
 // The same bytes in both places; without a second copy of them where that can be.
-void share_file(const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  fs::remove(to, error);
-  fs::create_hard_link(from, to, error);
-  if (error) fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
+bool share_file(const fs::path& from, const fs::path& to, std::string* error) {
+  std::error_code code;
+  fs::remove(to, code);
+  fs::create_hard_link(from, to, code);
+  if (code) fs::copy_file(from, to, fs::copy_options::overwrite_existing, code);
+  if (code) *error = to.string() + ": cannot write: " + code.message();
+  return !code;
 }
 
 bool add_calibrations(const fs::path& folder, const fs::path& target, std::string* error) {
@@ -57,13 +59,13 @@ bool add_calibrations(const fs::path& folder, const fs::path& target, std::strin
       return false;
     }
     fs::create_directories(to.parent_path(), ignored);
-    share_file(entry.path(), to);
+    if (!share_file(entry.path(), to, error)) return false;
   }
   return true;
 }
 
-void add_logs(const CampaignPlan& plan, const CampaignResults& results, const Sources& sources,
-              const fs::path& target) {
+bool add_logs(const CampaignPlan& plan, const CampaignResults& results, const Sources& sources,
+              const fs::path& target, std::string* error) {
   int kept = 0;
   std::error_code ignored;
   for (const CampaignResult* result : worst_first(results)) {
@@ -74,12 +76,14 @@ void add_logs(const CampaignPlan& plan, const CampaignResults& results, const So
     for (const char* extension : kRunFiles) {
       const fs::path one = fs::path(to).replace_extension(extension);
       if (keep) {
-        share_file(fs::path(from).replace_extension(extension), one);
+        const fs::path its = fs::path(from).replace_extension(extension);
+        if (fs::exists(its, ignored) && !share_file(its, one, error)) return false;
       } else {
         fs::remove(one, ignored);
       }
     }
   }
+  return true;
 }
 
 }  // namespace
@@ -105,8 +109,7 @@ bool merge_folders(const CampaignPlan& plan, const std::vector<fs::path>& folder
       !write_results(target / "results.csv", format, *results, error)) {
     return false;
   }
-  add_logs(plan, *results, sources, target);
-  return true;
+  return add_logs(plan, *results, sources, target, error);
 }
 
 }  // namespace gaitd::cli

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/campaign/outcome.h"
 
-#include <fstream>
+#include <algorithm>
 #include <iostream>
 
 #include "cli/campaign/plot.h"
@@ -9,18 +9,20 @@
 #include "cli/campaign/summary.h"
 #include "cli/print.h"
 #include "cli/terminal.h"
+#include "cli/whole_file.h"
 
 namespace gaitd::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-void write_plots(const Campaign& campaign, const std::vector<PlotPoint>& points,
-                 const fs::path& folder) {
-  for (const std::string& scenario : campaign.scenarios) {
-    std::ofstream(folder / (fs::path(scenario).stem().string() + ".svg"))
-        << polar_plot(campaign, points, scenario);
-  }
+// False, and said, when one of them cannot be written.
+bool write_plots(const Campaign& campaign, const std::vector<PlotPoint>& points,
+                 const fs::path& folder, std::string* error) {
+  return std::ranges::all_of(campaign.scenarios, [&](const std::string& scenario) {
+    return write_file(folder / (fs::path(scenario).stem().string() + ".svg"),
+                      polar_plot(campaign, points, scenario), error);
+  });
 }
 
 }  // namespace
@@ -29,19 +31,23 @@ bool conclude(const Context& context, const CampaignPlan& plan, const CampaignRe
               const RunnerOptions& options) {
   const fs::path& folder = options.folder;
   RunOrder order(plan.campaign, plan.runs, results);
+  std::string error;
+  bool written = true;
   if (plan.campaign.plot) {
-    write_plots(plan.campaign, plot_points(plan.campaign, plan.runs, results, &order), folder);
+    written = write_plots(plan.campaign, plot_points(plan.campaign, plan.runs, results, &order),
+                          folder, &error);
   }
   const nlohmann::json kept =
       summary_json(plan.campaign, plan.runs, results, &order, options, fs::path());
-  std::ofstream(folder / "summary.txt") << summary_text(kept, 0);
-  std::ofstream(folder / "summary.json") << json_text(kept);
+  written = written && write_file(folder / "summary.txt", summary_text(kept, 0), &error) &&
+            write_file(folder / "summary.json", json_text(kept), &error);
   const nlohmann::json shown =
       summary_json(plan.campaign, plan.runs, results, &order, options, folder);
   if (options.part.empty()) {
     std::cout << (context.json ? json_text(shown) : summary_text(shown, output_columns()));
   }
-  return shown["pass"].get<bool>();
+  if (!written) std::cerr << "gaitctl: campaign: " << error << '\n';
+  return written && shown["pass"].get<bool>();
 }
 
 }  // namespace gaitd::cli

@@ -5,16 +5,21 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <fstream>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
 #include "cli/campaign/settings.h"
+#include "cli/one_line.h"
 #include "cli/print.h"
 #include "cli/whole_file.h"
 #include "daemon/config/daemon_config.h"
 #include "daemon/config/library_paths.h"
+#include "daemon/config/paths.h"
+#include "daemon/log/crc32.h"
 
 namespace gaitd::cli {
 namespace {
@@ -99,8 +104,16 @@ std::string text_of(const CampaignPlan& plan) {
 std::optional<CampaignPlan> plan_of_file(const CampaignOrigin& origin, std::string* error) {
   std::optional<CampaignPlan> plan = make_plan(origin, origin.file, error);
   if (!plan) return plan;
-  // What --set says makes another campaign of it.
+  // What --set says makes another campaign of it, and so does what the scenarios say.
   for (const std::string& setting : origin.settings) plan->text += "# --set " + setting + "\n";
+  const daemon::Paths paths = daemon::Paths::detect();
+  for (const std::string& scenario : plan->campaign.scenarios) {
+    const auto path = paths.scenario(scenario_from(origin.file, scenario));
+    if (plan->campaign.drawn.contains(scenario) || !path) continue;
+    char line[32];
+    std::snprintf(line, sizeof(line), "%08x", daemon::crc32(read_file(*path)));
+    plan->text += "# scenario " + one_line(scenario) + " " + line + "\n";
+  }
   return plan;
 }
 
@@ -135,24 +148,29 @@ bool CampaignFolder::take(const fs::path& folder, const CampaignPlan& plan, std:
              "; give another one with -o";
     return false;
   }
-  lock_ = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  const std::string lock = (folder / "lock").string();
+  lock_ = open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (lock_ < 0 || flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-    *error = folder.string() + ": another campaign is running in this folder";
+    *error = lock_ >= 0 && errno == EWOULDBLOCK
+                 ? folder.string() + ": another campaign is running in this folder"
+                 : lock + ": cannot lock: " + std::strerror(errno);
     return false;
   }
   const std::string text = text_of(plan);
   if (!holds_campaign(folder)) {
-    std::ofstream(folder / kCopy, std::ios::binary) << text;
+    if (!replace_file(folder / kCopy, text, error)) return false;
   } else if (read_file(folder / kCopy) != text) {
-    *error = folder.string() + ": holds results of another campaign, or of this one before its " +
-             "file, --set or --shard was changed; give another folder with -o, or delete this one";
+    *error =
+        folder.string() + ": holds results of another campaign, or of this one before its " +
+        "file, a scenario of it, --set or --shard was changed; give another folder with -o, or " +
+        "delete this one";
     return false;
   }
-  std::ofstream(folder / kOrigin) << json_text({{"file", plan.origin.file},
-                                                {"set", plan.origin.settings},
-                                                {"trust", plan.origin.trust},
-                                                {"shard", shard_text(plan.origin.shard)}});
-  return true;
+  const std::string origin = json_text({{"file", plan.origin.file},
+                                        {"set", plan.origin.settings},
+                                        {"trust", plan.origin.trust},
+                                        {"shard", shard_text(plan.origin.shard)}});
+  return read_file(folder / kOrigin) == origin || replace_file(folder / kOrigin, origin, error);
 }
 
 bool holds_campaign(const fs::path& folder) {

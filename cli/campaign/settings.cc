@@ -41,7 +41,14 @@ void read_settings(MapReader map, Campaign* campaign) {
   for (const Node::Entry& entry : map.entries()) {
     CampaignSetting setting{entry.key, {}};
     if (entry.value->kind == NodeKind::kList) {
-      for (const NodePtr& item : entry.value->items) setting.values.push_back(setting_text(*item));
+      for (const NodePtr& item : entry.value->items) {
+        std::string value = setting_text(*item);
+        if (std::ranges::find(setting.values, value) != setting.values.end()) {
+          map.fail(entry.key, "each value once", daemon::describe(*item),
+                   "the same runs twice make no better statistics");
+        }
+        setting.values.push_back(std::move(value));
+      }
     } else if (entry.value->kind == NodeKind::kMap) {
       setting = read_bundles(map.map(entry.key), entry.key, campaign);
     }
@@ -64,7 +71,21 @@ bool narrow(Campaign* campaign, const std::string& assignment, std::string* erro
   const auto setting =
       std::find_if(campaign->settings.begin(), campaign->settings.end(),
                    [&](const CampaignSetting& candidate) { return candidate.key == key; });
-  if (setting == campaign->settings.end() || searched) return false;
+  const bool part = std::ranges::any_of(campaign->bundles, [&](const auto& values) {
+    return std::ranges::any_of(values.second, [&](const auto& value) {
+      return std::ranges::any_of(
+          value.second, [&](const std::string& its) { return its.starts_with(key + "="); });
+    });
+  });
+  if (key == "seed" || searched || part) {
+    *error = "--set " + assignment + ": " +
+             (key == "seed" ? "each run has a seed of the campaign's 'seeds'"
+              : searched    ? "the campaign searches along it"
+                            : "named values of the campaign set it") +
+             "; with one value all of them would be the same run; change the file instead";
+    return false;
+  }
+  if (setting == campaign->settings.end()) return false;
   const auto bundle = campaign->bundles.find(key);
   if (bundle != campaign->bundles.end() && !bundle->second.contains(value)) {
     *error = "--set " + assignment + ": expected one of the campaign's values of '" + key + "':";

@@ -18,8 +18,10 @@
 #include "cli/campaign/shard_progress.h"
 #include "cli/campaign/slurm.h"
 #include "cli/failure.h"
+#include "cli/one_line.h"
 #include "cli/print.h"
 #include "cli/stop_signals.h"
+#include "cli/whole_file.h"
 
 namespace gaitd::cli {
 namespace {
@@ -99,7 +101,7 @@ std::string script_text(const CampaignPlan& plan, const RunnerOptions& options, 
     shard_command += " --set " + shell_word(setting);
   }
   if (plan.origin.trust) shard_command += " --trust";
-  return "#!/bin/sh\n# A shard of the campaign " + plan.campaign.name +
+  return "#!/bin/sh\n# A shard of the campaign " + one_line(plan.campaign.name) +
          ".\nfolder=" + shell_word((options.folder / "shards").string()) +
          "/$(printf %04d \"$SLURM_ARRAY_TASK_ID\")\nexec " + shard_command +
          " --jobs \"${SLURM_CPUS_PER_TASK:-1}\" -o \"$folder\"\n";
@@ -109,7 +111,7 @@ std::optional<std::string> submit(const CampaignPlan& plan, const RunnerOptions&
                                   int shards, const std::vector<int>& open, Slurm* slurm,
                                   std::string* error) {
   const fs::path script = options.folder / "slurm" / "job.sh";
-  std::ofstream(script) << script_text(plan, options, shards);
+  if (!write_file(script, script_text(plan, options, shards), error)) return std::nullopt;
   const std::string at_once = options.jobs > 0 ? "%" + std::to_string(options.jobs) : "";
   // A task that Slurm starts anew could meet the one that it took for lost; --resume is asked for.
   return slurm->submit(

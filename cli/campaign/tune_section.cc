@@ -123,6 +123,10 @@ void read_objective(MapReader map, CampaignTune* tune) {
   }
 }
 
+bool is_among(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 void read_held_out(MapReader map, const Campaign& campaign, CampaignTune* tune) {
   const std::uint64_t largest = *std::max_element(campaign.seeds.begin(), campaign.seeds.end());
   const NodePtr seeds = map.node("seeds");
@@ -130,9 +134,11 @@ void read_held_out(MapReader map, const Campaign& campaign, CampaignTune* tune) 
     for (const NodePtr& item : seeds->items) {
       const auto seed = daemon::as_integer(*item);
       const auto value = static_cast<std::uint64_t>(seed.value_or(0));
-      if (!seed || *seed < 0 ||
-          std::find(campaign.seeds.begin(), campaign.seeds.end(), value) != campaign.seeds.end()) {
-        map.fail("seeds", "whole numbers that are not among 'seeds' of the campaign",
+      const auto among = [value](const std::vector<std::uint64_t>& seeds) {
+        return std::find(seeds.begin(), seeds.end(), value) != seeds.end();
+      };
+      if (!seed || *seed < 0 || among(campaign.seeds) || among(tune->held_out_seeds)) {
+        map.fail("seeds", "whole numbers, each once, that are not among 'seeds' of the campaign",
                  daemon::describe(*item), "what is tuned on is not held out");
         return;
       }
@@ -147,9 +153,9 @@ void read_held_out(MapReader map, const Campaign& campaign, CampaignTune* tune) 
   const std::vector<std::string>& kinds = gauntlet_kinds();
   for (const NodePtr& node : map.list("gauntlet", 0, 1000)) {
     if (std::find(kinds.begin(), kinds.end(), node->text) == kinds.end() ||
-        campaign.drawn.contains(node->text)) {
-      map.fail("gauntlet", "kinds of the gauntlet that are not tuned on", daemon::describe(*node),
-               daemon::suggestion(node->text, kinds));
+        campaign.drawn.contains(node->text) || is_among(tune->held_out_kinds, node->text)) {
+      map.fail("gauntlet", "kinds of the gauntlet, each once, that are not tuned on",
+               daemon::describe(*node), daemon::suggestion(node->text, kinds));
     }
     tune->held_out_kinds.push_back(node->text);
   }
@@ -158,6 +164,11 @@ void read_held_out(MapReader map, const Campaign& campaign, CampaignTune* tune) 
     if (!paths.scenario(scenario_from(campaign.file, node->text))) {
       map.fail("scenarios", "the name of a scenario or the path of its file",
                daemon::describe(*node), daemon::suggestion(node->text, paths.scenarios()));
+    }
+    if (is_among(campaign.scenarios, node->text) ||
+        is_among(tune->held_out_scenarios, node->text)) {
+      map.fail("scenarios", "scenarios, each once, that are not tuned on", daemon::describe(*node),
+               "what is tuned on is not held out");
     }
     tune->held_out_scenarios.push_back(node->text);
   }

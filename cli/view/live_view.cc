@@ -252,13 +252,14 @@ void LiveView::record(bool on) {
 }
 
 void LiveView::begin_recording() {
-  const std::string error = recorder_.begin(source_.robot(), source_.signals());
-  if (!error.empty()) {
-    wants_recording_ = false;
-    choose_signals();
-  }
   recording_since_ = newest_time_;
-  tell_recording(nullptr, error);
+  recorder_.begin(source_.robot(), source_.signals(), [this](const std::string& error) {
+    if (!error.empty()) {
+      wants_recording_ = false;
+      choose_signals();
+    }
+    tell_recording(nullptr, error);
+  });
 }
 
 void LiveView::tell_recording(const Recorder::End* end, const std::string& error) {
@@ -266,7 +267,10 @@ void LiveView::tell_recording(const Recorder::End* end, const std::string& error
                   {"on", recorder_.recording()},
                   {"since", recording_since_},
                   {"report", nullptr}};
-  if (end != nullptr) message["log"] = end->log;
+  if (end != nullptr) {
+    message["log"] = end->log;
+    message["lost"] = end->lost;
+  }
   if (end != nullptr && end->report) {
     message["report"] = std::string(kReports) + std::to_string(*end->report);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/view/recorder.h"
 
+#include <atomic>
 #include <boost/asio/post.hpp>
 #include <ctime>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include "cli/live/robot_metadata.h"
 #include "cli/report/report_data.h"
 #include "daemon/log/log_reader.h"
+#include "daemon/telemetry/log_writer.h"
 
 namespace gaitd::cli {
 namespace {
@@ -16,7 +18,8 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr std::size_t kKeptReports = 8;  // that are kept; each has some megabytes
+constexpr std::size_t kKeptReports = 8;    // that are kept; each has some megabytes
+constexpr std::size_t kMostWaiting = 600;  // frames for the disk: ten seconds, some megabytes
 
 std::string new_file(const std::string& folder) {
   const std::time_t now = std::time(nullptr);
@@ -33,58 +36,111 @@ std::string new_file(const std::string& folder) {
 
 }  // namespace
 
-std::string Recorder::begin(const json& robot, const daemon::SignalTable& signals) {
-  file_ = new_file(folder_);
-  width_ = signals.size();
-  tick_signal_ = find_signal(signals, "tick");
-  rows_ = 0;
-  auto writer = std::make_unique<daemon::LogWriter>(signals);
-  std::string error;
-  if (!writer->open(file_, log_metadata_of(robot), {}, &error)) return error;
-  writer_ = std::move(writer);
-  return "";
+// What the writing thread has of a recording; `waiting` and `failed` are everybody's.
+struct Recorder::Recording {
+  explicit Recording(const daemon::SignalTable& signals)
+      : writer(signals), width(signals.size()), tick_signal(find_signal(signals, "tick")) {}
+
+  void write(LiveFrame frame) {
+    if (!opened) return;
+    if (tick_signal >= 0) {
+      frame.values[static_cast<std::size_t>(tick_signal)] = static_cast<double>(rows);
+    }
+    writer.write_tick(rows++, frame.time, frame.values, nullptr);
+    failed = !writer.ok();
+  }
+  void write(daemon::Event event) {
+    if (!opened) return;
+    event.tick = rows;
+    writer.write_event(event);
+  }
+
+  daemon::LogWriter writer;
+  std::string file;
+  bool opened = false;
+  const std::size_t width;  // signals of a frame
+  const int tick_signal;
+  // A log has no gaps between its ticks: those of a recording are numbered anew.
+  std::int64_t rows = 0;
+  std::atomic<std::size_t> waiting{0};  // frames and events
+  std::atomic<bool> failed{false};
+  std::uint64_t lost = 0;  // frames that were not even taken; the thread of the io_context counts
+};
+
+Recorder::~Recorder() {
+  writing_.join();
+  reporting_.join();
+}
+
+bool Recorder::failed() const { return now_ != nullptr && now_->failed; }
+
+void Recorder::begin(const json& robot, const daemon::SignalTable& signals,
+                     std::function<void(const std::string& error)> done) {
+  now_ = std::make_shared<Recording>(signals);
+  boost::asio::post(writing_,
+                    [this, now = now_, metadata = log_metadata_of(robot), done = std::move(done)] {
+                      std::string error;
+                      now->file = new_file(folder_);
+                      now->opened = now->writer.open(now->file, metadata, {}, &error);
+                      boost::asio::post(*io_, [this, now, error, done] {
+                        if (!error.empty() && now_ == now) now_ = nullptr;
+                        done(error);
+                      });
+                    });
+}
+
+template <class Item>
+void Recorder::take(const Item& item) {
+  if (now_->waiting >= kMostWaiting) {
+    ++now_->lost;
+    return;
+  }
+  ++now_->waiting;
+  boost::asio::post(writing_, [now = now_, item]() mutable {
+    now->write(std::move(item));
+    --now->waiting;
+  });
 }
 
 void Recorder::add(const LiveFrame& frame) {
-  if (!writer_ || frame.values.size() != width_) return;
-  std::vector<double> values = frame.values;
-  if (tick_signal_ >= 0)
-    values[static_cast<std::size_t>(tick_signal_)] = static_cast<double>(rows_);
-  writer_->write_tick(rows_++, frame.time, values, nullptr);
+  if (now_ && frame.values.size() == now_->width) take(frame);
 }
 
 void Recorder::add(const daemon::Event& event) {
-  if (!writer_) return;
-  daemon::Event numbered = event;
-  numbered.tick = rows_;
-  writer_->write_event(numbered);
+  if (now_) take(event);
 }
 
 void Recorder::end(std::function<void(const End&)> done) {
-  if (!writer_) return done({.log = "", .report = {}, .error = "nothing is being recorded"});
-  boost::asio::post(threads_, [this, file = file_,
-                               writer = std::shared_ptr(std::exchange(writer_, nullptr)),
-                               done = std::move(done)]() mutable {
-    End end{.log = file, .report = {}, .error = ""};
-    Message page;
-    if (!writer->close()) {
-      end.error = writer->error();
-    } else {
+  if (!now_)
+    return done({.log = "", .lost = 0, .report = {}, .error = "nothing is being recorded"});
+  boost::asio::post(writing_, [this, now = std::exchange(now_, nullptr), done = std::move(done)] {
+    End end{.log = now->file, .lost = now->lost, .report = {}, .error = ""};
+    now->writer.set_dropouts(now->lost, 0);
+    if (!now->opened || !now->writer.close()) {
+      end.error = now->writer.error();
+      return tell(std::move(end), nullptr, done);
+    }
+    boost::asio::post(reporting_, [this, end = std::move(end), done]() mutable {
+      Message page;
       std::vector<std::unique_ptr<daemon::LogReader>> logs;
-      logs.push_back(daemon::LogReader::open(file, &end.error));
-      if (logs.back() && logs.back()->tick_count() == 0) end.error = file + ": holds no tick";
+      logs.push_back(daemon::LogReader::open(end.log, &end.error));
+      if (logs.back() && logs.back()->tick_count() == 0) end.error = end.log + ": holds no tick";
       if (end.error.empty()) {
         page = std::make_shared<const std::string>(report_page(report_data(logs), &end.error));
       }
-    }
-    boost::asio::post(*io_, [this, page, end = std::move(end), done = std::move(done)]() mutable {
-      if (end.error.empty()) {
-        end.report = next_report_++;
-        reports_[*end.report] = page;
-        if (reports_.size() > kKeptReports) reports_.erase(reports_.begin());
-      }
-      done(end);
+      tell(std::move(end), page, done);
     });
+  });
+}
+
+void Recorder::tell(End end, const Message& page, const std::function<void(const End&)>& done) {
+  boost::asio::post(*io_, [this, page, done, end = std::move(end)]() mutable {
+    if (end.error.empty()) {
+      end.report = next_report_++;
+      reports_[*end.report] = page;
+      if (reports_.size() > kKeptReports) reports_.erase(reports_.begin());
+    }
+    done(end);
   });
 }
 

@@ -68,6 +68,7 @@ class Application {
   GaitdStart start_pose() const;
   std::string backend_scope() const;
   bool load_backend();
+  void make_telemetry();
   bool start_telemetry();
   void prepare_swaps();
   void read_height_map(Issues* issues);
@@ -103,7 +104,6 @@ class Application {
   std::filesystem::path backend_file_;
   std::string backend_id_;
   bool simulation_ = false;
-  std::string log_file_;
   std::unique_ptr<Telemetry> telemetry_;
   std::unique_ptr<LiveFeed> live_;
   EstopFlag estop_;

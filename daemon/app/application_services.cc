@@ -86,7 +86,7 @@ LogMetadata Application::metadata() const {
   return m;
 }
 
-bool Application::start_telemetry() {
+void Application::make_telemetry() {
   TelemetryOptions options;
   options.period = config_.period;
   options.input_text = [](const Input& input) {
@@ -96,8 +96,11 @@ bool Application::start_telemetry() {
   telemetry_ = std::make_unique<Telemetry>(
       make_signal_table(robot_->model, known_variants_, simulation_), options);
   live_ = std::make_unique<LiveFeed>(telemetry_.get());
+}
+
+bool Application::start_telemetry() {
   if (config_.log.enabled) {
-    log_file_ = default_log_file();
+    const std::string file = default_log_file();
     McapOptions mcap;
     mcap.compression = config_.log.compression == LogCompression::kNone ? McapCompression::kNone
                                                                         : McapCompression::kZstd;
@@ -107,11 +110,11 @@ bool Application::start_telemetry() {
     if (!scenario_) {
       limits = {static_cast<std::uint64_t>(1e6 * config_.log.max_size), config_.log.keep};
     }
-    if (!telemetry_->open_log(log_file_, metadata(), mcap, &error, limits)) {
+    if (!telemetry_->open_log(file, metadata(), mcap, &error, limits)) {
       spdlog::error("{}", error);
       return false;
     }
-    spdlog::info("log: {}", log_file_);
+    spdlog::info("log: {}", file);
   }
   telemetry_->start();
   return true;

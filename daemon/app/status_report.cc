@@ -238,6 +238,8 @@ void StatusReport::add_age(json* status) const {
   const double age = loop == nullptr ? 0.0 : loop->pulse().age();
   const bool stale = age > (sources_.lockstep ? kStaleLockstep : kStale);
   const int inside = stale ? loop->inside() : -1;
+  const auto goal = loop == nullptr ? std::nullopt : loop->goal();
+  (*status)["goto"] = goal ? json{{"x", goal->x}, {"y", goal->y}} : json();
   (*status)["age"] = age;
   (*status)["stale"] = stale;
   (*status)["hangs_in"] = inside < 0 ? json() : json(layer_name(inside));

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "daemon/command/estop_flag.h"
@@ -72,6 +73,11 @@ class ControlLoop {
   const LoopPulse& pulse() const { return pulse_; }
   // [any thread] The plugin that it waits for, GAITD_LAYER_*, or -1.
   int inside() const noexcept;
+  // [any thread] Where a goto leads that goes on planning on its way; nothing without one.
+  struct Place {
+    double x, y;  // m, W
+  };
+  std::optional<Place> goal() const noexcept;
 
  private:
   enum class Outcome { kTicked, kNotReady, kBackendFailed };
@@ -92,6 +98,7 @@ class ControlLoop {
   void take_plan();
   void take_refinement();
   void note_goto(const char* text);
+  void show_goal();
   CommandReply take_footsteps(const Command& command);
   static CommandReply refuse_outdated(const Command& command);
   CommandReply simulate(const Command& command);
@@ -124,6 +131,8 @@ class ControlLoop {
   LoopPulse pulse_;
   std::atomic<bool> inside_backend_{false};
   GotoTask goto_;
+  std::atomic<bool> goes_{false};
+  std::atomic<double> goal_x_{0.0}, goal_y_{0.0};
   RefineTask refine_;
   SightTask sight_;
   std::atomic<bool> stop_{false};

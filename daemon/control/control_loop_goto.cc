@@ -53,7 +53,10 @@ void ControlLoop::begin_goto(const Command& command, bool from_client) {
 
 void ControlLoop::give_up_goto(const Command& command) {
   if (!goto_.active() || !replaces_goto(command)) return;
-  if (goto_.answered()) return goto_.drop();
+  if (goto_.answered()) {
+    note_goto("goto: given up, another command has taken its place");
+    return goto_.drop();
+  }
   CommandReply reply;
   std::snprintf(reply.message.data(), reply.message.size(), "another command has taken its place");
   tell_goto(goto_.command(), goto_.from_client(), reply);
@@ -107,8 +110,22 @@ void ControlLoop::take_plan() {
   } else if (step != GotoTask::Step::kWait) {
     reply.accepted = step == GotoTask::Step::kDone;
     std::snprintf(reply.message.data(), reply.message.size(), "%s", goto_.message());
+    show_goal();
     tell_goto(goto_.command(), goto_.from_client(), reply);
   }
+  show_goal();
+}
+
+// Before its answer: who has it finds the goto in the status.
+void ControlLoop::show_goal() {
+  goal_x_.store(goto_.command().target.x, std::memory_order_relaxed);
+  goal_y_.store(goto_.command().target.y, std::memory_order_relaxed);
+  goes_.store(goto_.active(), std::memory_order_release);
+}
+
+std::optional<ControlLoop::Place> ControlLoop::goal() const noexcept {
+  if (!goes_.load(std::memory_order_acquire)) return {};
+  return Place{goal_x_.load(std::memory_order_relaxed), goal_y_.load(std::memory_order_relaxed)};
 }
 
 // Footsteps of others, put on the ground as it is known.

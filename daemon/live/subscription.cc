@@ -36,8 +36,10 @@ void read_signals(const json& globs, const SignalTable& table, SubscriptionReque
       if (!glob_match(pattern, table[i].name)) continue;
       any = wanted[i] = true;
     }
-    const bool plain = pattern.find_first_of("*?") == std::string::npos;
-    if (!any && plain) {
+    if (any) continue;
+    if (pattern.find_first_of("*?") != std::string::npos) {
+      request->unmatched.push_back(pattern);
+    } else {
       add_error(&request->error, "signals: there is no signal \"" + pattern +
                                      "\"; `gaitctl log info` of a log lists them, \"*\" gives all");
     }
@@ -118,9 +120,11 @@ SubscriptionRequest read_subscription(const json& params, const SignalTable& tab
 json subscription_header(const SubscriptionRequest& request, const SignalTable& table) {
   SignalTable signals;
   for (const std::size_t place : request.signals) signals.push_back(table[place]);
-  return {{"rate", request.rate},
-          {"events", request.events},
-          {"signals", json::parse(signal_table_to_json(signals))}};
+  json header = {{"rate", request.rate},
+                 {"events", request.events},
+                 {"signals", json::parse(signal_table_to_json(signals))}};
+  if (!request.unmatched.empty()) header["unmatched"] = request.unmatched;
+  return header;
 }
 
 std::string frame_line(const SignalTable& table, std::span<const std::size_t> signals,

@@ -37,13 +37,15 @@ struct Subscription {
 /// What telemetry.subscribe asks for, or what is wrong with it, one mistake per line.
 struct SubscriptionRequest {
   std::vector<std::size_t> signals;
+  std::vector<std::string> unmatched;  // globs without a signal: another robot may have some
   double rate = 30.0;
   bool events = false;
   std::string error;
 };
 SubscriptionRequest read_subscription(const nlohmann::json& params, const SignalTable& table);
 
-/// The answer to it: names, units and words of the signals in the order of the frames.
+/// The answer to it: names, units and words of the signals in the order of the frames, and the
+/// globs that match none.
 nlohmann::json subscription_header(const SubscriptionRequest& request, const SignalTable& table);
 
 /// The notification with one tick. `values` in table order; reals rounded to single precision,

@@ -91,8 +91,9 @@ class Robot:
     def wait(self, state: Union[str, Sequence[str]] = "standing", timeout: float = 60.0) -> Dict[str, Any]:
         """Waits until the robot is in the state, or one of them, after what was commanded last; gives its status.
 
-        ``"standing"`` is reached when no footsteps are ahead, or they are paused. States are those of ``status``:
-        disarmed, readying, standing, walking, stopping, testing, fault. timeout: s of this machine's clock.
+        ``"standing"`` is reached when no footsteps are ahead and no ``goto`` plans any, or they are paused. States are
+        those of ``status``: disarmed, readying, standing, walking, stopping, testing, fault. timeout: s of this
+        machine's clock.
 
         Raises :class:`Fault` when a fault comes instead, :class:`WaitTimeout` when the time is over.
         """
@@ -105,7 +106,8 @@ class Robot:
             status = self.status()
             # The tick that took the command shows its effect only at the end.
             if status["tick"] is not None and status["tick"] > self._taken:
-                ready = status["state"] != "standing" or not status["footsteps_ahead"] or status["paused"]
+                ahead = status["footsteps_ahead"] or status["goto"] is not None
+                ready = status["state"] != "standing" or not ahead or status["paused"]
                 if status["state"] in wanted and ready:
                     return status
                 if status["state"] == "fault":

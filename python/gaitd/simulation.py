@@ -6,6 +6,7 @@ import os
 import subprocess
 import tempfile
 import time
+import weakref
 from typing import Any, Mapping, Optional, Union
 
 from .errors import NoDaemon, ProgramError
@@ -42,6 +43,15 @@ def simulate(
     return Simulation(log, robot, backend, clock, set, trust)
 
 
+def _terminate(process: "subprocess.Popen[bytes]") -> None:
+    if process.poll() is None:
+        process.terminate()
+        try:
+            process.wait(_PATIENCE)
+        except subprocess.TimeoutExpired:
+            process.kill()
+
+
 class Simulation(Robot):
     """A :class:`Robot` of a gaitd that belongs to this object and ends with it."""
 
@@ -66,6 +76,8 @@ class Simulation(Robot):
             self._process = subprocess.Popen(
                 [*command, *assignments(set)], stdin=subprocess.DEVNULL, stdout=output, stderr=output
             )
+        # However it is let go: a gaitd that nobody can reach any more would walk on and write its log.
+        self._reaper = weakref.finalize(self, _terminate, self._process)
         try:
             self._connect(path)
             self.wait("standing", _PATIENCE)
@@ -104,13 +116,8 @@ class Simulation(Robot):
         """What it printed; None if it was ended before."""
         if not os.path.exists(self._output):
             return None
-        if self._process.poll() is None:
-            self._process.terminate()
-        try:
-            self._process.wait(_PATIENCE)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+        self._reaper()
+        self._process.wait()
         said = self.output
         self._folder.cleanup()
         return said

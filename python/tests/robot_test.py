@@ -1,5 +1,6 @@
 """A robot of a private gaitd, commanded from Python."""
 
+import gc
 import os
 import threading
 import unittest
@@ -176,6 +177,13 @@ class Connections(unittest.TestCase):
             list(events)
         self.assertFalse(os.path.exists(folder))
         self.assertGreater(gaitd.Log(path).ticks, 0)
+
+    def test_a_gaitd_that_is_let_go_ends(self):
+        short = gaitd.simulate(clock="lockstep")
+        process = short._process
+        del short
+        gc.collect()
+        process.wait(20)
 
 
 if __name__ == "__main__":

@@ -193,7 +193,16 @@ TEST(Subscription, EveryMistakeIsSaid) {
   EXPECT_NE(error({{"signals", {"*"}}, {"rate", "x"}}).find("from 0.1 to 200"), std::string::npos);
   EXPECT_NE(error({{"signals", {"*"}}, {"events", 1}}).find("true or false"), std::string::npos);
   EXPECT_NE(error({{"signals", {"*"}}, {"speed", 1}}).find("speed: unknown"), std::string::npos);
-  EXPECT_EQ(error({{"signals", {"arm/*"}}}), "");  // another robot may have them
+}
+
+TEST(Subscription, GlobsWithoutASignalAreToldInTheAnswer) {
+  const auto answer = [](const json& signals) {
+    const SubscriptionRequest request = read_subscription({{"signals", signals}}, table());
+    EXPECT_EQ(request.error, "");  // another robot may have them
+    return subscription_header(request, table());
+  };
+  EXPECT_EQ(answer({"arm/*", "pelvis/*", "hand/?"})["unmatched"], json({"arm/*", "hand/?"}));
+  EXPECT_FALSE(answer({"pelvis/*"}).contains("unmatched"));
 }
 
 TEST(Subscription, WhatWouldLoadTheProcessorIsRefused) {
