@@ -34,7 +34,7 @@ CLI::Option* add_number(CLI::App* command, const std::string& option,
                         const std::string& description);
 
 /// Waits until the robot is not in `state` any more, at most for `longest`, or until this program
-/// is to stop. Empty, or that it is in fault then, and why.
+/// is to stop. Returns the faults, in words, of a robot that is in fault then; nothing otherwise.
 std::string wait_while(RpcClient* client, const std::string& state,
                        std::chrono::milliseconds longest);
 

@@ -39,6 +39,7 @@ arm() {
   local answer
   for _ in {1..100}; do
     answer=$(gaitctl arm 2>&1) && return
+    [[ $answer == *"the robot is in fault"* ]] && return  # that came while it got ready
     [[ $answer == *"estimate yet"* || $answer == *"is silent"* ]] || break  # before its first ticks
     sleep 0.1
   done

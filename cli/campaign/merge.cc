@@ -75,11 +75,11 @@ bool add_logs(const CampaignPlan& plan, const CampaignResults& results, const So
     if (keep && from == to) continue;
     for (const char* extension : kRunFiles) {
       const fs::path one = fs::path(to).replace_extension(extension);
-      if (keep) {
-        const fs::path its = fs::path(from).replace_extension(extension);
-        if (fs::exists(its, ignored) && !share_file(its, one, error)) return false;
-      } else {
+      const fs::path its = fs::path(from).replace_extension(extension);
+      if (!keep || !fs::exists(its, ignored)) {
         fs::remove(one, ignored);
+      } else if (!share_file(its, one, error)) {
+        return false;
       }
     }
   }

@@ -107,7 +107,9 @@ std::optional<CampaignPlan> plan_of_file(const CampaignOrigin& origin, std::stri
   // What --set says makes another campaign of it, and so does what the scenarios say.
   for (const std::string& setting : origin.settings) plan->text += "# --set " + setting + "\n";
   const daemon::Paths paths = daemon::Paths::detect();
-  for (const std::string& scenario : plan->campaign.scenarios) {
+  std::vector<std::string> scenarios = plan->campaign.scenarios;
+  if (!plan->campaign.motions.empty()) scenarios.push_back(plan->campaign.motions);
+  for (const std::string& scenario : scenarios) {
     const auto path = paths.scenario(scenario_from(origin.file, scenario));
     if (plan->campaign.drawn.contains(scenario) || !path) continue;
     char line[32];

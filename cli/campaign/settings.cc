@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 
 namespace gaitd::cli {
 namespace {
@@ -61,28 +63,48 @@ void read_settings(MapReader map, Campaign* campaign) {
   }
 }
 
+namespace {
+
+// Whether to set one of them sets the other: the same key, or a part of it.
+bool overlap(std::string_view a, std::string_view b) {
+  if (a.size() > b.size()) std::swap(a, b);
+  return b.starts_with(a) && (a.size() == b.size() || b[a.size()] == '.');
+}
+
+// The setting whose named values, more than one of them, set the key or a part of it.
+std::string bundle_with(const Campaign& campaign, const std::string& key) {
+  for (const CampaignSetting& setting : campaign.settings) {
+    const auto bundle = campaign.bundles.find(setting.key);
+    if (bundle == campaign.bundles.end() || setting.values.size() < 2) continue;
+    for (const std::string& value : setting.values) {
+      for (const std::string& its : bundle->second.at(value)) {
+        if (overlap(key, std::string_view(its).substr(0, its.find('=')))) return setting.key;
+      }
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
 bool narrow(Campaign* campaign, const std::string& assignment, std::string* error) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos) return false;
   const std::string key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
   // What is drawn is not asked for again: --set comes later, and wins.
   std::erase_if(campaign->draws, [&](const CampaignDraw& draw) { return draw.key == key; });
-  const bool searched = campaign->search && campaign->settings.back().key == key;
+  const bool searched = campaign->search && overlap(campaign->settings.back().key, key);
   const auto setting =
       std::find_if(campaign->settings.begin(), campaign->settings.end(),
                    [&](const CampaignSetting& candidate) { return candidate.key == key; });
-  const bool part = std::ranges::any_of(campaign->bundles, [&](const auto& values) {
-    return std::ranges::any_of(values.second, [&](const auto& value) {
-      return std::ranges::any_of(
-          value.second, [&](const std::string& its) { return its.starts_with(key + "="); });
-    });
-  });
-  if (key == "seed" || searched || part) {
-    *error = "--set " + assignment + ": " +
-             (key == "seed" ? "each run has a seed of the campaign's 'seeds'"
-              : searched    ? "the campaign searches along it"
-                            : "named values of the campaign set it") +
-             "; with one value all of them would be the same run; change the file instead";
+  const std::string bundled = bundle_with(*campaign, key);
+  const std::string same = key == "seed" ? "each run has a seed of the campaign's 'seeds'"
+                           : searched    ? "the campaign searches along it"
+                           : !bundled.empty()
+                               ? "the values of '" + bundled + "' set it; choose one of them first"
+                               : "";
+  if (!same.empty()) {
+    *error = "--set " + assignment + ": " + same + ", or all would be the same run";
     return false;
   }
   if (setting == campaign->settings.end()) return false;

@@ -123,8 +123,9 @@ void read_objective(MapReader map, CampaignTune* tune) {
   }
 }
 
-bool is_among(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
+template <class Value>
+bool is_among(const std::vector<Value>& values, const Value& value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
 }
 
 void read_held_out(MapReader map, const Campaign& campaign, CampaignTune* tune) {
@@ -134,10 +135,8 @@ void read_held_out(MapReader map, const Campaign& campaign, CampaignTune* tune) 
     for (const NodePtr& item : seeds->items) {
       const auto seed = daemon::as_integer(*item);
       const auto value = static_cast<std::uint64_t>(seed.value_or(0));
-      const auto among = [value](const std::vector<std::uint64_t>& seeds) {
-        return std::find(seeds.begin(), seeds.end(), value) != seeds.end();
-      };
-      if (!seed || *seed < 0 || among(campaign.seeds) || among(tune->held_out_seeds)) {
+      if (!seed || *seed < 0 || is_among(campaign.seeds, value) ||
+          is_among(tune->held_out_seeds, value)) {
         map.fail("seeds", "whole numbers, each once, that are not among 'seeds' of the campaign",
                  daemon::describe(*item), "what is tuned on is not held out");
         return;
@@ -152,8 +151,8 @@ void read_held_out(MapReader map, const Campaign& campaign, CampaignTune* tune) 
   }
   const std::vector<std::string>& kinds = gauntlet_kinds();
   for (const NodePtr& node : map.list("gauntlet", 0, 1000)) {
-    if (std::find(kinds.begin(), kinds.end(), node->text) == kinds.end() ||
-        campaign.drawn.contains(node->text) || is_among(tune->held_out_kinds, node->text)) {
+    if (!is_among(kinds, node->text) || campaign.drawn.contains(node->text) ||
+        is_among(tune->held_out_kinds, node->text)) {
       map.fail("gauntlet", "kinds of the gauntlet, each once, that are not tuned on",
                daemon::describe(*node), daemon::suggestion(node->text, kinds));
     }

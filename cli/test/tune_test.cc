@@ -200,8 +200,14 @@ TEST_F(TuneTest, SaysThatAWinnerIsLuckyOrStandsOnAnEdge) {
 }
 
 TEST_F(TuneTest, SaysWhatIsWrong) {
-  tuned("  held_out: {seeds: [2]}\nseeds: 3\n");
-  EXPECT_HAS(tune().err, "tune.held_out.seeds: expected whole numbers that are not among 'seeds'");
+  for (const char* seeds : {"[2]", "[7, 7]"}) {
+    tuned("  held_out: {seeds: " + std::string(seeds) + "}\nseeds: 3\n");
+    EXPECT_HAS(tune().err, "tune.held_out.seeds: expected whole numbers, each once, that are not");
+  }
+  for (const char* scenarios : {"[good.yaml]", "[stand, stand]"}) {
+    tuned("  held_out: {seeds: 1, scenarios: " + std::string(scenarios) + "}\nseeds: 3\n");
+    EXPECT_HAS(tune().err, "tune.held_out.scenarios: expected scenarios, each once, that are not");
+  }
   campaign(
       "scenarios: [good.yaml]\nset: {gait.swing_height: [0.1]}\ntune:\n  parameters: "
       "{gait.swing_height: 30 %, gait.no: 1}\n"

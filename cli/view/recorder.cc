@@ -36,7 +36,7 @@ std::string new_file(const std::string& folder) {
 
 }  // namespace
 
-// What the writing thread has of a recording; `waiting` and `failed` are everybody's.
+// Belongs to the writing thread but for what is atomic, and what is lost.
 struct Recorder::Recording {
   explicit Recording(const daemon::SignalTable& signals)
       : writer(signals), width(signals.size()), tick_signal(find_signal(signals, "tick")) {}
@@ -64,7 +64,8 @@ struct Recorder::Recording {
   std::int64_t rows = 0;
   std::atomic<std::size_t> waiting{0};  // frames and events
   std::atomic<bool> failed{false};
-  std::uint64_t lost = 0;  // frames that were not even taken; the thread of the io_context counts
+  // That were not even taken; the thread of the io_context counts them.
+  std::uint64_t lost_frames = 0, lost_events = 0;
 };
 
 Recorder::~Recorder() {
@@ -90,9 +91,9 @@ void Recorder::begin(const json& robot, const daemon::SignalTable& signals,
 }
 
 template <class Item>
-void Recorder::take(const Item& item) {
+void Recorder::take(const Item& item, std::uint64_t& lost) {
   if (now_->waiting >= kMostWaiting) {
-    ++now_->lost;
+    ++lost;
     return;
   }
   ++now_->waiting;
@@ -103,19 +104,19 @@ void Recorder::take(const Item& item) {
 }
 
 void Recorder::add(const LiveFrame& frame) {
-  if (now_ && frame.values.size() == now_->width) take(frame);
+  if (now_ && frame.values.size() == now_->width) take(frame, now_->lost_frames);
 }
 
 void Recorder::add(const daemon::Event& event) {
-  if (now_) take(event);
+  if (now_) take(event, now_->lost_events);
 }
 
 void Recorder::end(std::function<void(const End&)> done) {
   if (!now_)
     return done({.log = "", .lost = 0, .report = {}, .error = "nothing is being recorded"});
   boost::asio::post(writing_, [this, now = std::exchange(now_, nullptr), done = std::move(done)] {
-    End end{.log = now->file, .lost = now->lost, .report = {}, .error = ""};
-    now->writer.set_dropouts(now->lost, 0);
+    End end{.log = now->file, .lost = now->lost_frames, .report = {}, .error = ""};
+    now->writer.set_dropouts(now->lost_frames, now->lost_events);
     if (!now->opened || !now->writer.close()) {
       end.error = now->writer.error();
       return tell(std::move(end), nullptr, done);

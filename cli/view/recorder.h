@@ -54,7 +54,7 @@ class Recorder {
   struct Recording;
 
   template <class Item>
-  void take(const Item& item);
+  void take(const Item& item, std::uint64_t& lost);
   void tell(End end, const Message& page, const std::function<void(const End&)>& done);
 
   boost::asio::io_context* io_;

@@ -264,9 +264,7 @@ bool Application::prepare() {
   report_issues(issues);
   if (!issues.ok() || !load_layers(requests) || !load_backend()) return false;
   if (options_.check_config) return true;
-  make_telemetry();
-  // A second gaitd is refused its socket before it can empty the log of the first one.
-  return start_server() && start_telemetry();
+  return start_telemetry() && start_server();
 }
 
 bool Application::become_realtime() {

@@ -68,7 +68,6 @@ class Application {
   GaitdStart start_pose() const;
   std::string backend_scope() const;
   bool load_backend();
-  void make_telemetry();
   bool start_telemetry();
   void prepare_swaps();
   void read_height_map(Issues* issues);

@@ -86,7 +86,7 @@ LogMetadata Application::metadata() const {
   return m;
 }
 
-void Application::make_telemetry() {
+bool Application::start_telemetry() {
   TelemetryOptions options;
   options.period = config_.period;
   options.input_text = [](const Input& input) {
@@ -96,9 +96,6 @@ void Application::make_telemetry() {
   telemetry_ = std::make_unique<Telemetry>(
       make_signal_table(robot_->model, known_variants_, simulation_), options);
   live_ = std::make_unique<LiveFeed>(telemetry_.get());
-}
-
-bool Application::start_telemetry() {
   if (config_.log.enabled) {
     const std::string file = default_log_file();
     McapOptions mcap;

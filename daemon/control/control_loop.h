@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -75,7 +76,7 @@ class ControlLoop {
   int inside() const noexcept;
   // [any thread] Where a goto leads that goes on planning on its way; nothing without one.
   struct Place {
-    double x, y;  // m, W
+    float x, y;  // m, W; NaN: none
   };
   std::optional<Place> goal() const noexcept;
 
@@ -131,8 +132,7 @@ class ControlLoop {
   LoopPulse pulse_;
   std::atomic<bool> inside_backend_{false};
   GotoTask goto_;
-  std::atomic<bool> goes_{false};
-  std::atomic<double> goal_x_{0.0}, goal_y_{0.0};
+  std::atomic<Place> goal_{Place{NAN, NAN}};
   RefineTask refine_;
   SightTask sight_;
   std::atomic<bool> stop_{false};

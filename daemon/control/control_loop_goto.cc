@@ -3,6 +3,7 @@
 // own and taken as those of a client are.
 #include <time.h>
 
+#include <cmath>
 #include <cstdio>
 
 #include "daemon/control/command_text.h"
@@ -93,6 +94,8 @@ void ControlLoop::take_plan() {
     pause_for_plan();
     step = goto_.step(pipeline_->gait(), command_.get());
   }
+  if (step != GotoTask::Step::kFootsteps)
+    show_goal();  // who gets its answer finds it in the status
   CommandReply reply;
   if (step == GotoTask::Step::kFootsteps) {
     if (const CommandReply taken = take_footsteps(*command_); taken.accepted) {
@@ -110,22 +113,21 @@ void ControlLoop::take_plan() {
   } else if (step != GotoTask::Step::kWait) {
     reply.accepted = step == GotoTask::Step::kDone;
     std::snprintf(reply.message.data(), reply.message.size(), "%s", goto_.message());
-    show_goal();
     tell_goto(goto_.command(), goto_.from_client(), reply);
   }
-  show_goal();
 }
 
-// Before its answer: who has it finds the goto in the status.
 void ControlLoop::show_goal() {
-  goal_x_.store(goto_.command().target.x, std::memory_order_relaxed);
-  goal_y_.store(goto_.command().target.y, std::memory_order_relaxed);
-  goes_.store(goto_.active(), std::memory_order_release);
+  const auto& target = goto_.command().target;
+  goal_.store(goto_.active() ? Place{static_cast<float>(target.x), static_cast<float>(target.y)}
+                             : Place{NAN, NAN},
+              std::memory_order_relaxed);
 }
 
 std::optional<ControlLoop::Place> ControlLoop::goal() const noexcept {
-  if (!goes_.load(std::memory_order_acquire)) return {};
-  return Place{goal_x_.load(std::memory_order_relaxed), goal_y_.load(std::memory_order_relaxed)};
+  static_assert(std::atomic<Place>::is_always_lock_free);
+  const Place goal = goal_.load(std::memory_order_relaxed);
+  return std::isnan(goal.x) ? std::nullopt : std::optional(goal);
 }
 
 // Footsteps of others, put on the ground as it is known.

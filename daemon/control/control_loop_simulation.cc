@@ -52,6 +52,7 @@ CommandReply ControlLoop::simulate(const Command& command) {
                   (std::string("sim reset: ") + kNoSimulation).c_str());
   } else {
     pipeline_->reset(options_.arm);
+    sight_.restart();
     reply.accepted = true;
   }
   return reply;

@@ -112,8 +112,8 @@ class LayerSlot {
     fade_.end();
   }
   GaitdStatus set_parameter(int index, double value) {
-    if (beside_.layer && beside_.table == in_use_.table) {
-      beside_.layer->set_parameter(index, value);
+    for (LayerInstance* other : {&beside_, &previous_}) {
+      if (other->layer && other->table == in_use_.table) other->layer->set_parameter(index, value);
     }
     return in_use_.layer->set_parameter(index, value);
   }

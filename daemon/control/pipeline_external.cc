@@ -14,7 +14,8 @@ bool Pipeline::stands() const {
 
 // Before anything is made of the forces: those of the hands are not of a pull.
 void Pipeline::update_handholds(double dt) {
-  handholds_.update(dt, safety_.controlled(), data_.gait, data_.wbc.info, data_.robot);
+  handholds_.update(dt, safety_.controlled(), data_.gait, data_.wbc.info, data_.robot,
+                    data_.dropped);
   for (int side = 0; side < GAITD_MAX_HANDS; ++side) {
     data_.handhold_changes[side] = handholds_.change(side);
   }
@@ -32,6 +33,18 @@ CommandReply Pipeline::handhold(const Command& command) {
     refusal = walking::refuse(
         "handhold.take: the feet of this robot have no force sensors: the forces on a hand would "
         "be taken for forces on the feet");
+  } else if (external_.taring()) {
+    refusal = walking::refuse(
+        "handhold.take: what pulls at the robot is being tared, and the hand would be a part of "
+        "it; "
+        "again in two seconds");
+  } else if (payload_.estimating()) {
+    refusal = walking::refuse(
+        "handhold.take: what the robot carries is being weighed, and the hand would be a part of "
+        "it; "
+        "again when it is done");
+  } else if (handholds_.fails(c.hand, data_.dropped)) {
+    refusal = walking::refuse("handhold.take: a joint of this arm has failed and is damped");
   } else {
     refusal = handholds_.take(c, data_.robot);
   }

@@ -39,6 +39,7 @@ struct PlanAnswer {
 // simulated sensor where it really is.
 struct Sight {
   double time = 0.0;  // s
+  bool anew = false;  // the simulation has begun anew since the one before
   bool has_truth = false;
   GaitdPose pelvis{}, true_pelvis{};
   double joints[GAITD_MAX_JOINTS]{}, true_joints[GAITD_MAX_JOINTS]{};

@@ -127,6 +127,7 @@ void SensorMonitor::check(double dt, const Limits& p, TickData& d) {
   Evidence evidence = gather(d);
   check_joints(dt, p, evidence.controlled, before, d);
   check_imus(dt, p, evidence, before, d);
+  leave_old_imus(p[P::kSensorTimeout], d.sensors);
   if (const int imu = sdk::first_usable_imu(model_, d.sensors); imu >= 0) {
     evidence.weight = model_.total_mass * sdk::view(d.sensors.imus[imu].specific_force).norm();
   }
@@ -204,6 +205,18 @@ void SensorMonitor::check_imus(double dt, const Limits& p, const Evidence& evide
     h.unchanged = repeats ? h.unchanged + (fresh ? dt : 0.0) : 0.0;
     note(pass(dt, p[P::kSensorTimeout], "imu", h, credible, frozen(p, h.unchanged),
               Suspicion::kFrozen, held, d.sensors.imus[i]));
+  }
+}
+
+// Who reads them takes the first that is valid: an old one is not, where there is a better one.
+// Where there is none, it goes on until its age becomes the fault.
+void SensorMonitor::leave_old_imus(double timeout, GaitdSensors& s) {
+  const auto old = [&](const GaitdImuSensor& imu) {
+    return imu.info.valid == 0 || imu.info.age > timeout;
+  };
+  if (std::all_of(s.imus, s.imus + s.imu_count, old)) return;
+  for (int i = 0; i < s.imu_count; ++i) {
+    if (old(s.imus[i])) s.imus[i].info.valid = 0;
   }
 }
 

@@ -67,6 +67,7 @@ class SensorMonitor {
                   TickData& d);
   void check_feet(double dt, const Limits& p, const Evidence& evidence, const GaitdSensors& before,
                   TickData& d);
+  static void leave_old_imus(double timeout, GaitdSensors& s);
   void note(const Suspect& suspect);
 
   GaitdModel model_;

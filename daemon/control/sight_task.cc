@@ -2,6 +2,7 @@
 #include "daemon/control/sight_task.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace gaitd::daemon {
 namespace {
@@ -25,6 +26,7 @@ void SightTask::look(const GaitdModel& model, const TickData& data, std::int64_t
   if (looked_ - delivered_ == kPending) ++delivered_;  // the oldest is lost
   ++looked_;
   pending.due = tick + timing_.latency;
+  sight.anew = std::exchange(anew_, false);
   sight.time = data.time.time;
   sight.pelvis = pose_of(data.robot.pelvis_position, data.robot.pelvis_orientation);
   sight.has_truth = data.has_truth;

@@ -21,6 +21,8 @@ class SightTask {
  public:
   SightTask(PlanPort* port, const SightTiming& timing) : port_(port), timing_(timing) {}
 
+  // The simulation begins anew: what is not seen yet was before that.
+  void restart() { anew_ = true; }
   // After a tick.
   void look(const GaitdModel& model, const TickData& data, std::int64_t tick);
   // Before a tick. False: the other thread has not kept up; in lockstep the tick waits.
@@ -36,6 +38,7 @@ class SightTask {
   };
   std::array<Pending, kPending> pending_;
   std::int64_t looked_ = 0, delivered_ = 0;
+  bool anew_ = false;
 };
 
 }  // namespace gaitd::daemon

@@ -129,6 +129,7 @@ std::string_view handhold_text(int hand, walking::Handholds::Change change, char
                                     "lets go: it found nothing to hold on to",
                                     "lets go: it was torn off its place",
                                     "lets go: the robot steps",
+                                    "lets go: a joint of its arm failed",
                                     "lets go"};
   static_assert(std::size(kTexts) == static_cast<int>(walking::Handholds::Change::kReleased) + 1);
   Text text(buffer, size);

@@ -101,6 +101,10 @@ int LiveGround::put(const HeightMap& tile, bool forget) {
 
 void LiveGround::clear() {
   const std::scoped_lock lock(mutex_);
+  forget();
+}
+
+void LiveGround::forget() {
   told_ = felt_ = false;
   ++cleared_;
   memory_.clear();
@@ -108,6 +112,8 @@ void LiveGround::clear() {
 
 void LiveGround::look(const Sight& sight) {
   const std::scoped_lock lock(mutex_);
+  // What was told still holds; what was seen and felt was so from where the robot is no longer.
+  if (sight.anew && !told_) forget();
   time_ = sight.time;
   memory_.move_to(sdk::view(sight.pelvis.position).head<2>());
   if (told_ || eye_) stand_on_soles(sight);

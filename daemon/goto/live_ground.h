@@ -48,6 +48,7 @@ class LiveGround {
   Known known() const;
 
  private:
+  void forget();  // locked
   void stand_on_soles(const Sight& sight);
   // Of feet that stand half in the air.
   void feel(const Sight& sight);

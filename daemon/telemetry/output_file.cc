@@ -2,6 +2,7 @@
 #include "daemon/telemetry/output_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -28,6 +29,8 @@ const char* advice(int code) {
       return "; raise the limit on the size of files (ulimit -f)";
     case ENXIO:
       return "; let somebody read the pipe first, or name a file";
+    case EWOULDBLOCK:
+      return "; another process writes it: stop that one, or name another file";
     case EISDIR:
       return "; name a file, not a directory";
     default:
@@ -44,10 +47,17 @@ bool OutputFile::open(const std::string& path) {
   path_ = path;
   size_ = 0;
   error_.clear();
-  constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC | O_NOCTTY;
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOCTTY;
   // A pipe that nobody reads is an error, and not waited for.
   descriptor_ = ::open(path.c_str(), kFlags | O_NONBLOCK, 0644);
-  return (descriptor_ >= 0 && ::fcntl(descriptor_, F_SETFL, kFlags) == 0) || fail("create", errno);
+  if (descriptor_ < 0 || ::fcntl(descriptor_, F_SETFL, kFlags) != 0) return fail("create", errno);
+  // Emptied only when nobody else writes it. Where files cannot be locked, nobody is asked.
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    return fail("write", errno);
+  }
+  struct stat info {};
+  if (::fstat(descriptor_, &info) != 0 || !S_ISREG(info.st_mode)) return true;
+  return ::ftruncate(descriptor_, 0) == 0 || fail("empty", errno);
 }
 
 bool OutputFile::write(std::string_view bytes) {

@@ -16,7 +16,8 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  bool open(const std::string& path);  // creates or empties it
+  // Creates or empties it, unless another process writes it.
+  bool open(const std::string& path);
   bool write(std::string_view bytes);
   // Is what was written still there, under its name? A file that was removed, replaced or cut off
   // meanwhile is a failure like a full disk.

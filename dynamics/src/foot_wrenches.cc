@@ -224,8 +224,10 @@ void FootWrenches::update(const Motion& motion, double bandwidth, double dt,
     last_momentum_ = momentum_;
     first_ = residual_ = -expected_;
   }
-  if (loaded_anew_) last_momentum_ = momentum_;
+  // About another point, or of another load: no change of momentum.
+  if (loaded_anew_ || motion.imu != imu_) last_momentum_ = momentum_;
   loaded_anew_ = false;
+  imu_ = motion.imu;
   first_ += share * ((momentum_ - last_momentum_) / dt - expected_ - first_);
   residual_ += share * (first_ - residual_);
   last_momentum_ = momentum_;

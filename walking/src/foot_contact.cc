@@ -38,10 +38,7 @@ void FootContact::land(double off) {
   high_as_told_ = std::abs(off) < kHighAsTold;
 }
 
-void FootContact::doubt() {
-  reset();
-  high_as_told_ = false;
-}
+void FootContact::doubt() { high_as_told_ = false; }
 
 void FootContact::reset() {
   lie_.reset();

@@ -160,11 +160,19 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
   }
   // A transfer has chosen its foot: its footstep may be replaced by one of the same side only.
   const bool committed = state_.phase == GAITD_PHASE_TRANSFER && state_.transfer_final == 0;
-  const int kept = !replace       ? left_by_another()
-                   : recovering() ? begun()  // that step is not to be had otherwise
-                                  : std::min(first_free(), queue_.size());
-  if (count < 1 && !(replace && !committed))
+  int kept = left_by_another();
+  if (replace) kept = recovering() ? begun() : std::min(first_free(), queue_.size());
+  // The footstep that the transfer has chosen, sent again: it stays, with how it was moved.
+  const bool again = replace && committed && count > 0 && queue_.size() > 0 && steps[0].id != 0 &&
+                     steps[0].id == queue_[0].id;
+  if (again) {
+    kept = 1;
+    ++steps;
+    --count;
+  }
+  if (count < 1 && !again && !(replace && !committed)) {
     return refuse("steps: at least one expected, got none");
+  }
   if (Refusal r = check_room(count - (queue_.size() - kept)); r.refused()) return r;
   GaitdPose feet[2] = {state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose};
   for (int side = 0; side < 2; ++side) feet[side].position[2] -= height_offset_;

@@ -88,10 +88,7 @@ bool GaitMachine::recover(double dt, const GaitdRobotState& robot) {
   const int side = recovery_side(robot, away);
   GaitdFootstep step = recovery_step(robot, side);
   complete(step);
-  GaitdPose landed = step.pose;
-  landed.position[2] += height_offset_;
-  GaitdFootstep closing = closing_step(landed, other_side(side));
-  closing.pose.position[2] -= height_offset_;
+  GaitdFootstep closing = closing_step(step.pose, other_side(side));
   complete(closing);
   // Footsteps that waited for a resume begin from a place where the robot no longer is. The pause
   // lasts: what is sent now waits, too.

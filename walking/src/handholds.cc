@@ -208,8 +208,16 @@ void Handholds::let_go(double dt, const Eigen::Vector3d& position, Hand& hand) c
   if (!hand.told) hand.change = Change::kReleased;
 }
 
+bool Handholds::fails(int hand, std::uint64_t failed) const {
+  const JointChain& arm = arms_[hand];
+  for (int i = 0; i < arm.size(); ++i) {
+    if ((failed >> arm.joint(i) & 1u) != 0) return true;
+  }
+  return false;
+}
+
 void Handholds::update(double dt, bool controlled, const GaitdGaitState& gait,
-                       const GaitdWbcInfo& last, GaitdRobotState& robot) {
+                       const GaitdWbcInfo& last, GaitdRobotState& robot, std::uint64_t failed) {
   for (GaitdHandhold& handhold : robot.handholds) handhold = {};
   if (!controlled) reset();
   if (!busy()) {
@@ -227,6 +235,9 @@ void Handholds::update(double dt, bool controlled, const GaitdGaitState& gait,
       let_go(dt, position, hand);
     } else if (gait.phase != GAITD_PHASE_STAND) {
       hand.change = Change::kSteps;
+    } else if (fails(side, failed)) {
+      hand.change = Change::kFailed;
+      hand.least = hand.most = 0.0;
     } else if (hand.state == GAITD_HANDHOLD_SOUGHT) {
       seek(dt, position, hand);
     } else {

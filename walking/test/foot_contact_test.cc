@@ -68,6 +68,27 @@ TEST(FootContact, AWholeFootholdStaysWhole) {
   EXPECT_EQ(foot.contact.share(), 1.0);
 }
 
+TEST(FootContact, InDoubtNothingMoreIsFoundOut) {
+  Foot foot;
+  foot.contact.doubt();
+  foot.tip(0.02, 1.0);
+  EXPECT_EQ(foot.contact.share(), 1.0);
+  // What was found out before stays.
+  Foot before;
+  before.tip(0.02, 1.0);
+  const double share = before.contact.share();
+  ASSERT_LT(share, 1.0);
+  before.contact.doubt();
+  before.tip(-0.03, -1.0);
+  EXPECT_EQ(before.contact.share(), share);
+  // Until it lands again.
+  Foot again;
+  again.contact.doubt();
+  again.contact.land(0.0);
+  again.tip(0.02, 1.0);
+  EXPECT_LT(again.contact.share(), 1.0);
+}
+
 TEST(FootContact, WhatIsBeyondTheEdgeThatAFootTipsOverDoesNotCarry) {
   Foot toes;
   toes.tip(0.02, 1.0);

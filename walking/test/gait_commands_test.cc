@@ -321,7 +321,8 @@ TEST(GaitCommands, WhatComesInThePlaceOfAMovedFootstepIsNotMoved) {
       ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 3));
       w.adjustment = {};
       w.run_for(0.05);
-      const GaitdFootstep next = w.gait().commanded[0];
+      GaitdFootstep next = w.gait().commanded[0];
+      next.id = 0;  // another one
       if (command == "stop") ASSERT_FALSE(w.machine.stop().refused());
       if (command == "replace") ASSERT_FALSE(w.machine.footsteps(&next, 1, true).refused());
     }
@@ -332,6 +333,33 @@ TEST(GaitCommands, WhatComesInThePlaceOfAMovedFootstepIsNotMoved) {
       EXPECT_NEAR(moved.pose.position[k], commanded.pose.position[k], 1e-12) << k;
     }
   }
+}
+
+TEST(GaitCommands, AChosenFootstepThatIsSentAgainStaysAsItIs) {
+  SyntheticWalk w;
+  walk(w);
+  ASSERT_TRUE(w.run_until_fraction(2, 0.3));
+  w.adjustment.active = 1;
+  w.adjustment.shift[0] = 0.1;
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 3));
+  w.adjustment = {};
+  w.run_for(0.05);
+  const GaitdFootstep chosen = w.gait().commanded[0];
+  const double moved = w.gait().adjusted[0].pose.position[0];
+  ASSERT_GT(moved, chosen.pose.position[0] + 0.01);
+  const int side = other_side(chosen.side);
+  const GaitdFootstep sent[] = {chosen, footstep(side, chosen.pose.position[0] + 0.2,
+                                                 chosen.pose.position[1] + side_sign(side) * 0.25)};
+  const Refusal refusal = w.machine.footsteps(sent, 2, true);
+  ASSERT_FALSE(refusal.refused()) << refusal.message;
+  w.tick();
+  EXPECT_EQ(w.gait().commanded[0].id, chosen.id);
+  EXPECT_EQ(w.gait().adjusted[0].pose.position[0], moved);
+  EXPECT_EQ(w.gait().footstep_count, 2);
+  // And alone it drops what comes after it.
+  ASSERT_FALSE(w.machine.footsteps(&chosen, 1, true).refused());
+  EXPECT_EQ(w.gait().footstep_count, 1);
+  EXPECT_EQ(w.gait().adjusted[0].pose.position[0], moved);
 }
 
 TEST(GaitCommands, TheModeStandStopsAWalk) {

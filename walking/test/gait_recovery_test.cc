@@ -99,6 +99,16 @@ TEST(GaitRecovery, BothStepsAreKnownFromTheStart) {
   EXPECT_GE(w.gait().adjusted[1].transfer_duration, 0.2);
 }
 
+TEST(GaitRecovery, ClosesWhereTheFootReallyLanded) {
+  SyntheticWalk w;
+  push(w);
+  const int caught = w.gait().next_side;
+  w.landing_error = 0.04;
+  ASSERT_TRUE(w.run_until([&] { return w.gait().phase == GAITD_PHASE_TRANSFER; }, 1.0));
+  EXPECT_NEAR(w.gait().adjusted[0].pose.position[0], w.gait().footholds[caught].pose.position[0],
+              1e-9);
+}
+
 TEST(GaitRecovery, FootstepsThatWaitAreDroppedAndThePauseLasts) {
   SyntheticWalk w;
   ASSERT_FALSE(w.machine.walk({.steps = 6, .length = 0.3}).refused());

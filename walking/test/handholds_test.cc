@@ -91,6 +91,20 @@ TEST(Handholds, AHandThatIsTornOffIsNotCountedOn) {
   EXPECT_FALSE(b.handholds.busy());
 }
 
+TEST(Handholds, AHandWhoseArmFailsIsNotCountedOn) {
+  Bench b;
+  b.hold();
+  const JointChain arm = JointChain::arm(atlas(), GAITD_RIGHT);
+  const std::uint64_t elbow = std::uint64_t{1} << arm.joint(arm.size() / 2);
+  EXPECT_TRUE(b.handholds.fails(GAITD_RIGHT, elbow));
+  EXPECT_FALSE(b.handholds.fails(GAITD_LEFT, elbow));
+  b.handholds.update(kDt, true, b.gait, b.planned, b.robot, elbow);
+  EXPECT_EQ(b.handholds.change(GAITD_RIGHT), Change::kFailed);
+  EXPECT_EQ(b.right().force_max, 0.0);
+  EXPECT_EQ(b.run_for(0.3), Change::kNone);
+  EXPECT_FALSE(b.handholds.busy());
+}
+
 TEST(Handholds, AreNotTakenTwice) {
   Bench b;
   b.hold();

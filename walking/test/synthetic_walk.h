@@ -78,6 +78,7 @@ class SyntheticWalk {
   double landing_delay = 0.0;   // s after the planned end of the swing; negative: early
   double landing_load = 2.0;    // of the weight, on a foot that is down
   double ground_error = 0.0;    // m, of the ground under the swing foot
+  double landing_error = 0.0;   // m, forwards, of a foot that comes down
   double icp_error = 0.0;       // m, forwards
   double icp_error_left = 0.0;  // m
   int ticks = 0;
@@ -97,6 +98,7 @@ class SyntheticWalk {
       if (!down) continue;
       for (int k = 0; k < 3; ++k) foot.position[k] = pose.position[k];
       if (swinging) foot.position[2] += ground_error;
+      if (swinging) foot.position[0] += landing_error;
       for (int k = 0; k < 4; ++k) foot.orientation[k] = pose.orientation[k];
     }
   }

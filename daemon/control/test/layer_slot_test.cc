@@ -98,6 +98,16 @@ TEST_F(Slot, ShadowsSwitchesFadesAndKeepsTheOneBefore) {
   EXPECT_EQ(steps().back(), SwapStep::kRolledBack);
 }
 
+TEST_F(Slot, TheOneBeforeKeepsUpWithTheParametersThatTheyShare) {
+  begin(planner(0.2));
+  ticks(20);
+  ASSERT_TRUE(slot_.has_previous());
+  slot_.set_parameter(0, 0.3);
+  begin(nullptr);
+  ticks(5);
+  EXPECT_EQ(out_.icp[0], 0.3);
+}
+
 TEST_F(Slot, HandsTheStateOverTwiceAndResetsOnlyWhatDidNotRun) {
   ticks(2);
   begin(planner(0.2));

@@ -156,6 +156,27 @@ TEST(SensorMonitor, NamesASensorThatIsSilent) {
   EXPECT_EQ(std::string(b.monitor.suspect().sensor), "right foot force");
 }
 
+TEST(SensorMonitor, AnOldImuIsLeftForABetterOne) {
+  Bench b;
+  b.run(20);
+  const auto silent_for = [&b](double second) {
+    b.next();
+    GaitdImuSensor* imus = b.data->readings.imus;
+    b.data->readings.imu_count = 2;
+    imus[1] = imus[0];
+    imus[0].info.age = 0.05;
+    imus[1].info.age = second;
+    b.check();
+  };
+  silent_for(0.0);
+  EXPECT_EQ(b.data->sensors.imus[0].info.valid, 0);
+  EXPECT_EQ(b.data->sensors.imus[1].info.valid, 1);
+  // With none that is better it goes on, until its age is the fault.
+  silent_for(0.06);
+  EXPECT_EQ(b.data->sensors.imus[0].info.valid, 1);
+  EXPECT_EQ(b.data->sensors.imus[1].info.valid, 1);
+}
+
 TEST(SensorMonitor, ReadingsThatWereNeverCredibleAreNotValid) {
   Bench b;
   b.data->readings.imus[0].angular_rate[0] = kNan;

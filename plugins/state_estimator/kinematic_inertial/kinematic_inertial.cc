@@ -81,7 +81,9 @@ void KinematicInertial::get_state(GaitdStateEstimatorState& s) const {
   sdk::store(orientation_, s.pelvis_orientation);
   view(s.pelvis_velocity) = velocity_W_;
   view(s.gyro_bias) = gyro_bias_;
-  view(s.accelerometer_bias) = balance_bias_ + accelerometer_bias_;
+  view(s.accelerometer_bias) = balance_bias_;
+  // What the observer takes for one at the moment; without balance nobody would correct it again.
+  if (!ground_) view(s.accelerometer_bias) += accelerometer_bias_;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     s.contact[side] = feet_[side].contact;
     view(s.anchor[side]) = feet_[side].anchor;

@@ -41,7 +41,7 @@ std::string BusClaim::take(const std::string& interface) {
     if (errno != EADDRINUSE) return interface + ": cannot be claimed: " + std::strerror(errno);
     return interface +
            ": another process commands its motors already, and two would switch off each other's; "
-           "stop that one first (`ss -xp | grep @" +
+           "stop that one first (`ss -xap | grep @" +
            name + "` names it)";
   }
   std::swap(socket_, claim.socket_);

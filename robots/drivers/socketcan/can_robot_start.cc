@@ -12,8 +12,8 @@ namespace gaitd::can {
 namespace {
 
 constexpr int kTries = 3;
-// Motors of a bus, one after the other: it has no power, or is not plugged in, and to ask each of
-// the others would take a minute in which nobody learns of it.
+// Motors of a bus in a row that do not answer: it has no power or is not plugged in, and asking all
+// the others would only delay saying so.
 constexpr int kMostSilent = 3;
 constexpr const char* kNoAnswer =
     "no answer; check power, wiring, and the identifiers that the motor is set to";
@@ -102,7 +102,12 @@ void CanRobot::check_motors(std::vector<std::string>* errors) {
       continue;
     }
     int& in_row = silent[motor.bus];
-    if (in_row >= kMostSilent) continue;
+    if (in_row == kMostSilent) {
+      errors->push_back("bus " + wiring_.buses[motor.bus].name +
+                        ": its other motors were not asked any more");
+      ++in_row;
+    }
+    if (in_row > kMostSilent) continue;
     const std::string error = check_motor(motor);
     in_row = error == kNoAnswer ? in_row + 1 : 0;
     if (error.empty()) continue;
@@ -111,10 +116,6 @@ void CanRobot::check_motors(std::vector<std::string>* errors) {
                   "motor of %s (bus %s, id 0x%03X): ", names_[motor.joint].c_str(),
                   wiring_.buses[motor.bus].name.c_str(), motor.id);
     errors->push_back(where + error);
-    if (in_row == kMostSilent) {
-      errors->push_back("bus " + wiring_.buses[motor.bus].name +
-                        ": its other motors were not asked any more");
-    }
   }
   if (unchecked > 0) {
     log_(GAITD_LOG_WARNING, std::to_string(unchecked) +

@@ -14,7 +14,8 @@ export function addRecord(state, connection, newest) {
   };
   connection.addEventListener('record', ({detail}) => {
     now = detail;
-    if (detail.log && !detail.error) tell(`Recorded: ${detail.log}`);
+    const lost = detail.lost ? ` without ${detail.lost} frames that the disk was too slow for` : '';
+    if (detail.log && !detail.error) tell(`Recorded: ${detail.log}${lost}`, detail.lost > 0);
     if (detail.error) tell(`Recording: ${detail.error}`, true);
     show();
   });

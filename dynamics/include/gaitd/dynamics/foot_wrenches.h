@@ -86,6 +86,7 @@ class FootWrenches {
   GaitdModel model_;  // its bodies with the loads
   GaitdLoads loads_{};
   bool loaded_anew_ = false;  // since the last update
+  int imu_ = -1;              // of the last update
   Kinematics kinematics_;
   std::vector<bool> in_leg_, tells_torque_;  // by joint
   std::vector<int> rows_;  // joint of each row behind those of the base, legs first

@@ -18,7 +18,7 @@ class FootContact {
  public:
   // The foot has come down `off` heights of the CoM above or below where it was told to.
   void land(double off);
-  // Nobody told where it is, or it was pushed off: nothing is found out until it lands again.
+  // Nothing more is found out of this foothold; what was found out stays.
   void doubt();
   // The foot is in the air or rolls on purpose: what was found out is over.
   void reset();

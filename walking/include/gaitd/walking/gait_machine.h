@@ -114,7 +114,8 @@ class GaitMachine {
   GaitdFootstep recovery_step(const GaitdRobotState& robot, int side) const;
   int recovery_side(const GaitdRobotState& robot, const Eigen::Vector2d& away) const;
   bool recovering() const { return own_steps_ > 0; }
-  // Drops the footsteps behind the first `kept`, and what belonged to them.
+  // Drops the footsteps behind the first `kept`, with the offset and the times that were found for
+  // them.
   void keep_first(int kept);
   // m, of the footstep at `place` in the queue, where the one before it lands at `stance` (W), off
   // by `shift`.
@@ -175,7 +176,7 @@ class GaitMachine {
   struct Goal {
     GaitdFootstep step;
     bool known;
-    bool stood_on;  // by this foot since, as far as no push moved it
+    bool stood_on;  // the foot stands there, but for how a push moved that step
   };
   std::array<Goal, GAITD_MAX_FEET> goals_{};  // last footstep of each foot since the robot stood
   int returns_left_ = 0;        // steps that may lead back to the goals after the last footstep

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 
 #include "gaitd/abi/control.h"
 #include "gaitd/dynamics/kinematics.h"
@@ -20,12 +21,12 @@ GaitdContactPoint hand_contact(const GaitdModel& model, int hand, const GaitdHan
 // The hands that hold on or are about to, and what may be asked of them. A hand that is sent
 // somewhere never knows exactly where the surface is, so it presses softly against the normal that
 // it was told until something stops it. Only then is its force counted on, up to what was allowed.
-// A hand that finds nothing or is torn off lets go, and so do the hands of a robot that has to step
-// all the same: it moves away from what they hold on to.
+// A hand that finds nothing or is torn off lets go, one whose arm fails, and the hands of a robot
+// that has to step all the same: it moves away from what they hold on to.
 class Handholds {
  public:
   // From kNothing on: why a hand lets go.
-  enum class Change { kNone, kHeld, kNothing, kLost, kSteps, kReleased };
+  enum class Change { kNone, kHeld, kNothing, kLost, kSteps, kFailed, kReleased };
 
   // Throws like Kinematics.
   explicit Handholds(const GaitdModel& model);
@@ -39,9 +40,12 @@ class Handholds {
   // GAITD_BOTH: whichever holds on.
   Refusal release(int hand);
   // One tick of `dt` seconds: sets robot.handholds. controlled: the robot stands or walks by
-  // itself. last: of the controller, a tick ago.
+  // itself. last: of the controller, a tick ago. failed: a bit for each joint of the model that
+  // does not do what it is told.
   void update(double dt, bool controlled, const GaitdGaitState& gait, const GaitdWbcInfo& last,
-              GaitdRobotState& robot);
+              GaitdRobotState& robot, std::uint64_t failed = 0);
+  // Whether a joint of the arm is one of them.
+  bool fails(int hand, std::uint64_t failed) const;
 
   bool busy(int hand) const { return hands_[hand].state != GAITD_HANDHOLD_NONE; }
   bool busy() const { return busy(GAITD_LEFT) || busy(GAITD_RIGHT); }
