@@ -71,3 +71,10 @@ dropped r_arm_shx nan 'not credible'
 sed 's/sensor: [a-z_]*/sensor: l_leg_knee/' "$scratch/walk.yaml" >"$scratch/wrong.yaml"
 ! gaitctl run "$scratch/wrong.yaml" >"$scratch/refused" 2>&1 || fail "an unknown sensor was taken"
 grep -q "sensors.faults\[0\].sensor.*l_leg_kny" "$scratch/refused" || fail "$(cat "$scratch/refused")"
+
+# The G1 has a second IMU, which takes over from one that is silent or says always the same.
+for kind in silent freeze; do
+  expect 0 gaitctl run g1-flat-0.20 --set "sensors.faults=[{sensor: imu, kind: $kind, from: 4, duration: 10}]" \
+    --log "$scratch/second.mcap"
+  printf '%-12s %-8s the second one takes over\n' imu "$kind"
+done
