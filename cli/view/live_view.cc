@@ -9,6 +9,7 @@
 #include "cli/installed_page.h"
 #include "cli/view/raw_bytes.h"
 #include "daemon/log/glob.h"
+#include "daemon/telemetry/log_writer.h"
 
 namespace gaitd::cli {
 namespace {
