@@ -237,7 +237,7 @@ void StatusReport::add_age(json* status) const {
   const ControlLoop* loop = loop_;
   const double age = loop == nullptr ? 0.0 : loop->pulse().age();
   const bool stale = age > (sources_.lockstep ? kStaleLockstep : kStale);
-  const int inside = stale ? loop->inside() : -1;
+  const int inside = stale && loop != nullptr ? loop->inside() : -1;
   const auto goal = loop == nullptr ? std::nullopt : loop->goal();
   (*status)["goto"] = goal ? json{{"x", goal->x}, {"y", goal->y}} : json();
   (*status)["age"] = age;

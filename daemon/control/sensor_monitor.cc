@@ -2,8 +2,9 @@
 #include "daemon/control/sensor_monitor.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 
 #include "gaitd/sdk/sensors.h"
 
@@ -49,9 +50,12 @@ bool near(const double (&now)[kSize], const double (&last)[kSize], double limit)
   return true;
 }
 
+// To the bit: a reading that is no number repeats itself too.
 template <std::size_t kSize>
 bool same(const double (&a)[kSize], const double (&b)[kSize]) {
-  return std::memcmp(a, b, sizeof(a)) == 0;
+  return std::equal(a, a + kSize, b, [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  });
 }
 
 bool is_zero(const double (&force)[3]) {
