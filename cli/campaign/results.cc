@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -215,16 +214,9 @@ std::optional<CampaignResults> read_results(const fs::path& path, const ResultFo
 
 bool write_results(const fs::path& path, const ResultFormat& format, const CampaignResults& results,
                    std::string* error) {
-  const fs::path fresh = path.string() + ".new";
-  std::ofstream out(fresh, std::ios::binary | std::ios::trunc);
-  out << format.header();
-  for (const auto& [number, result] : results) out << format.row(result);
-  out << std::flush;
-  std::error_code code;
-  if (out) fs::rename(fresh, path, code);
-  if (out && !code) return true;
-  *error = path.string() + ": cannot write: " + std::strerror(errno);
-  return false;
+  std::string text = format.header();
+  for (const auto& [number, result] : results) text += format.row(result);
+  return replace_file(path, text, error);
 }
 
 bool ResultFile::open(const fs::path& path, std::string* error) {

@@ -5,9 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -167,11 +165,7 @@ bool write_drawn(const Campaign& campaign, const std::vector<CampaignRun>& runs,
       *error = path + ": another gaitd has drawn it otherwise; give another folder with -o";
       return false;
     }
-    std::ofstream out(path, std::ios::binary | std::ios::trunc);
-    out << text << std::flush;
-    if (out) continue;
-    *error = path + ": cannot write: " + std::strerror(errno);
-    return false;
+    if (!write_file(path, text, error)) return false;
   }
   return true;
 }

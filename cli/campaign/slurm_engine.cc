@@ -45,10 +45,9 @@ Job read_job(const fs::path& folder) {
   return {document.value("job", ""), document.value("shards", 0)};
 }
 
-bool write_job(const fs::path& folder, const Job& job) {
-  std::ofstream out(job_file(folder));
-  out << json_text({{"job", job.number}, {"shards", job.shards}}) << std::flush;
-  return static_cast<bool>(out);
+bool write_job(const fs::path& folder, const Job& job, std::string* error) {
+  const json document = {{"job", job.number}, {"shards", job.shards}};
+  return write_file(job_file(folder), json_text(document), error);
 }
 
 fs::path shard_folder(const fs::path& folder, int index) {
@@ -228,7 +227,7 @@ int play_on_slurm(const Context& context, const CampaignPlan& plan, const Runner
     const auto number = submit(plan, options, job.shards, *open, &slurm, &error);
     if (!number) return failed(error);
     job.number = *number;
-    if (!write_job(folder, job)) return failed(job_file(folder).string() + ": cannot write");
+    if (!write_job(folder, job, &error)) return failed(error);
     std::cerr << "job " << job.number << ": " << open->size() << " of " << job.shards
               << " shards\n";
   }

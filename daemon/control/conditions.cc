@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "daemon/control/sensor_monitor.h"
 #include "gaitd/abi/backend.h"
 #include "gaitd/sdk/views.h"
 
@@ -39,7 +40,7 @@ constexpr std::uint32_t kOtherHealth = ~std::uint32_t{GAITD_HEALTH_ESTOP | GAITD
 bool not_under_control(const Now& now) { return (state_bit(now.state) & kControlled) == 0; }
 
 bool stale(const GaitdSignalInfo& info, const Now& now) {
-  return info.valid == 0 || info.age > now.parameters[P::kSensorTimeout];
+  return is_stale(info, now.parameters[P::kSensorTimeout]);
 }
 
 bool joint_stale(const Now& now, JointMask joints) {

@@ -36,13 +36,11 @@ CommandReply Pipeline::handhold(const Command& command) {
   } else if (external_.taring()) {
     refusal = walking::refuse(
         "handhold.take: what pulls at the robot is being tared, and the hand would be a part of "
-        "it; "
-        "again in two seconds");
+        "it; again in two seconds");
   } else if (payload_.estimating()) {
     refusal = walking::refuse(
         "handhold.take: what the robot carries is being weighed, and the hand would be a part of "
-        "it; "
-        "again when it is done");
+        "it; again when it is done");
   } else if (handholds_.fails(c.hand, data_.dropped)) {
     refusal = walking::refuse("handhold.take: a joint of this arm has failed and is damped");
   } else {

@@ -91,7 +91,7 @@ Suspect pass(double dt, double timeout, const char* name, History& h, bool credi
     return {Suspicion::kUntrue, name, h.untrue};
   }
   Suspect suspect;
-  if (reading.info.valid == 0 || reading.info.age > timeout) {
+  if (is_stale(reading.info, timeout)) {
     suspect = {Suspicion::kSilent, name, std::max(reading.info.age, dt)};
   }
   reading.info.age += repeated;
@@ -101,6 +101,16 @@ Suspect pass(double dt, double timeout, const char* name, History& h, bool credi
 // s, of `unchanged`, if that is longer than a reading may repeat itself.
 double frozen(const sdk::Parameters<P>& p, double unchanged) {
   return p[P::kFrozenTime] > 0.0 && unchanged > p[P::kFrozenTime] ? unchanged : 0.0;
+}
+
+// Who reads them takes the first that is valid: an old one is not, where there is a better one.
+// Where there is none, it goes on until its age becomes the fault.
+void leave_old_imus(double timeout, GaitdSensors& s) {
+  const auto old = [&](const GaitdImuSensor& imu) { return is_stale(imu.info, timeout); };
+  if (std::all_of(s.imus, s.imus + s.imu_count, old)) return;
+  for (int i = 0; i < s.imu_count; ++i) {
+    if (old(s.imus[i])) s.imus[i].info.valid = 0;
+  }
 }
 
 }  // namespace
@@ -180,7 +190,7 @@ void SensorMonitor::check_joints(double dt, const Limits& p, bool controlled,
       note(suspect);
       continue;
     }
-    const bool lasting = passed.info.valid == 0 || passed.info.age > p[P::kSensorTimeout];
+    const bool lasting = is_stale(passed.info, p[P::kSensorTimeout]);
     if (lasting && (d.dropped & bit) == 0) {
       d.dropped |= bit;
       dropped_[i] = suspect;
@@ -209,18 +219,6 @@ void SensorMonitor::check_imus(double dt, const Limits& p, const Evidence& evide
     h.unchanged = repeats ? h.unchanged + (fresh ? dt : 0.0) : 0.0;
     note(pass(dt, p[P::kSensorTimeout], "imu", h, credible, frozen(p, h.unchanged),
               Suspicion::kFrozen, held, d.sensors.imus[i]));
-  }
-}
-
-// Who reads them takes the first that is valid: an old one is not, where there is a better one.
-// Where there is none, it goes on until its age becomes the fault.
-void SensorMonitor::leave_old_imus(double timeout, GaitdSensors& s) {
-  const auto old = [&](const GaitdImuSensor& imu) {
-    return imu.info.valid == 0 || imu.info.age > timeout;
-  };
-  if (std::all_of(s.imus, s.imus + s.imu_count, old)) return;
-  for (int i = 0; i < s.imu_count; ++i) {
-    if (old(s.imus[i])) s.imus[i].info.valid = 0;
   }
 }
 

@@ -67,7 +67,6 @@ class SensorMonitor {
                   TickData& d);
   void check_feet(double dt, const Limits& p, const Evidence& evidence, const GaitdSensors& before,
                   TickData& d);
-  static void leave_old_imus(double timeout, GaitdSensors& s);
   void note(const Suspect& suspect);
 
   GaitdModel model_;
@@ -82,5 +81,10 @@ class SensorMonitor {
 };
 
 const char* name_of(SensorMonitor::Suspicion suspicion);
+
+// Of a signal that is not valid, or older than `timeout` (s).
+inline bool is_stale(const GaitdSignalInfo& info, double timeout) {
+  return info.valid == 0 || info.age > timeout;
+}
 
 }  // namespace gaitd::daemon

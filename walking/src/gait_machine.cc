@@ -193,9 +193,9 @@ void GaitMachine::touch_down(const GaitdRobotState& robot, bool early) {
   }
   queue_.pop();
   path_offset_.setZero();
-  const Eigen::Vector3d off(missed.x(), missed.y(), 0.0);
-  const Eigen::Vector3d landed_off = recovering() ? Eigen::Vector3d(shift_ + off) : shift_;
-  if (queue_.size() > 0) path_offset_ = offset_of(0, landed_off, landed.pose);
+  Eigen::Vector3d shift = shift_;
+  if (recovering()) shift.head<2>() += missed.head<2>();  // the closing step is beside this foot
+  if (queue_.size() > 0) path_offset_ = offset_of(0, shift, landed.pose);
   if (recovering() && queue_.size() == 1 && closed()) keep_first(0);
   // The way of a velocity begins anew where the foot is.
   if (drive_.active() && !own) drive_on(0, side, missed);
