@@ -2,17 +2,17 @@
 # leaves the support foot while the CoP stays inside; without an excursion it never does.
 source "$(dirname "$0")/common.sh"
 
-# share EXCURSION: of the single support in the second after the push, in per cent, in which the
+# share EXCURSION: of the single support in the second after it steps, in per cent, in which the
 # CMP is more than 5 mm outside the sole and the CoP inside.
 share() {
   gaitctl run push-bent-diagonal --log "$scratch/walk.mcap" --set step_adjuster.excursion="$1" \
     --set 'disturbances.0.force=[-360, -360, 0]' \
     >"$scratch/verdict" 2>&1 || [[ $1 == 0 ]] || fail "$(cat "$scratch/verdict")"
   gaitctl log export "$scratch/walk.mcap" -o "$scratch/walk.csv" \
-    --signals 'time,gait/phase,gait/support,step_adjust/dy,cmp/desired/*,cop/*,foot/*/x,foot/*/y,foot/*/yaw'
+    --signals 'time,gait/phase,gait/support,cmp/desired/*,cop/*,foot/*/x,foot/*/y,foot/*/yaw'
   awk -F, '
     NR == 1 { for (i = 1; i <= NF; ++i) { sub(/ .*/, "", $i); at[$i] = i } next }
-    { step = $at["step_adjust/dy"]; if (!pushed && step * step > 1e-6) pushed = $1 }
+    !stepped && $at["gait/phase"] != "stand" { stepped = $1 }
     # Distance outside the sole of 0.2604 m x 0.1286 m; negative inside.
     function outside(name, foot, dx, dy, yaw, u, v) {
       yaw = $at[foot "/yaw"]; dx = $at[name "/x"] - $at[foot "/x"]; dy = $at[name "/y"] - $at[foot "/y"]
@@ -20,7 +20,7 @@ share() {
       u = (u < 0 ? -u : u) - 0.1302; v = (v < 0 ? -v : v) - 0.0643
       return u > v ? u : v
     }
-    pushed && $1 < pushed + 1 && $at["gait/phase"] == "swing" {
+    stepped && $1 < stepped + 1 && $at["gait/phase"] == "swing" {
       ++ticks; foot = "foot/" $at["gait/support"]
       if (outside("cmp/desired", foot) > 0.005 && outside("cop", foot) < 0) ++used
     }
