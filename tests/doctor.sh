@@ -34,8 +34,8 @@ fall estimate 'gyro and leg joints disagree'
 fall solver 'max_iterations'
 fall footstep 'lies .* from the standing foot'
 fall sensors 'ms old'
-sed 's/lower="0" upper="2.35637"/lower="0.5" upper="2.35637"/' "$atlas" >robot/atlas.urdf
-fall joint 'leg_kny came to its lower position limit of 0.500'
+sed 's/lower="-1" upper="0.7"/lower="-0.3" upper="0.7"/' "$atlas" >robot/atlas.urdf
+fall joint 'leg_aky came to its lower position limit of -0.300'
 
 # A layer that takes 4 ms from 1.2 s on, in real time.
 GAITD_TEST_FAULT=5 GAITD_TEST_FAULT_TIME=1.2 timeout 120 gaitd --scenario timing.yaml \

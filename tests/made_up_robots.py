@@ -102,18 +102,25 @@ HIP_EFFORTS = {"z": 200.0, "x": 350.0, "y": 400.0}
 
 
 def leg(robot, side, hips="zxy", ankles="yx", names=None, pelvis="pelvis", knee="y", sole=None,
-        tilts=None, axes=ONE, toes=False, hip_y=0.1, foot_mass=2.0):
-    """From the pelvis down: hips and ankles are the order of the axes, the knee sits 0.4 lower."""
+        tilts=None, axes=ONE, toes=False, hip_y=0.1, foot_mass=2.0, middle=0.0, bend=0.0):
+    """From the pelvis down: hips and ankles are the order of the axes, the knee sits 0.4 lower.
+
+    `bend`: rad, of the knee where all joints are at zero.
+    """
+    ahead, down = 0.4 * math.sin(0.5 * bend), -0.4 * math.cos(0.5 * bend)
     y = 1 if side == "left" else -1
     names = names or (lambda what: f"{side}_{what}")
     tilts = tilts or {}
-    parent, at = pelvis, [0, y * hip_y, -0.05]
+    parent, at = pelvis, [0, middle + y * hip_y, -0.05]
     for i, axis in enumerate(hips):
         last = i == 2
         child = names("thigh" if last else f"hip_{axis}_link")
-        robot.link(child, 8.0 if last else 1.5, [0, 0, -0.17] if last else [0, 0, 0],
+        robot.link(child, 8.0 if last else 1.5,
+                   [0.42 * ahead, 0, 0.42 * down] if last else [0, 0, 0],
                    [0.14, 0.14, 0.36] if last else [0.1, 0.1, 0.1], axes=axes)
         lower, upper = HIP_LIMITS[axis]
+        if axis == "y":
+            lower, upper = lower + 0.5 * bend, upper + 0.5 * bend
         if axis == "x" and y < 0:
             lower, upper = -upper, -lower
         tilt = tilts.get(axis, ONE)
@@ -123,17 +130,17 @@ def leg(robot, side, hips="zxy", ankles="yx", names=None, pelvis="pelvis", knee=
         robot.joint(names(f"hip_{axis}"), parent, child, at, axis, (lower, upper),
                     HIP_EFFORTS[axis], tilt=tilt)
         parent, at = child, [0, 0, 0]
-    robot.link(names("shank"), 4.5, [0, 0, -0.18], [0.11, 0.11, 0.36], axes=axes)
-    limits = (-0.05, 2.3) if knee == "y" else (-2.3, 0.05)
-    robot.joint(names("knee"), parent, names("shank"), [0, 0, -0.4], knee, limits, 450.0)
-    parent, at = names("shank"), [0, 0, -0.4]
+    robot.link(names("shank"), 4.5, [-0.45 * ahead, 0, 0.45 * down], [0.11, 0.11, 0.36], axes=axes)
+    limits = (-0.05 - bend, 2.3 - bend) if knee == "y" else (-2.3 + bend, 0.05 + bend)
+    robot.joint(names("knee"), parent, names("shank"), [ahead, 0, down], knee, limits, 450.0)
+    parent, at = names("shank"), [-ahead, 0, down]
     for i, axis in enumerate(ankles):
         last = i == len(ankles) - 1
         child = names("foot" if last else "ankle")
         shapes = sole(child, y) if last else ""
         robot.link(child, foot_mass if last else 0.6, [0.03, 0, -0.05] if last else [0, 0, 0],
                    [0.24, 0.1, 0.06] if last else [0.08, 0.08, 0.08], shapes, axes=axes)
-        limits = (-1.0, 0.8) if axis == "y" else (-0.5, 0.5)
+        limits = (-1.0 + 0.5 * bend, 0.8 + 0.5 * bend) if axis == "y" else (-0.5, 0.5)
         robot.joint(names(f"ankle_{axis}"), parent, child, at, axis, limits, 250.0)
         parent, at = child, [0, 0, 0]
     if toes:
@@ -141,11 +148,11 @@ def leg(robot, side, hips="zxy", ankles="yx", names=None, pelvis="pelvis", knee=
         robot.joint(names("toe"), parent, names("toe"), [0.17, 0, -0.07], "y", (-0.6, 0.6), 20.0)
 
 
-def arm(robot, side, names=None, chest="chest", fingers=False, height=0.42):
+def arm(robot, side, names=None, chest="chest", fingers=False, height=0.42, middle=0.0):
     y = 1 if side == "left" else -1
     names = names or (lambda what: f"{side}_{what}")
     robot.link(names("shoulder"), 1.5, [0, 0, 0], [0.1, 0.1, 0.1])
-    robot.joint(names("shoulder_y"), chest, names("shoulder"), [0, y * 0.22, height], "y", (-2.5, 1.5))
+    robot.joint(names("shoulder_y"), chest, names("shoulder"), [0, middle + y * 0.22, height], "y", (-2.5, 1.5))
     robot.link(names("upper_arm"), 2.2, [0, 0, -0.14], [0.09, 0.09, 0.28])
     robot.joint(names("shoulder_x"), names("shoulder"), names("upper_arm"), [0, 0, 0], "x",
                 (-0.1, 2.0) if y > 0 else (-2.0, 0.1))
@@ -160,12 +167,14 @@ def arm(robot, side, names=None, chest="chest", fingers=False, height=0.42):
                     more="" if i == 1 else f'<mimic joint="{names("finger_1_joint")}"/>')
 
 
-def torso(robot, pelvis="pelvis", chest="chest", waist="zy", mass=30.0, axes=ONE):
-    parent, at = pelvis, [0, 0, 0.08]
+def torso(robot, pelvis="pelvis", chest="chest", waist="zy", mass=30.0, axes=ONE, beside=0.0):
+    """`beside`: m, of the origins of its joints from the middle of the body."""
+    parent, at = pelvis, [0, beside, 0.08]
     for i, axis in enumerate(waist):
         last = i == len(waist) - 1
         child = chest if last else f"waist_{axis}_link"
-        robot.link(child, mass if last else 1.5, [0, 0, 0.25] if last else [0, 0, 0.02],
+        robot.link(child, mass if last else 1.5,
+                   [0, -beside, 0.25] if last else [0, -beside, 0.02],
                    [0.25, 0.36, 0.5] if last else [0.12, 0.16, 0.08], axes=axes)
         robot.joint(f"waist_{axis}", parent, child, at, axis, (-0.6, 0.6), 250.0)
         parent, at = child, [0, 0, 0.06]
@@ -230,6 +239,19 @@ def foot_corners(size, corners=24):
         triangles += [(low[i], low[j], high[j]), (low[i], high[j], high[i])]
         triangles += [(low[0], low[j], low[i]), (high[0], high[i], high[j])]
     return triangles
+
+
+def tapered_corners(size):
+    """A foot that is narrower at the heel, its edges in pieces."""
+    outline = [(BACK, -0.6 * HALF), (FRONT, -HALF), (FRONT, HALF), (BACK, 0.6 * HALF)]
+    ring = []
+    for i, (x, y) in enumerate(outline):
+        u, v = outline[(i + 1) % 4]
+        ring += [(x + k / 3 * (u - x), y + k / 3 * (v - y)) for k in range(3)]
+    low = [(x * size, y * size, DEPTH * size) for x, y in ring]
+    high = [(0.7 * x * size, 0.7 * y * size, (DEPTH + 0.05) * size) for x, y in ring]
+    return [t for i in range(len(ring)) for t in (
+        (low[i], low[i - 1], high[i]), (low[0], low[i], low[i - 1]), (high[0], high[i - 1], high[i]))]
 
 
 def write_mesh(path, triangles):
@@ -397,6 +419,39 @@ def twisted(folder):
     r.write(folder)
 
 
+def crouched(folder):
+    """Zero is a crouch, its knees bent by 0.8 rad."""
+    r = Robot("crouched", 0.9)
+    pelvis(r)
+    imu(r, "pelvis", [0, 0, 0.03])
+    torso(r, waist="z")
+    for side in ("left", "right"):
+        leg(r, side, "xzy", sole=sole_of(r, box_sole), bend=0.8)
+        arm(r, side)
+    r.write(folder)
+
+
+def skewed(folder):
+    """The pelvis looks 30 degrees aside, hip yaws are tilted by 40 and come first, the waist has its
+    origin beside the body, feet taper, and there is what is broken but not needed: a camera without
+    a range, a tip without mass, an inertia without a mass."""
+    r = Robot("skewed", 0.75)
+    pelvis(r, axes=from_rpy(0, 0, 0.52))
+    imu(r, "pelvis", [0, 0, 0])
+    torso(r, waist="y", beside=0.08)
+    write_mesh(folder / "foot.stl", tapered_corners(r.size))
+    for side in ("left", "right"):
+        leg(r, side, "zxy", sole=mesh_sole(r, "foot.stl"), tilts={"z": from_rpy(0.7, 0, 0)})
+        arm(r, side, middle=-0.08)
+    r.link("camera", 0.1, [0, 0, 0], [0.05, 0.05, 0.05])
+    r.joint("camera_joint", "chest", "camera", [0.1, -0.08, 0.5], "y", (0, 0), 1.0)
+    r.empty("tip")
+    r.joint("tip_joint", "left_forearm", "tip", [0, 0, -0.28], "y", (-0.1, 0.1), 1.0)
+    r.link("marker", 0.0, [0, 0, 0], [0, 0, 0], inertia=[1e-6, 1e-6, 1e-6])
+    r.joint("marker_joint", "chest", "marker", [0, 0, 0.1], kind="fixed")
+    r.write(folder)
+
+
 def five_joints(name, width):
     """Legs of five joints: nothing rolls the feet, which are bars."""
     def make(folder):
@@ -412,8 +467,8 @@ def five_joints(name, width):
     return make
 
 
-ROBOTS = [tiny, spheres, sideways, tilted, toes, backwards, nameless, twisted,
-          five_joints("narrow", 0.047), five_joints("wide", 0.12)]
+ROBOTS = [tiny, spheres, sideways, tilted, toes, backwards, nameless, twisted, crouched,
+          skewed,          five_joints("narrow", 0.047), five_joints("wide", 0.12)]
 
 
 def main():

@@ -6,6 +6,7 @@
 #include "cli/doctor/robot_doctor.h"
 #include "gaitd/dynamics/kinematics.h"
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/leg_geometry.h"
 #include "gaitd/walking/support.h"
 
 namespace gaitd::doctor {
@@ -107,7 +108,9 @@ class Frames {
     }
     const GaitdLeg& leg = model_.legs[side];
     const GaitdJoint& knee = model_.joints[leg.knee];
-    const double room_bent = leg.knee_bend_sign > 0.0 ? knee.position_max : -knee.position_min;
+    const walking::LegGeometry geometry(model_, side);
+    const double room_bent =
+        std::max(geometry.bend(knee.position_min), geometry.bend(knee.position_max));
     if (room_bent < 0.5) {
       warn(format("%s can bend by only %.2f rad", knee.name, room_bent),
            "limits of the knee in the URDF, or its axis is flipped");

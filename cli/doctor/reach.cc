@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "daemon/config/leg_kinematics.h"
+#include "gaitd/walking/leg_geometry.h"
 
 namespace gaitd::doctor {
 namespace {
@@ -14,10 +15,13 @@ constexpr double kLowestHip = 0.8;
 
 double leg_length(const GaitdModel& model) {
   GaitdModel straight = model;
-  for (const GaitdLeg& leg : model.legs) {
-    for (const int joint : {leg.hip_pitch, leg.knee, leg.ankle_pitch}) {
-      if (joint >= 0) straight.nominal_position[joint] = 0.0;
-    }
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const GaitdLeg& leg = model.legs[side];
+    const double knee = walking::LegGeometry(model, side).straight();
+    const double bend = leg.knee_bend_sign * knee;
+    straight.nominal_position[leg.knee] = knee;
+    straight.nominal_position[leg.hip_pitch] = 0.5 * leg.hip_pitch_bend_sign * bend;
+    straight.nominal_position[leg.ankle_pitch] = 0.5 * leg.ankle_pitch_bend_sign * bend;
   }
   return daemon::compute_posture_figures(straight).pelvis_height();
 }

@@ -7,8 +7,8 @@
 namespace gaitd::porting {
 namespace {
 
-constexpr double kSideways = 0.04;  // m from the middle, where an arm begins
-constexpr double kMargin = 0.1;     // rad, from a stop
+constexpr double kSideways = 0.4;  // of half the distance of the hips: an arm is further to a side
+constexpr double kMargin = 0.1;    // rad, from a stop
 
 struct Range {
   double lower, upper;
@@ -21,27 +21,61 @@ Range inner_range(const GaitdJoint& joint) {
   return {lower + margin, upper - margin};
 }
 
-}  // namespace
-
-void hang_arms(const Guess& guess, Eigen::VectorXd* q) {
-  const GaitdModel& model = guess.model;
-  std::vector<bool> of_leg(static_cast<std::size_t>(model.joint_count), false);
+std::vector<bool> joints_of_legs(const Guess& guess) {
+  std::vector<bool> of_leg(static_cast<std::size_t>(guess.urdf.model.joint_count), false);
   for (const LegGuess& leg : guess.legs) {
     for (const int joint : leg.joints) of_leg[static_cast<std::size_t>(joint)] = true;
   }
-  const auto zero = body_poses(model, *q);
-  std::vector<double> begins(static_cast<std::size_t>(model.body_count), 0.0);  // y of the shoulder
+  return of_leg;
+}
+
+}  // namespace
+
+std::vector<double> arms_begin(const Guess& guess) {
+  const GaitdModel& model = guess.urdf.model;
+  const std::vector<bool> of_leg = joints_of_legs(guess);
+  const auto poses = body_poses(model, zero_position(model));
+  const double middle = middle_of(guess);
+  const auto bodies = static_cast<std::size_t>(model.body_count);
+  std::vector<double> mass(bodies, 0.0);    // kg, with all that hangs on it
+  std::vector<double> moment(bodies, 0.0);  // kg m, of it, to the left of the middle
+  for (std::size_t i = bodies - 1; i > 0; --i) {
+    const GaitdBody& body = model.bodies[i];
+    mass[i] += body.mass;
+    moment[i] += body.mass * ((poses[i] * Eigen::Vector3d(body.com)).y() - middle);
+    mass[static_cast<std::size_t>(body.parent)] += mass[i];
+    moment[static_cast<std::size_t>(body.parent)] += moment[i];
+  }
+  const LegGuess& left = guess.legs[0];
+  const double hip = std::abs(poses[left.joints.front() + 1].translation().y() - middle);
+  std::vector<double> begins(bodies, 0.0);
+  for (std::size_t i = 1; i < bodies; ++i) {
+    const GaitdBody& body = model.bodies[i];
+    if (of_leg[static_cast<std::size_t>(body.joint)]) continue;
+    begins[i] = begins[static_cast<std::size_t>(body.parent)];
+    if (begins[i] != 0.0 || !(mass[i] > 0.0)) continue;
+    // A waist may have its origin anywhere along its axis: what it carries is in the middle.
+    const double carried = moment[i] / mass[i];
+    const double origin = poses[i].translation().y() - middle;
+    if (std::abs(carried) < kSideways * hip) continue;
+    begins[i] = origin * carried > 0.0 && std::abs(origin) > kSideways * hip ? origin : carried;
+  }
+  return begins;
+}
+
+void hang_arms(const Guess& guess, Eigen::VectorXd* q) {
+  const GaitdModel& model = guess.model;
+  const std::vector<bool> of_leg = joints_of_legs(guess);
+  const std::vector<double> begins = arms_begin(guess);
+  const double middle = middle_of(guess);
   std::vector<int> arm_joints;
   for (int i = 0; i < model.joint_count; ++i) {
     if (of_leg[static_cast<std::size_t>(i)]) continue;
     const GaitdJoint& joint = model.joints[i];
     const Range range = inner_range(joint);
     (*q)[i] = std::clamp((*q)[i], range.lower, range.upper);
-    const auto body = static_cast<std::size_t>(joint.child_body);
-    const double before = begins[static_cast<std::size_t>(joint.parent_body)];
-    const double y = zero[body].translation().y();
-    begins[body] = before != 0.0 ? before : std::abs(y) > kSideways ? y : 0.0;
-    if (begins[body] != 0.0 && joint.type == GAITD_JOINT_REVOLUTE) arm_joints.push_back(i);
+    const bool arm = begins[static_cast<std::size_t>(joint.child_body)] != 0.0;
+    if (arm && joint.type == GAITD_JOINT_REVOLUTE) arm_joints.push_back(i);
   }
   // Height of the mass of the arms; how far they reach into the body; how far from zero.
   const auto cost = [&](const Eigen::VectorXd& at) {
@@ -53,7 +87,7 @@ void hang_arms(const Guess& guess, Eigen::VectorXd* q) {
       if (begins[body] == 0.0) continue;
       const Eigen::Vector3d com = poses[body] * Eigen::Vector3d(model.bodies[i].com);
       const double side = begins[body] > 0 ? 1.0 : -1.0;
-      const double inside = std::max(0.0, std::abs(begins[body]) - side * com.y());
+      const double inside = std::max(0.0, std::abs(begins[body]) - side * (com.y() - middle));
       sum += model.bodies[i].mass * (com.z() + 3.0 * inside);
       mass += model.bodies[i].mass;
     }

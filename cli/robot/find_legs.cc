@@ -14,8 +14,9 @@ using Poses = std::vector<Eigen::Isometry3d>;
 constexpr int kLegJoints = 6;
 constexpr int kFewestLegJoints = 5;  // without one that rolls the foot
 constexpr int kMostLegJoints = 12;
-constexpr double kSymmetric = 0.2;  // of the distances between the two chains
-constexpr double kPitches = 0.6;    // part of an axis along y
+constexpr double kSymmetric = 0.2;   // of the distances between the two chains
+constexpr double kPitches = 0.6;     // part of an axis along y
+constexpr double kSameAxis = 0.035;  // rad
 
 std::vector<int> chain_to(const GaitdModel& model, int body) {
   std::vector<int> joints;
@@ -90,6 +91,15 @@ Vector3d snapped(const Vector3d& v) {
   return Vector3d::Unit(axis) * (v[axis] > 0 ? 1.0 : -1.0);
 }
 
+// From one leg to the other, of length 1.
+Vector3d across(const Poses& poses, const LegPair& pair) {
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t i = 0; i < pair.joints[0].size(); ++i) {
+    sum += poses[pair.joints[0][i] + 1].translation() - poses[pair.joints[1][i] + 1].translation();
+  }
+  return sum.normalized();
+}
+
 }  // namespace
 
 bool find_legs(const GaitdModel& model, LegPair* pair, std::string* error) {
@@ -136,8 +146,11 @@ std::vector<int> find_toes(const GaitdModel& model, const LegPair& pair) {
   const Poses poses = body_poses(model, zero_position(model));
   std::vector<int> toes;
   for (const std::vector<int>& joints : pair.joints) {
-    if (joints.size() <= kLegJoints) continue;
+    if (joints.size() <= kFewestLegJoints) continue;
     const int last = joints.back();
+    // The sixth joint of a leg rolls its foot.
+    const Vector3d axis = joint_axis(model, poses, last);
+    if (joints.size() == kLegJoints && std::abs(axis.dot(across(poses, pair))) < kPitches) continue;
     const double leg = length_of(poses, joints);
     const double mass = model.bodies[last + 1].mass;
     const double foot = model.bodies[model.joints[last].parent_body].mass;
@@ -154,19 +167,24 @@ Eigen::Matrix3d find_directions(const GaitdModel& model, const LegPair& pair,
                                 Reasons* why) {
   const Poses poses = body_poses(model, zero_position(model));
   const Eigen::Matrix3d to_pelvis = poses[pair.pelvis].linear().transpose();
-  Vector3d across = Vector3d::Zero();
   Vector3d up = Vector3d::Zero();
-  for (std::size_t i = 0; i < pair.joints[0].size(); ++i) {
-    across +=
-        poses[pair.joints[0][i] + 1].translation() - poses[pair.joints[1][i] + 1].translation();
-  }
   for (const std::vector<int>& joints : pair.joints) {
     up += poses[joints.front() + 1].translation() - poses[joints.back() + 1].translation();
   }
-  const Vector3d lateral = snapped(to_pelvis * across);
+  // The legs mirror each other, so the line from one to the other is exact; where they hang from
+  // the pelvis, up is the axis of the pelvis that is nearest.
+  Vector3d lateral = to_pelvis * across(poses, pair);
+  const double turned = std::acos(std::min(1.0, lateral.dot(snapped(lateral))));
+  if (turned < kSameAxis) {
+    lateral = snapped(lateral);
+  } else {
+    why->push_back(
+        format("The legs stand %.1f degrees off the axes of the link.", turned * 180.0 / M_PI));
+  }
   up = to_pelvis * up;
   up -= lateral * up.dot(lateral);
-  const Vector3d vertical = snapped(up);
+  Vector3d vertical = snapped(up);
+  vertical = (vertical - lateral * vertical.dot(lateral)).normalized();
   const Vector3d forward = lateral.cross(vertical);  // if leg 0 is the left one
 
   double toes = 0.0;
@@ -230,10 +248,15 @@ bool find_roles(const GaitdModel& model, LegGuess* leg, std::string* error) {
   for (std::size_t i = 0; i < pitches.size(); ++i) {
     for (std::size_t k = i + 1; k < pitches.size(); ++k) {
       for (std::size_t m = k + 1; m < pitches.size(); ++m) {
+        // A yaw or roll that is tilted pitches as well, but not about the axis of the knee.
+        const Vector3d knee = joint_axis(model, poses, pitches[k]);
+        const double aligned = std::abs(knee.dot(joint_axis(model, poses, pitches[i])) *
+                                        knee.dot(joint_axis(model, poses, pitches[m])));
         const double thigh = (at(pitches[k]) - at(pitches[i])).norm();
         const double shank = (at(pitches[m]) - at(pitches[k])).norm();
-        if (std::min(thigh, shank) <= best) continue;
-        best = std::min(thigh, shank);
+        const double score = aligned * std::min(thigh, shank);
+        if (score <= best) continue;
+        best = score;
         leg->hip_pitch = pitches[i];
         leg->knee = pitches[k];
         leg->ankle_pitch = pitches[m];

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "cli/robot/arms.h"
+
 namespace gaitd::porting {
 namespace {
 
@@ -126,7 +128,7 @@ std::string find_chest(const Guess& guess, Reasons* why) {
     above[static_cast<std::size_t>(i)] += model.bodies[i].mass;
     above[static_cast<std::size_t>(model.bodies[i].parent)] += above[static_cast<std::size_t>(i)];
   }
-  const auto poses = body_poses(model, zero_position(model));
+  const std::vector<double> arms = arms_begin(guess);
   int at = 0;
   double carried = 0.0;  // by `at`, without legs
   for (int i = 1; i < model.body_count; ++i) {
@@ -139,7 +141,7 @@ std::string find_chest(const Guess& guess, Reasons* why) {
     for (int i = 1; i < model.body_count; ++i) {
       const auto body = static_cast<std::size_t>(i);
       if (model.bodies[i].parent != at || of_leg[body]) continue;
-      if (std::abs(poses[body].translation().y()) > 0.04) continue;  // an arm
+      if (arms[body] != 0.0) continue;
       if (above[body] < 0.6 * carried) continue;
       if (heaviest < 0 || above[body] > above[static_cast<std::size_t>(heaviest)]) heaviest = i;
     }

@@ -2,6 +2,9 @@
 #include "cli/robot/fixed_joints.h"
 
 #include <algorithm>
+#include <initializer_list>
+#include <map>
+#include <set>
 
 namespace gaitd::porting {
 namespace {
@@ -12,18 +15,37 @@ bool moves(const dynamics::UrdfJointNote& joint) {
 
 bool is_finger(const dynamics::UrdfJointNote& joint) {
   const std::string name = lower_case(joint.name + " " + joint.child);
-  for (const char* word : {"finger", "thumb", "gripper", "knuckle", "pinky", "pinkie", "phalan",
-                           "claw", "eyelid", "eyebrow", "jaw"}) {
-    if (name.find(word) != std::string::npos) return true;
+  const auto holds = [&](std::initializer_list<const char*> words) {
+    return std::any_of(words.begin(), words.end(),
+                       [&](const char* word) { return name.find(word) != std::string::npos; });
+  };
+  return holds({"finger", "thumb", "gripper", "knuckle", "pinky", "pinkie", "phalan", "claw",
+                "eyelid", "eyebrow", "jaw", "ffj", "mfj", "rfj", "lfj", "thj"}) ||
+         (holds({"index", "middle", "ring", "little"}) &&
+          holds({"hand", "proximal", "intermediate", "distal"}));
+}
+
+// Links that carry nothing, themselves or by what hangs on them.
+std::set<std::string> weightless(const dynamics::UrdfOutline& outline) {
+  std::map<std::string, std::string> parent;
+  std::set<std::string> without;
+  for (const dynamics::UrdfJointNote& joint : outline.joints) {
+    parent[joint.child] = joint.parent;
+    without.insert(joint.child);
   }
-  return false;
+  for (std::string link : outline.links_with_mass) {
+    while (without.erase(link) > 0) link = parent[link];
+  }
+  return without;
 }
 
 }  // namespace
 
 std::vector<FixedGuess> joints_to_fix(const dynamics::UrdfOutline& outline) {
+  const std::set<std::string> without_mass = weightless(outline);
   std::vector<FixedGuess> fixed;
   for (const dynamics::UrdfJointNote& joint : outline.joints) {
+    if (joint.type == "planar") fixed.push_back({joint.name, "planar"});
     if (!moves(joint)) continue;
     if (joint.mimic) {
       fixed.push_back({joint.name, "mimics another joint"});
@@ -31,6 +53,10 @@ std::vector<FixedGuess> joints_to_fix(const dynamics::UrdfOutline& outline) {
       fixed.push_back({joint.name, "named like a finger or a part of the face"});
     } else if (!joint.has_effort) {
       fixed.push_back({joint.name, "the URDF gives no effort or no velocity of its drive"});
+    } else if (!joint.has_range) {
+      fixed.push_back({joint.name, "the URDF gives no range or no axis"});
+    } else if (without_mass.count(joint.child) > 0) {
+      fixed.push_back({joint.name, "nothing that it moves has a mass"});
     }
   }
   return fixed;
@@ -39,7 +65,8 @@ std::vector<FixedGuess> joints_to_fix(const dynamics::UrdfOutline& outline) {
 std::string joints_without_limits(const dynamics::UrdfOutline& outline) {
   std::string names;
   for (const dynamics::UrdfJointNote& joint : outline.joints) {
-    if (!moves(joint) || joint.mimic || is_finger(joint) || joint.has_effort) continue;
+    if (!moves(joint) || joint.mimic || is_finger(joint)) continue;
+    if (joint.has_effort && joint.has_range) continue;
     names += (names.empty() ? "" : ", ") + joint.name;
     if (names.size() > 200) return names + "...";
   }

@@ -33,6 +33,14 @@ Eigen::Vector3d joint_axis(const GaitdModel& model, const std::vector<Eigen::Iso
   return poses[j.child_body].linear() * Eigen::Vector3d(j.axis);
 }
 
+double middle_of(const Guess& guess) {
+  const GaitdModel& model = guess.urdf.model;
+  const auto poses = body_poses(model, zero_position(model));
+  double sum = 0.0;
+  for (const LegGuess& leg : guess.legs) sum += poses[leg.joints.front() + 1].translation().y();
+  return 0.5 * sum;
+}
+
 std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -78,6 +78,8 @@ Eigen::VectorXd zero_position(const GaitdModel& model);
 // Axis of a joint, in the frame of body 0, of poses from body_poses().
 Eigen::Vector3d joint_axis(const GaitdModel& model, const std::vector<Eigen::Isometry3d>& poses,
                            int joint);
+// m, y of the middle of the robot, between its hips, with all joints at zero.
+double middle_of(const Guess& guess);
 std::string lower_case(std::string text);
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 

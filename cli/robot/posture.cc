@@ -9,6 +9,7 @@
 #include "daemon/config/leg_kinematics.h"
 #include "gaitd/dynamics/kinematics.h"
 #include "gaitd/sdk/views.h"
+#include "gaitd/walking/leg_geometry.h"
 
 namespace gaitd::porting {
 namespace {
@@ -17,15 +18,17 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Task = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kBend = 0.5;         // rad
-constexpr double kStopMargin = 0.03;  // rad, from the stops
-constexpr double kClose = 5e-4;       // rad and m
-constexpr double kGap = 0.35;         // of the width of a sole, between the soles
+// rad, of the knees, and times the width of the stance: what is tried until a leg gets there.
+constexpr double kBends[] = {0.5, 0.35, 0.25, 0.7};
+constexpr double kWidths[] = {1.0, 1.1, 1.2};
+constexpr double kStopMargins[] = {0.03, 0.005};  // rad, from the stops
+constexpr double kClose = 5e-4;                   // rad and m
+constexpr double kGap = 0.35;                     // of the width of a sole, between the soles
 
 class Solver {
  public:
-  Solver(const GaitdModel& model, double knee_bend)
-      : model_(model), kinematics_(model), knee_bend_(knee_bend) {}
+  Solver(const GaitdModel& model, double knee_bend, double stop_margin)
+      : model_(model), kinematics_(model), knee_bend_(knee_bend), stop_margin_(stop_margin) {}
 
   void pose(const VectorXd& q) {
     kinematics_.update(Vector3d::Zero(), Eigen::Quaterniond::Identity(), dynamics::Vector6d::Zero(),
@@ -61,7 +64,7 @@ class Solver {
       // The error of the orientation is that of the foot in its own axes; near zero both agree.
       error.head<3>() = now * error.head<3>();
       if (std::isnan(z)) {
-        error[5] = knee_target(leg) - (*q)[leg.knee];
+        error[5] = knee_target(side) - (*q)[leg.knee];
         J.row(5).setZero();
         J(5, knee) = 1.0;
       }
@@ -73,52 +76,92 @@ class Solver {
       if (most > 0.2) step *= 0.2 / most;
       for (int i = 0; i < leg.joint_count; ++i) {
         const GaitdJoint& joint = model_.joints[leg.joints[i]];
-        const double margin =
-            std::min(kStopMargin, 0.05 * (joint.position_max - joint.position_min));
         double& position = (*q)[leg.joints[i]];
-        position = std::clamp(position + step[i], joint.position_min + margin,
-                              joint.position_max - margin);
+        position = std::clamp(position + step[i], joint.position_min + margin(joint),
+                              joint.position_max - margin(joint));
       }
     }
     return error.norm();
   }
 
- private:
-  double knee_target(const GaitdLeg& leg) const {
-    const GaitdJoint& knee = model_.joints[leg.knee];
-    const double target = straight(leg) + leg.knee_bend_sign * knee_bend_;
-    return std::clamp(target, knee.position_min + kStopMargin, knee.position_max - kStopMargin);
+  // The joints of a leg that are as near to a stop as they may be.
+  std::string at_stops(int side, const VectorXd& q) const {
+    std::string names;
+    for (int i = 0; i < model_.legs[side].joint_count; ++i) {
+      const GaitdJoint& joint = model_.joints[model_.legs[side].joints[i]];
+      const double at = q[model_.legs[side].joints[i]];
+      const double room = std::min(at - joint.position_min, joint.position_max - at);
+      if (room > margin(joint) + 1e-9) continue;
+      names += (names.empty() ? "" : ", ") + std::string(joint.name);
+    }
+    return names;
   }
 
-  // Where the leg is longest; zero when that is near enough, as people count from there.
-  double straight(const GaitdLeg& leg) const {
+ private:
+  double margin(const GaitdJoint& joint) const {
+    return std::min(stop_margin_, 0.05 * (joint.position_max - joint.position_min));
+  }
+
+  double knee_target(int side) const {
+    const GaitdLeg& leg = model_.legs[side];
     const GaitdJoint& knee = model_.joints[leg.knee];
-    VectorXd q = Eigen::Map<const VectorXd>(model_.nominal_position, model_.joint_count);
-    const auto length = [&](double angle) {
-      q[leg.knee] = angle;
-      const auto poses = body_poses(model_, q);
-      return (poses[model_.joints[leg.hip_pitch].child_body].translation() -
-              poses[model_.joints[leg.ankle_pitch].child_body].translation())
-          .norm();
-    };
-    double longest = 0.0;
-    double best = 0.0;
-    const double lower = std::max(knee.position_min, -M_PI);
-    const double upper = std::min(knee.position_max, M_PI);
-    for (int i = 0; i <= 100; ++i) {
-      const double angle = lower + (upper - lower) * i / 100;
-      const double now = length(angle);
-      if (now <= longest) continue;
-      longest = now;
-      best = angle;
-    }
-    return std::abs(best) < 0.3 ? 0.0 : best;
+    const double straight = walking::LegGeometry(model_, side).straight();
+    const double target = straight + leg.knee_bend_sign * knee_bend_;
+    return std::clamp(target, knee.position_min + margin(knee), knee.position_max - margin(knee));
   }
 
   const GaitdModel& model_;
   dynamics::Kinematics kinematics_;
-  double knee_bend_;
+  double knee_bend_;    // rad
+  double stop_margin_;  // rad
 };
+
+struct Stance {
+  double bend = 0.0;  // rad, of the knees
+  double half = 0.0;  // m, half the distance of the soles
+  double margin = 0.0;
+  VectorXd q;
+  std::array<double, 2> off = {};  // rad and m, what is left of the error
+  std::string at_stops;
+  bool found() const { return std::max(off[0], off[1]) <= kClose; }
+};
+
+// Both soles level, side by side about `middle` (m, y) and below the centre of mass; from `q`.
+void stand(const GaitdModel& model, double middle, Stance* stance) {
+  Solver solver(model, stance->bend, stance->margin);
+  VectorXd& q = stance->q;
+  double x = 0.0;
+  for (int k = 0; k < 30; ++k) {
+    stance->off[0] = solver.solve(GAITD_LEFT, x, middle + stance->half, NAN, &q);
+    solver.pose(q);
+    const double z = solver.sole(GAITD_LEFT).z();
+    stance->off[1] = solver.solve(GAITD_RIGHT, x, middle - stance->half, z, &q);
+    solver.pose(q);
+    const double ahead = solver.com().x() - x;
+    if (std::abs(ahead) < 1e-4) break;
+    x += ahead;
+  }
+  for (int side = 0; side < 2; ++side) {
+    const std::string names = solver.at_stops(side, q);
+    if (!names.empty()) stance->at_stops += (stance->at_stops.empty() ? "" : ", ") + names;
+  }
+}
+
+// The first that the legs reach; the most usual one if they reach none.
+Stance find_stance(const GaitdModel& model, double middle, double half, const VectorXd& q) {
+  Stance first;
+  for (const double bend : kBends) {
+    for (const double width : kWidths) {
+      for (const double margin : kStopMargins) {
+        Stance stance{bend, width * half, margin, q, {}, ""};
+        stand(model, middle, &stance);
+        if (stance.found()) return stance;
+        if (first.q.size() == 0) first = stance;
+      }
+    }
+  }
+  return first;
+}
 
 // Half the distance of the soles in y, m: as the legs hang, but not closer than feet can stand.
 double half_stance(const Guess& guess, const std::array<Vector3d, 2>& hanging,
@@ -148,20 +191,16 @@ bool solve_posture(Guess* guess, std::string* error) {
   const auto poses = body_poses(model, nominal);
   std::array<Vector3d, 2> hips;
   for (int side = 0; side < 2; ++side) {
-    const std::string expected = daemon::compute_bend_signs(model, &model.legs[side]);
-    // At zero a straight leg shows no sign of the hip and the ankle: half bent it does.
-    if (model.legs[side].knee_bend_sign == 0.0) {
-      *error = "the " + std::string(side == 0 ? "left" : "right") + " leg: expected " + expected;
-      return false;
-    }
+    // At zero a straight leg shows no sign of the hip and the ankle: in the posture it does.
+    (void)daemon::compute_bend_signs(model, &model.legs[side]);
     const int hip = model.legs[side].hip_pitch + 1;
     hips[static_cast<std::size_t>(side)] = poses[static_cast<std::size_t>(hip)].translation();
   }
   VectorXd q = nominal;
   hang_arms(*guess, &q);
-  Solver solver(model, kBend);
-  solver.pose(q);
-  const double half = half_stance(*guess, {solver.sole(0), solver.sole(1)}, hips);
+  Solver hanging(model, kBends[0], kStopMargins[0]);
+  hanging.pose(q);
+  const double half = half_stance(*guess, {hanging.sole(0), hanging.sole(1)}, hips);
   for (int side = 0; side < 2; ++side) {
     const GaitdLeg& leg = model.legs[side];
     const double signs[] = {leg.hip_pitch_bend_sign, leg.knee_bend_sign, leg.ankle_pitch_bend_sign};
@@ -173,37 +212,36 @@ bool solve_posture(Guess* guess, std::string* error) {
           std::clamp(q[joints[i]] + signs[i] * bends[i], joint.position_min, joint.position_max);
     }
   }
-  double x = 0.0;
-  double left = 0.0;
-  double right = 0.0;
-  for (int k = 0; k < 30; ++k) {
-    left = solver.solve(GAITD_LEFT, x, half, NAN, &q);
-    solver.pose(q);
-    const double z = solver.sole(GAITD_LEFT).z();
-    right = solver.solve(GAITD_RIGHT, x, -half, z, &q);
-    solver.pose(q);
-    const double off = solver.com().x() - x;
-    if (std::abs(off) < 1e-4) break;
-    x += off;
-  }
-  if (std::max(left, right) > kClose) {
+  const Stance stance = find_stance(model, middle_of(*guess), half, q);
+  if (!stance.found()) {
     *error = format(
         "no standing posture: with the soles flat, side by side, %.3f m apart and below the centre "
-        "of mass, the left leg is off by %.3f, the right one by %.3f (rad and m); limits of the "
-        "joints?",
-        2.0 * half, left, right);
+        "of mass, the left leg is off by %.3f, the right one by %.3f (rad and m)%s",
+        2.0 * stance.half, stance.off[0], stance.off[1],
+        stance.at_stops.empty() ? "" : ("; at their stops: " + stance.at_stops).c_str());
     return false;
   }
-  nominal = q;
+  nominal = stance.q;
+  for (int side = 0; side < 2; ++side) {
+    const std::string expected = daemon::compute_bend_signs(model, &model.legs[side]);
+    if (expected.empty()) continue;
+    *error = "the " + std::string(side == 0 ? "left" : "right") + " leg: expected " + expected;
+    return false;
+  }
   const daemon::PostureFigures figures = daemon::compute_posture_figures(model);
   guess->posture_why.push_back(format(
-      "Solved: soles level, parallel and %.4f m apart, as the legs hang; knees bent by %.1f rad; "
+      "Solved: soles level, parallel and %.4f m apart, %s; knees bent by %.2f rad; "
       "pelvis %.4f and centre of mass %.4f m above the soles, %.1f mm in front of their middle and "
       "%.1f mm to the left of it.",
-      figures.foot_separation(), kBend, figures.pelvis_height(), figures.com_height(),
+      figures.foot_separation(),
+      stance.half > 1.01 * half ? "wider than the legs hang, which they do not reach"
+                                : "as the legs hang",
+      stance.bend, figures.pelvis_height(), figures.com_height(),
       1e3 * (figures.com[0] - figures.sole_position[0][0]),
       1e3 * (figures.com[1] - 0.5 * (figures.sole_position[0][1] + figures.sole_position[1][1]))));
-  guess->posture_why.emplace_back("Arms hang at rest, no joint is at a stop.");
+  guess->posture_why.push_back(stance.at_stops.empty()
+                                   ? "Arms hang at rest, no joint is at a stop."
+                                   : "Arms hang at rest; next to a stop: " + stance.at_stops + ".");
   model.nominal_pelvis_height = figures.pelvis_height();
   model.nominal_com_height = figures.com_height();
   model.nominal_foot_separation = figures.foot_separation();

@@ -18,6 +18,7 @@
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "cli/robot/describe.h"
+#include "daemon/config/names.h"
 
 namespace gaitd::cli {
 namespace {
@@ -28,6 +29,7 @@ struct RobotArguments {
   std::string urdf;
   std::string folder;
   std::string name;
+  std::vector<std::string> fix;
   bool force = false;
 };
 
@@ -44,8 +46,11 @@ std::string name_of(const std::string& urdf) {
 std::string from_folder(const std::string& urdf, const fs::path& folder) {
   std::error_code ignored;
   const fs::path file = fs::weakly_canonical(urdf, ignored);
-  const fs::path relative = file.lexically_relative(fs::weakly_canonical(folder, ignored));
-  return relative.empty() ? file.string() : relative.string();
+  const fs::path real = fs::weakly_canonical(folder, ignored);
+  // Where a symbolic link leads elsewhere, ".." does not lead back.
+  const bool linked = real != (fs::absolute(folder, ignored) / "").lexically_normal().parent_path();
+  const fs::path relative = file.lexically_relative(real);
+  return linked || relative.empty() ? file.string() : relative.string();
 }
 
 std::string write(const fs::path& folder,
@@ -72,8 +77,8 @@ int init(const Context& context, const RobotArguments& arguments) {
   std::optional<Waiting> waiting("looking at " + arguments.urdf);
   std::string error;
   const std::string name = arguments.name.empty() ? name_of(arguments.urdf) : arguments.name;
-  const auto files =
-      porting::describe_robot(arguments.urdf, from_folder(arguments.urdf, folder), name, &error);
+  const auto files = porting::describe_robot(arguments.urdf, from_folder(arguments.urdf, folder),
+                                             name, arguments.fix, &error);
   waiting.reset();
   if (files.empty()) return fail(context, kFailed, "robot init", error);
   const std::string failed = write(folder, files);
@@ -120,10 +125,15 @@ void add_robot_command(CLI::App* app, Context* context) {
   command->add_option("--name", arguments->name, "Of the robot; that of the file if left out")
       ->check(CLI::Validator(
           [](const std::string& name) {
-            return name.empty() || name.size() >= 48 ? "expected 1 to 47 characters"
-                                                     : std::string();
+            return name.empty() || name.size() >= 48 || !daemon::is_file_name(name)
+                       ? "expected 1 to 47 letters, digits and any of . _ -"
+                       : std::string();
           },
           ""));
+  command->add_option("--fix", arguments->fix, "Joints, by name or glob, that do not move")
+      ->type_name("GLOB")
+      ->expected(1)
+      ->take_all();
   command->add_flag("--force", arguments->force, "Write over files that are there");
   command->callback([context, arguments] {
     context->action = [context, arguments] { return init(*context, *arguments); };

@@ -144,18 +144,30 @@ bool find_feet(Guess* guess, std::string* error) {
 
 }  // namespace
 
-bool guess_robot(const std::string& urdf, const std::string& name, Guess* guess,
-                 std::string* error) {
+bool guess_robot(const std::string& urdf, const std::string& name,
+                 const std::vector<std::string>& fix, Guess* guess, std::string* error) {
   guess->urdf_file = urdf;
   guess->name = name;
   std::string text;
   if (!dynamics::read_urdf_text(urdf, &text, error)) return false;
   guess->outline = dynamics::read_urdf_outline(text);
   guess->fixed = joints_to_fix(guess->outline);
-  if (!load(text, guess, error)) return false;
+  for (const std::string& glob : fix) guess->fixed.push_back({glob, "as told by --fix"});
+  if (!load(text, guess, error)) {
+    *error +=
+        "\nwhat of it walking does not need, `--fix GLOB` leaves out: joints that do not move";
+    return false;
+  }
+  for (const std::string& glob : fix) {
+    const auto& unused = guess->urdf.unused_fixed;
+    if (std::find(unused.begin(), unused.end(), glob) == unused.end()) continue;
+    *error = urdf + ": no joint is called " + glob + " (--fix)";
+    return false;
+  }
   if (!find_pelvis(text, guess, error)) {
     const std::string lacking = joints_without_limits(guess->outline);
-    if (!lacking.empty()) *error += "; these lack effort or velocity and were left out: " + lacking;
+    if (!lacking.empty())
+      *error += "; these lack effort, velocity or range and were left out: " + lacking;
     *error = urdf + ": " + *error;
     return false;
   }

@@ -14,13 +14,17 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostCorners = 8;
-constexpr int kRim = 64;             // corners for the rim of a cylinder
+constexpr std::size_t kMostCorners = 7;  // with two hands, no more than a controller takes
+constexpr int kRim = 64;                 // corners for the rim of a cylinder
+constexpr double kStraight = 1e-4;   // m, by which a corner is beside the line of its neighbours
+constexpr double kWritten = 1e-5;    // m, of what robot.yaml can say
 constexpr double kThin = 0.002;      // m, what still counts as flat
 constexpr double kThick = 0.010;     // m, for soles that are bent
 constexpr double kLeastFlat = 0.35;  // of what the foot covers, seen from above
 constexpr double kLeastArea = 4e-5;  // m^2
-constexpr double kMostTilt = 0.35;   // rad, of a sole against its neighbourhood
+constexpr std::size_t kMostFaces = 100;
+constexpr std::size_t kMostPoints = 4000000;  // of all shapes of a foot
+constexpr double kMostTilt = 0.35;            // rad, of a sole against its neighbourhood
 
 void add_shape(const Guess& guess, const dynamics::UrdfShape& shape, const Eigen::Isometry3d& X_BS,
                std::vector<ShapePoint>* points, Reasons* why) {
@@ -29,15 +33,18 @@ void add_shape(const Guess& guess, const dynamics::UrdfShape& shape, const Eigen
     case dynamics::ShapeKind::kBox:
       for (int i = 0; i < 8; ++i) {
         const Vector3d sign((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
-        points->push_back({X_BS * half.cwiseProduct(sign)});
+        // Each of the six faces once, at least.
+        const Vector3d face = X_BS.linear() * (sign[i % 3] * Vector3d::Unit(i % 3));
+        points->push_back({X_BS * half.cwiseProduct(sign), 0.0, face});
       }
       break;
     case dynamics::ShapeKind::kCylinder:
       for (int i = 0; i < 2 * kRim; ++i) {
         const double angle = 2.0 * M_PI * (i / 2) / kRim;
-        points->push_back(
-            {X_BS * Vector3d(shape.size[0] * std::cos(angle), shape.size[0] * std::sin(angle),
-                             (i % 2 == 0 ? half[1] : -half[1]))});
+        const double end = i % 2 == 0 ? 1.0 : -1.0;
+        points->push_back({X_BS * Vector3d(shape.size[0] * std::cos(angle),
+                                           shape.size[0] * std::sin(angle), end * half[1]),
+                           0.0, end * X_BS.linear().col(2)});
       }
       break;
     case dynamics::ShapeKind::kSphere:
@@ -87,6 +94,27 @@ double area_along(const std::vector<Vector3d>& points, const Vector3d& down) {
   return polygon_area(hull_along(points, x, x.cross(down)));
 }
 
+// m, from the line of the two beside it.
+double beside(const std::vector<Vector2d>& outline, std::size_t i) {
+  const std::size_t n = outline.size();
+  const Vector2d& before = outline[(i + n - 1) % n];
+  const Vector2d way = outline[(i + 1) % n] - before;
+  const Vector2d d = outline[i] - before;
+  return std::abs(way.x() * d.y() - way.y() * d.x()) / std::max(way.norm(), 1e-9);
+}
+
+// Without the corners that meshes have along a straight edge.
+void drop_straight(std::vector<Vector2d>* outline) {
+  for (;;) {
+    std::size_t least = 0;
+    for (std::size_t i = 1; i < outline->size(); ++i) {
+      if (beside(*outline, i) < beside(*outline, least)) least = i;
+    }
+    if (outline->size() <= 3 || beside(*outline, least) >= kStraight) return;
+    outline->erase(outline->begin() + static_cast<std::ptrdiff_t>(least));
+  }
+}
+
 // The normal of the plane through the lowest points, when they are nearly in one.
 Vector3d fitted(const std::vector<ShapePoint>& points, Vector3d down) {
   for (int i = 0; i < 3; ++i) {
@@ -116,6 +144,10 @@ std::vector<ShapePoint> shape_points(const Guess& guess, int body, Reasons* why)
       const dynamics::UrdfLink* link = guess.urdf.find_link(shape.link);
       if (shape.collision != collision || link == nullptr || link->body != body) continue;
       const Eigen::Isometry3d X_BL = Eigen::Translation3d(link->p_BL) * link->R_BL;
+      if (points.size() >= kMostPoints) {
+        why->push_back("Only the first shapes were looked at: there are too many.");
+        return points;
+      }
       add_shape(guess, shape, X_BL * shape.X_LS, &points, why);
     }
     if (points.empty()) continue;
@@ -160,16 +192,26 @@ double polygon_area(const std::vector<Vector2d>& points) {
 
 bool find_sole(const std::vector<ShapePoint>& points, const Vector3d& down, const Vector3d& forward,
                SoleGuess* sole, std::string* error) {
-  // As the foot hangs, or as its link lies: whichever shows the larger flat part.
+  // As the foot hangs, as its link lies or as its shapes do: whichever shows the larger flat part.
   Vector3d best = down;
   double flat = area_along(lowest(points, down, kThin), down);
-  for (int axis = 0; axis < 6; ++axis) {
-    const Vector3d along = Vector3d::Unit(axis / 2) * (axis % 2 == 0 ? 1.0 : -1.0);
-    if (along.dot(down) < 0.7) continue;
+  const auto try_along = [&](const Vector3d& along) {
+    if (along.dot(down) < 0.7) return;
     const double area = area_along(lowest(points, along, kThin), along);
-    if (area <= 1.2 * flat) continue;
+    if (area <= 1.2 * flat) return;
     flat = area;
     best = along;
+  };
+  for (int axis = 0; axis < 6; ++axis) {
+    try_along(Vector3d::Unit(axis / 2) * (axis % 2 == 0 ? 1.0 : -1.0));
+  }
+  std::vector<Vector3d> tried;  // a few hundred corners share a face
+  for (const ShapePoint& point : points) {
+    const bool again = std::any_of(tried.begin(), tried.end(),
+                                   [&](const Vector3d& t) { return t.dot(point.face) > 0.99999; });
+    if (point.face.isZero(0.0) || again || tried.size() >= kMostFaces) continue;
+    tried.push_back(point.face);
+    try_along(point.face);
   }
   best = fitted(points, best);
   const double covered = area_along(lowest(points, best, 1e9), best);
@@ -191,6 +233,7 @@ bool find_sole(const std::vector<ShapePoint>& points, const Vector3d& down, cons
   R.col(0) = (forward - best * forward.dot(best)).normalized();
   R.col(1) = R.col(2).cross(R.col(0));
   std::vector<Vector2d> hull = hull_along(low, R.col(0), R.col(1));
+  drop_straight(&hull);
   const std::size_t corners = hull.size();
   std::vector<double> flat_points;
   for (const Vector2d& p : hull) flat_points.insert(flat_points.end(), {p.x(), p.y()});
@@ -210,11 +253,12 @@ bool find_sole(const std::vector<ShapePoint>& points, const Vector3d& down, cons
   for (const ShapePoint& point : points) bottom = std::max(bottom, depth(point, best));
   sole->frame.X_LF.linear() = R;
   sole->frame.X_LF.translation() = R.col(0) * middle.x() + R.col(1) * middle.y() + best * bottom;
-  sole->outline.clear();
-  for (const Vector2d& p : hull) sole->outline.push_back(p - middle);
+  // Convex as it is written, too.
+  for (Vector2d& p : hull) p = ((p - middle) / kWritten).array().round().matrix() * kWritten;
+  sole->outline = convex_hull(std::move(hull));
   sole->frame.why.push_back(format("The lowest corners, %.0f mm long and %.0f mm wide%s.",
                                    1e3 * (most.x() - least.x()), 1e3 * (most.y() - least.y()),
-                                   corners > kMostCorners ? ", outline reduced to 8 points" : ""));
+                                   corners > kMostCorners ? ", outline reduced to 7 points" : ""));
   return true;
 }
 

@@ -11,6 +11,8 @@ namespace gaitd::porting {
 struct ShapePoint {
   Eigen::Vector3d p;
   double radius = 0.0;
+  Eigen::Vector3d face =
+      Eigen::Vector3d::Zero();  // normal of a flat face on which it lies, if known
 };
 
 // Corners of all shapes on the links of a body: of the collision shapes, or of the visuals if there

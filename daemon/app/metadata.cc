@@ -7,6 +7,7 @@
 
 #include "daemon/config/node.h"
 #include "daemon/control/tick_data.h"
+#include "gaitd/walking/leg_geometry.h"
 #include "gaitd/walking/support.h"
 
 namespace gaitd::daemon {
@@ -25,9 +26,11 @@ void add_robot_metadata(const Robot& robot, LogMetadata* metadata) {
     const GaitdLeg& leg = model.legs[side];
     json names = json::array();
     for (int i = 0; i < leg.joint_count; ++i) names.push_back(model.joints[leg.joints[i]].name);
-    legs[walking::side_name(side)] = {{"knee", model.joints[leg.knee].name},
-                                      {"knee_bend_sign", leg.knee_bend_sign},
-                                      {"joints", names}};
+    legs[walking::side_name(side)] = {
+        {"knee", model.joints[leg.knee].name},
+        {"knee_bend_sign", leg.knee_bend_sign},
+        {"knee_straight", walking::LegGeometry(model, side).straight()},
+        {"joints", names}};
   }
   json faults;
   for (std::size_t i = 0; i < kFaultNames.size(); ++i) faults[kFaultNames[i]] = i;

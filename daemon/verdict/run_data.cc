@@ -61,6 +61,7 @@ LegDescription read_leg(const Json& json) {
     leg.knee = json.at("knee").get<std::string>();
   }
   leg.knee_bend_sign = json.value("knee_bend_sign", 1.0);
+  leg.knee_straight = json.value("knee_straight", 0.0);
   leg.joints = json.value("joints", std::vector<std::string>());
   return leg;
 }

@@ -21,6 +21,7 @@ inline constexpr std::array<const char*, 2> kSides = {"left", "right"};
 struct LegDescription {
   std::string knee;  // joint; empty: the leg has none
   double knee_bend_sign = 1.0;
+  double knee_straight = 0.0;  // rad, of the joint where the leg is straight
   std::vector<std::string> joints;
 };
 

@@ -41,15 +41,16 @@ void compute_slip(const RunData& run, RunFigures* figures) {
 }
 
 // Of the knee that carries the robot, over single support; bent is positive.
-double stance_knee(const RunData& run, const char* signal, Statistic statistic) {
+double stance_knee(const RunData& run, const std::string& signal, Statistic statistic) {
   Column values;
   for (int side = 0; side < 2; ++side) {
     const LegDescription& leg = run.robot().legs[static_cast<std::size_t>(side)];
     const Column* column = run.find("joint/" + leg.knee + "/" + signal);
+    const double zero = signal == "position" ? leg.knee_straight : 0.0;
     if (leg.knee.empty() || column == nullptr) return kNotMeasured;
     for (std::size_t tick = 0; tick < run.ticks(); ++tick) {
       if (run.is_during(tick, During::kSwing) && run.support()[tick] == side) {
-        values.push_back(leg.knee_bend_sign * (*column)[tick]);
+        values.push_back(leg.knee_bend_sign * ((*column)[tick] - zero));
       }
     }
   }

@@ -11,8 +11,9 @@ namespace gaitd::daemon {
 
 // What the log must supply besides the signals, in its metadata:
 //   joints      JSON [{"name": "l_leg_kny", "effort_limit": 890.0}, ...]
-//   legs        JSON {"left": {"knee": "l_leg_kny", "knee_bend_sign": 1, "joints": [names]},
-//                     "right": {...}}; "knee" null or absent if the leg has none
+//   legs        JSON {"left": {"knee": "l_leg_kny", "knee_bend_sign": 1, "knee_straight": 0,
+//                     "joints": [names]}, "right": {...}}; "knee" null or absent if the leg has
+//                     none, "knee_straight" (rad, 0 if absent) where the leg is straight
 //   fault_bits  JSON {"fall": 3, ...}: bit numbers of the signal safety/faults
 //   scenario    its name; a run of one passes only if it was not broken off
 //   end         how the run ended, optional, at the end of the file: whole are "settled",

@@ -117,9 +117,10 @@ class Reader {
   }
 
   void add(const std::vector<double>& corners, const Eigen::Affine3d& X) {
-    for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+    for (std::size_t i = 0; i + 2 < corners.size() && points_.size() < bounds::kMeshPoints;
+         i += 3) {
       const Eigen::Vector3d point = X * Eigen::Vector3d(corners[i], corners[i + 1], corners[i + 2]);
-      if (point.allFinite() && points_.size() < bounds::kMeshPoints) points_.push_back(point);
+      if (point.allFinite()) points_.push_back(point);
     }
   }
 

@@ -60,15 +60,18 @@ class ElementReader {
  private:
   void read_robot(const TiXmlElement& robot) {
     elements_.robot_name = name_of(robot, "robot");
+    // Its macros leave names and figures open: they would all be errors.
+    for (const TiXmlElement* e = robot.FirstChildElement(); e; e = e->NextSiblingElement()) {
+      if (!std::string_view(e->Value()).starts_with("xacro:")) continue;
+      xml_.add_error(e->Row(), std::string("<") + e->Value() +
+                                   "> is a xacro macro, expected plain URDF; expand the file with "
+                                   "xacro first");
+      return;
+    }
     for (const TiXmlElement* e = robot.FirstChildElement(); e; e = e->NextSiblingElement()) {
       const std::string_view tag = e->Value();
       if (tag == "link") read_link(*e);
       if (tag == "joint") read_joint(*e);
-      if (tag.starts_with("xacro:")) {
-        xml_.add_error(e->Row(), std::string("<") + e->Value() +
-                                     "> is a xacro macro, expected plain URDF; expand the file "
-                                     "with xacro first");
-      }
     }
     if (elements_.links.empty())
       xml_.add_error(robot.Row(), "has no <link>, expected at least one");
@@ -122,9 +125,13 @@ class ElementReader {
 
   void check_mass(const TiXmlElement& mass, const TiXmlElement& inertia, const Eigen::Matrix3d& m,
                   const std::string& owner, UrdfLinkElement* link) {
-    if (link->mass < 0 || (link->mass == 0 && !m.isZero(0))) {
+    if (link->mass < 0) {
       xml_.add_error(mass.Row(), owner + ": mass is " + to_text(link->mass) +
                                      " kg, expected above 0; give the mass of the link");
+    } else if (link->mass == 0 && !m.isZero(0)) {
+      xml_.add_warning(mass.Row(), owner + ": an inertia without a mass; it is taken for nothing");
+      link->inertia.setZero();
+      return;
     }
     // A part on a fixed joint may be a point mass; the body it is merged into is checked again.
     const std::string reason = check_inertia(m, true);
@@ -148,8 +155,9 @@ class ElementReader {
     const bool locked = is_fixed(joint.name);
     const TiXmlElement* mimic = element.FirstChildElement("mimic");
     const bool moves = type == "revolute" || type == "continuous" || type == "prismatic";
-    if (type == "fixed" || type == "floating" || (moves && (locked || mimic != nullptr))) {
-      joint.kind = type == "floating" ? UrdfJointKind::kFloating : UrdfJointKind::kFixed;
+    const bool free = type == "floating" && !locked;
+    if (type == "fixed" || free || locked || (moves && mimic != nullptr)) {
+      joint.kind = free ? UrdfJointKind::kFloating : UrdfJointKind::kFixed;
       const urdf::Joint at = parse_joint(element, {"origin", "axis"}, owner, &xml_);
       joint.X_PJ = to_isometry(at.parent_to_joint_origin_transform);
       if (moves) lock(element, to_vector(at.axis), type, &joint);

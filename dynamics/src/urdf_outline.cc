@@ -71,6 +71,11 @@ bool read_shape(const TiXmlElement& element, UrdfShape* shape) {
 }
 
 void read_link(const TiXmlElement& element, UrdfOutline* outline) {
+  const TiXmlElement* inertial = element.FirstChildElement("inertial");
+  const TiXmlElement* mass = inertial == nullptr ? nullptr : inertial->FirstChildElement("mass");
+  if (number(mass, "value", 0) > 0) {
+    outline->links_with_mass.insert(attribute_text(&element, "name"));
+  }
   for (const char* tag : {"collision", "visual"}) {
     for (const TiXmlElement* e = element.FirstChildElement(tag); e != nullptr;
          e = e->NextSiblingElement(tag)) {
@@ -93,6 +98,13 @@ void read_joint(const TiXmlElement& element, UrdfOutline* outline) {
   joint.mimic = element.FirstChildElement("mimic") != nullptr;
   const TiXmlElement* limit = element.FirstChildElement("limit");
   joint.has_effort = number(limit, "effort", 0) > 0 && number(limit, "velocity", 0) > 0;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  if (const TiXmlElement* given = element.FirstChildElement("axis")) {
+    numbers(attribute_text(given, "xyz"), &axis);
+  }
+  const bool limited = joint.type == "revolute" || joint.type == "prismatic";
+  joint.has_range =
+      axis.norm() > 0 && (!limited || number(limit, "lower", 0) < number(limit, "upper", 0));
   outline->joints.push_back(joint);
 }
 

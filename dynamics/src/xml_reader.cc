@@ -78,7 +78,7 @@ std::optional<XmlExcess> find_excess(const std::string& text) {
             at, "elements nested more than " + std::to_string(bounds::kUrdfDepth) + " deep");
       }
     } else {
-      if (rest.starts_with("</")) --depth;
+      if (rest.starts_with("</")) depth = std::max(0, depth - 1);
       end = all.find('>', at);
     }
     if (end == std::string_view::npos) break;

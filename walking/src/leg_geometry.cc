@@ -28,6 +28,7 @@ Eigen::Vector3d origin_in(const GaitdModel& model, int body, const GaitdJoint& j
 }
 
 constexpr double kLeastBend = 0.1;  // rad, from the straight line
+constexpr double kSameZero = 0.3;   // rad, of a straight leg from the zero of its knee
 
 }  // namespace
 
@@ -47,6 +48,10 @@ LegGeometry::LegGeometry(const GaitdModel& model, int side) {
   thigh_ = thigh.norm();
   shank_ = shank.norm();
   offset_ = std::atan2(axis.dot(thigh.cross(shank)), thigh.dot(shank));
+  sign_ = leg.knee_bend_sign;
+  const double straight = std::clamp(-sign_ * offset_, knee.position_min, knee.position_max);
+  if (std::abs(straight) > kSameZero) straight_ = straight;
+  offset_ += sign_ * straight_;
 }
 
 double LegGeometry::length(double knee) const {

@@ -99,7 +99,7 @@ ObjectiveBuilder::ObjectiveBuilder(const GaitdModel& model)
 void ObjectiveBuilder::reset(const GaitdRobotState& robot, const GaitdGaitState& gait) {
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdLeg& leg = model_.legs[side];
-    legs_[side].reset(leg.knee_bend_sign * robot.joint_position[leg.knee]);
+    legs_[side].reset(legs_[side].geometry().bend(robot.joint_position[leg.knee]));
     time_in_contact_[side] = 1e3;
     time_in_toe_off_[side] = 0.0;
   }
@@ -373,7 +373,7 @@ void ObjectiveBuilder::update_privileged(double dt, const GaitdRobotState& robot
   update_lowering(dt, robot, gait);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdLeg& leg = model_.legs[side];
-    const double knee = leg.knee_bend_sign * robot.joint_position[leg.knee];
+    const double knee = legs_[side].geometry().bend(robot.joint_position[leg.knee]);
     const double rate = leg.knee_bend_sign * robot.joint_velocity[leg.knee];
     const LegConfiguration::Reference& r =
         legs_[side].update(dt, side, knee, rate, lowering_, knee + 2.0 * ankle_room(side, robot),

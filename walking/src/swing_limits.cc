@@ -28,13 +28,12 @@ SwingLimits::SwingLimits(const GaitdModel& model) : separation_(model.nominal_fo
     const GaitdLeg& leg = model.legs[side];
     const GaitdJoint& hip = model.joints[leg.hip_pitch];
     const GaitdJoint& knee = model.joints[leg.knee];
-    const double ends[] = {leg.knee_bend_sign * knee.position_min,
-                           leg.knee_bend_sign * knee.position_max};
     Leg& l = legs_[side];
     l.geometry = LegGeometry(model, side);
+    const double ends[] = {l.geometry.bend(knee.position_min), l.geometry.bend(knee.position_max)};
     l.shortest = l.geometry.length(std::max(ends[0], ends[1]));
     l.longest = l.geometry.length(std::max(0.0, std::min(ends[0], ends[1])));
-    l.standing = l.geometry.length(leg.knee_bend_sign * model.nominal_position[leg.knee]);
+    l.standing = l.geometry.length(l.geometry.bend(model.nominal_position[leg.knee]));
     l.hip_speed = hip.velocity_limit;
     l.knee_speed = knee.velocity_limit;
     l.hip_name = hip.name;

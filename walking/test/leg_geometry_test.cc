@@ -32,6 +32,31 @@ TEST(LegGeometry, LengthsAreThoseOfTheRobot) {
   }
 }
 
+// Of a robot whose zero is a crouch, a bend counts from the straight leg.
+TEST(LegGeometry, BendsCountFromTheStraightLeg) {
+  GaitdModel model = atlas();
+  const LegGeometry before(model, GAITD_LEFT);
+  const GaitdLeg& leg = model.legs[GAITD_LEFT];
+  GaitdJoint& knee = model.joints[leg.knee];
+  const double crouch = leg.knee_bend_sign * 0.8;
+  sdk::store(sdk::quaternion(knee.orientation) *
+                 Eigen::Quaterniond(Eigen::AngleAxisd(crouch, sdk::view(knee.axis))),
+             knee.orientation);
+  knee.position_min -= crouch;
+  knee.position_max -= crouch;
+  const LegGeometry after(model, GAITD_LEFT);
+  for (double at : {0.0, 0.5, 1.5}) {
+    const double position = leg.knee_bend_sign * at;
+    EXPECT_NEAR(after.length(after.bend(position - crouch)), before.length(before.bend(position)),
+                1e-9);
+  }
+  EXPECT_NEAR(after.length(0.0), 2.0 * 0.4, 0.1);
+  EXPECT_NEAR(after.bend(after.straight()), 0.0, 1e-12);
+  // Where the knee cannot be straight, from its stop.
+  knee.position_min = -0.5;
+  EXPECT_NEAR(LegGeometry(model, GAITD_LEFT).straight(), -0.5, 1e-12);
+}
+
 TEST(LegGeometry, ABendShortensALegWhereverItsKneeIs) {
   const LegGeometry leg(atlas(), GAITD_LEFT);
   for (double knee : {0.4, 0.9, 1.8}) {

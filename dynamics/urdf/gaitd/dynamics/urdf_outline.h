@@ -5,6 +5,7 @@
 #define GAITD_DYNAMICS_URDF_OUTLINE_H_
 
 #include <Eigen/Geometry>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct UrdfJointNote {
   std::string name, parent, child, type;
   bool mimic = false;
   bool has_effort = false;  // and a velocity, both above 0
+  bool has_range = true;    // an axis, and limits apart from each other where its type has some
 };
 
 // <sensor> in a <gazebo> of a link or joint.
@@ -36,6 +38,7 @@ struct UrdfSensor {
 
 struct UrdfOutline {
   std::vector<UrdfShape> shapes;
+  std::set<std::string> links_with_mass;
   std::vector<UrdfJointNote> joints;
   std::vector<UrdfSensor> sensors;
 };

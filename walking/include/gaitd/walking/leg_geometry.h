@@ -5,12 +5,18 @@
 
 namespace gaitd::walking {
 
-// Length of a leg from hip pitch to ankle pitch, by its knee.
+// Length of a leg from hip pitch to ankle pitch, by the bend of its knee. A bend counts from the
+// zero of the joint where the leg is straight there, to 0.3 rad; otherwise from where it is
+// longest.
 class LegGeometry {
  public:
   LegGeometry() = default;
   LegGeometry(const GaitdModel& model, int side);
 
+  // rad, positive when bent, of a knee joint at `position`.
+  double bend(double position) const { return sign_ * (position - straight_); }
+  // rad, of the joint where its bend is 0.
+  double straight() const { return straight_; }
   // m, for a knee bent by `knee` (rad, positive when bent).
   double length(double knee) const;
   // m/rad, by which it is shorter the more the knee bends there; that of a little bend where the
@@ -23,7 +29,9 @@ class LegGeometry {
 
  private:
   double thigh_ = 0.4, shank_ = 0.4;  // m
-  double offset_ = 0.0;               // rad, bend of the line hip-knee-ankle at knee 0
+  double sign_ = 1.0;
+  double straight_ = 0.0;  // rad, of the joint
+  double offset_ = 0.0;    // rad, bend of the line hip-knee-ankle at bend 0
 };
 
 // rad: least bend of a leg that stands, for a step of `horizontal` metres without what the feet
