@@ -123,7 +123,7 @@ std::string input_text(const Command& c, int parameter_owner, int parameter_plac
       for (int i = 0; i < c.footstep_count; ++i) {
         json step;
         visit(c.footsteps[i], Write{&step});
-        if (c.type == CommandType::kRefine) step["id"] = c.footsteps[i].id;
+        if (c.footsteps[i].id != 0) step["id"] = c.footsteps[i].id;
         out["footsteps"].push_back(std::move(step));
       }
       break;

@@ -53,6 +53,7 @@ void GotoTask::ask(const walking::GaitMachine& gait, PlanKind kind) {
   PlanRequest request;
   request.serial = ++serial_;
   request.kind = kind;
+  request.taken = taken_;
   request.start = start_;
   request.goal = {command_.target.x, command_.target.y, {}};
   if (command_.target.has_yaw) request.goal.yaw = command_.target.yaw;
@@ -194,6 +195,7 @@ bool GotoTask::gets_nowhere() {
 // The plan is with the gait machine.
 GotoTask::Step GotoTask::all_taken() {
   const bool first = !under_way_;
+  if (!unchanged_) taken_ = serial_;
   if (!unchanged_) partial_ = plan_->partial || !plan_->refusal.empty();
   if (partial_) {
     std::snprintf(why_.data(), why_.size(), "%s",

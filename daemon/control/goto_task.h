@@ -64,6 +64,7 @@ class GotoTask {
   bool from_client_ = false;
   Command command_;
   std::uint64_t serial_ = 0;
+  std::uint64_t taken_ = 0;  // of the last plan that is with the gait machine
   bool asked_ = false;
   PlanKind kind_ = PlanKind::kGoto;  // of what was asked
   int attempts_ = 0;

@@ -209,6 +209,7 @@ void Pipeline::run(std::int64_t tick) {
   if (safety_.update(period_, d, gait_.walking())) begin_control();
   const bool controlled = safety_.controlled();
   const bool ok = controlled && control(period_);
+  d.controlled = controlled;
   if (!controlled) {
     layers_.give_up_swaps("the robot is not under control any more");
     d.drive = {};
@@ -222,6 +223,7 @@ bool Pipeline::control(double dt) {
   TickData& d = data_;
   gait_.update(dt, d.robot, d.plan, d.toe_off, d.adjustment);
   d.gait = gait_.state();
+  d.height_offset = gait_.height_offset();
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     d.told[side] = gait_.told(side);
     d.bearing[side] = gait_.contact(side).share();

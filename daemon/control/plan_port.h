@@ -21,7 +21,8 @@ enum class PlanKind : std::uint8_t {
 struct PlanRequest {
   std::uint64_t serial = 0;
   PlanKind kind = PlanKind::kGoto;
-  footsteps::Start start;  // in the frame of commands
+  std::uint64_t taken = 0;  // serial of the last plan of which all footsteps were taken
+  footsteps::Start start;   // in the frame of commands
   footsteps::Goal goal;
   double height_offset = 0.0;  // m, of W above the frame of commands
   int ahead_count = 0;
@@ -41,6 +42,7 @@ struct Sight {
   double time = 0.0;  // s
   bool anew = false;  // the simulation has begun anew since the one before
   bool has_truth = false;
+  double height_offset = 0.0;  // m, of W above the frame of commands
   GaitdPose pelvis{}, true_pelvis{};
   double joints[GAITD_MAX_JOINTS]{}, true_joints[GAITD_MAX_JOINTS]{};
   // Of feet that stand, as they are estimated to lie in W: what they were told to bear on, and what

@@ -28,6 +28,7 @@ void SightTask::look(const GaitdModel& model, const TickData& data, std::int64_t
   pending.due = tick + timing_.latency;
   sight.anew = std::exchange(anew_, false);
   sight.time = data.time.time;
+  sight.height_offset = data.height_offset;
   sight.pelvis = pose_of(data.robot.pelvis_position, data.robot.pelvis_orientation);
   sight.has_truth = data.has_truth;
   sight.true_pelvis = pose_of(data.truth.pelvis_position, data.truth.pelvis_orientation);
@@ -39,7 +40,9 @@ void SightTask::look(const GaitdModel& model, const TickData& data, std::int64_t
     sight.soles[side] = data.gait.footholds[side];
     sight.told[side].pose = sight.soles[side].pose = pose_of(foot.position, foot.orientation);
     sight.partial[side] = data.bearing[static_cast<std::size_t>(side)] < 1.0;
-    sight.stands[side] = data.gait.footholds[side].contact == GAITD_CONTACT_FULL &&
+    // What is not under control may be lifted and put down elsewhere.
+    sight.stands[side] = data.controlled &&
+                         data.gait.footholds[side].contact == GAITD_CONTACT_FULL &&
                          foot.normal_force > kCarries * model.total_mass * model.gravity;
   }
 }

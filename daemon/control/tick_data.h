@@ -94,6 +94,8 @@ struct TickData {
   External external{};
   std::array<walking::Handholds::Change, GAITD_MAX_HANDS> handhold_changes{};  // in this tick
   GaitdGaitState gait{};
+  bool controlled = false;     // the gait and the layers move the robot
+  double height_offset = 0.0;  // m, of W above the frame of commands
   // What footholds were told to carry, and the share of it that their feet were seen to bear on.
   std::array<GaitdFoothold, GAITD_MAX_FEET> told{};
   std::array<double, GAITD_MAX_FEET> bearing{1.0, 1.0};

@@ -17,6 +17,7 @@ namespace {
 constexpr double kPose = 0.003;
 constexpr double kSole = 0.004;
 constexpr double kLevel = 0.03;  // m, by which both soles are on one plane
+constexpr double kStance = 1.2;  // nominal distances of the feet
 // A ray along the ground says where it ends, not how high: of the variance of its range at least
 // this part is one of the height.
 constexpr double kGrazing = 0.1;
@@ -145,9 +146,13 @@ void LiveGround::look(const Sight& sight) {
 
 void LiveGround::feel(const Sight& sight) {
   const std::uint64_t before = memory_.revision();
+  // A map that somebody made before is in the frame of commands.
+  const double offset = told_ || eye_ ? 0.0 : sight.height_offset;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     if (!sight.stands[side] || !sight.partial[side]) continue;
-    memory_.sink(in_world(sight.told[side]), in_world(sight.soles[side]), sight.time);
+    std::vector<Eigen::Vector3d> told = in_world(sight.told[side]);
+    for (Eigen::Vector3d& p : told) p.z() -= offset;
+    memory_.sink(told, in_world(sight.soles[side]), sight.time);
   }
   felt_ = felt_ || memory_.revision() != before;
 }
@@ -170,6 +175,11 @@ void LiveGround::stand_on_soles(const Sight& sight) {
   }
   if (sight.partial[GAITD_LEFT] || sight.partial[GAITD_RIGHT]) return;
   if (!sight.stands[GAITD_LEFT] || !sight.stands[GAITD_RIGHT] || high - low > kLevel) return;
+  // As far apart as it begins to stand; wider, there may be a gap that it steps over.
+  const double apart = (sdk::view(sight.soles[GAITD_LEFT].pose.position) -
+                        sdk::view(sight.soles[GAITD_RIGHT].pose.position))
+                           .norm();
+  if (apart > kStance * model_.nominal_foot_separation) return;
   walking::ConvexPolygon hull;
   for (const Eigen::Vector3d& p : both) hull.add(p.head<2>());
   hull.make_hull();

@@ -120,6 +120,10 @@ double PlanService::above_map(const PlanRequest& request) const {
 footsteps::Plan PlanService::answer(const PlanRequest& request, bool* unchanged) {
   footsteps::FootstepPlanner& planner = this->planner();
   const double bias = above_map(request);
+  if (offered_ && offered_->first == request.taken) {
+    route_ = std::move(offered_->second);
+    offered_.reset();
+  }
   PlanRequest on_map = request;
   for (GaitdPose& foot : on_map.start.feet) foot.position[2] -= bias;
   if (on_map.start.under_way) raise(-bias, &*on_map.start.under_way);
@@ -129,11 +133,12 @@ footsteps::Plan PlanService::answer(const PlanRequest& request, bool* unchanged)
     case PlanKind::kGoto:
       exhausted_.clear();
       plan = planner.plan(on_map.start, on_map.goal, on_map.parameters);
-      if (plan.refusal.empty()) route_ = plan;
+      if (plan.refusal.empty()) offered_ = {request.serial, plan};
       break;
     case PlanKind::kRevise:
       on_map.goal.exhausted = exhausted_;
       plan = revise(on_map, unchanged);
+      if (!*unchanged) offered_ = {request.serial, plan};
       break;
     case PlanKind::kRefine:
       plan.footsteps = planner.refine(
@@ -178,20 +183,15 @@ footsteps::Plan PlanService::revise(const PlanRequest& request, bool* unchanged)
   if (known && adapted.refusal.empty()) {
     *unchanged = std::equal(left.begin(), left.end(), adapted.footsteps.begin(),
                             adapted.footsteps.end(), same);
-    if (!*unchanged) route_ = adapted;
     return *unchanged ? footsteps::Plan{} : adapted;
   }
   footsteps::Plan plan = planner_->plan(request.start, goal, request.parameters);
   if (!left.empty() && adapted.refusal.empty()) {
     go_on(request, adapted, &plan);
   }
-  if (plan.refusal.empty()) {
-    route_ = plan;
-    return plan;
-  }
+  if (plan.refusal.empty()) return plan;
   adapted.refusal = plan.refusal;
   adapted.partial = true;
-  route_ = adapted;
   return adapted;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "daemon/control/plan_port.h"
@@ -56,7 +57,10 @@ class PlanService {
   LiveGround::Known known_;
   std::unique_ptr<footsteps::FootstepPlanner> planner_;  // on known_
   const std::shared_ptr<footsteps::WayMemory> ways_ = std::make_shared<footsteps::WayMemory>();
-  footsteps::Plan route_;                   // of the last goto, as it was revised
+  footsteps::Plan route_;  // what is being walked: of the last goto, as it was revised
+  // The last plan that was made, by the serial of its request: it becomes the route when all of it
+  // was taken. One that came too late, or was refused, never does.
+  std::optional<std::pair<std::uint64_t, footsteps::Plan>> offered_;
   std::vector<Eigen::Vector2d> exhausted_;  // m, W: Goal::exhausted of it
 };
 

@@ -18,7 +18,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSpacing = 0.027;    // m, of the points of a sole that are looked at
+// m, of the points of a sole that are looked at: every cell, of cells that are not smaller.
+constexpr double kWidestSpacing = 0.027;
+constexpr double kLeastSpacing = 0.01;
 constexpr double kRim = 0.03;         // m, around the sole
 constexpr double kRoughness = 0.012;  // m, of the ground from the plane of the sole
 constexpr double kEdge = 0.02;        // m, by which the ground beside the sole is lower at an edge
@@ -35,6 +37,7 @@ constexpr double kEdgeCost = 3.0;
 constexpr double kRoughnessCost = 1.0;
 constexpr double kSlopeCost = 1.5;
 constexpr double kCarries = 0.85;  // of what is below a sole, by height: that it stands on
+constexpr double kAside = 0.5;     // part of a way across the foot, from which it goes aside
 constexpr double kFree = 0.3;  // m, from a foothold to the edge of its plane, from which it is free
 
 // By cell, the highest ground within `cells` of it; -infinity: nothing is known there.
@@ -57,9 +60,10 @@ float look_up(const std::vector<float>& values, const terrain::Grid& grid, const
              : -INFINITY;
 }
 
-double half_width(const GaitdFoot& foot) {
+// m, of the sole along axis 0 (ahead) or 1 (across), from its middle.
+double half_extent(const GaitdFoot& foot, int axis) {
   double half = 0.0;
-  for (int i = 0; i < foot.point_count; ++i) half = std::max(half, std::abs(foot.points[i][1]));
+  for (int i = 0; i < foot.point_count; ++i) half = std::max(half, std::abs(foot.points[i][axis]));
   return half;
 }
 
@@ -86,6 +90,8 @@ walking::ConvexPolygon shrunk(const std::vector<Vector3d>& part, const GaitdFoot
 
 Footholds::Footholds(const GaitdModel& model, std::shared_ptr<const terrain::HeightMap> map)
     : model_(model), map_(std::move(map)) {
+  const double spacing =
+      map_ ? std::clamp(map_->grid().resolution, kLeastSpacing, kWidestSpacing) : kWidestSpacing;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdFoot& foot = model.feet[side];
     walking::ConvexPolygon outline;
@@ -100,9 +106,10 @@ Footholds::Footholds(const GaitdModel& model, std::shared_ptr<const terrain::Hei
     Sole& sole = soles_[side];
     // A grid that touches the edges of the sole, and the same spacing beyond them.
     const Vector2d size = high - low;
-    const Eigen::Vector2i count = (size / kSpacing).array().ceil().cast<int>();
-    for (int i = -2; i <= count.x() + 2; ++i) {
-      for (int j = -2; j <= count.y() + 2; ++j) {
+    const Eigen::Vector2i count = (size / spacing).array().ceil().cast<int>();
+    const int beyond = static_cast<int>(std::ceil(1.5 * kRim / spacing));
+    for (int i = -beyond; i <= count.x() + beyond; ++i) {
+      for (int j = -beyond; j <= count.y() + beyond; ++j) {
         const Vector2d p =
             low + size.cwiseProduct(Vector2d(1.0 * i / count.x(), 1.0 * j / count.y()));
         const double inside = outline.inside_distance(p);
@@ -120,7 +127,10 @@ Footholds::Footholds(const GaitdModel& model, std::shared_ptr<const terrain::Hei
   if (!map_) return;
   regions_ = terrain::find_planar_regions(*map_);
   const double resolution = map_->grid().resolution;
-  near_foot_ = dilated(*map_, static_cast<int>(std::ceil(half_width(model.feet[0]) / resolution)));
+  for (int axis : {0, 1}) {
+    const double half = half_extent(model.feet[0], axis);
+    near_foot_[axis] = dilated(*map_, static_cast<int>(std::ceil(half / resolution)));
+  }
   const auto cells = [&](double width) {
     return static_cast<int>(std::ceil(width * model.nominal_pelvis_height / resolution));
   };
@@ -219,11 +229,15 @@ GaitdPose Footholds::pose_of(const Place& place, const Foothold& foothold) {
 double Footholds::highest_between(const GaitdPose& from, const GaitdPose& to) const {
   if (!map_) return -INFINITY;
   const Vector2d a(from.position), b(to.position);
+  // A foot that goes aside sweeps the ground with its whole length.
+  const Vector2d way =
+      Eigen::Rotation2Dd(-sdk::yaw_of(sdk::quaternion(to.orientation))) * Vector2d(b - a);
+  const std::vector<float>& near = near_foot_[std::abs(way.y()) > kAside * way.norm() ? 0 : 1];
   const int steps = static_cast<int>(std::ceil((b - a).norm() / map_->grid().resolution)) + 1;
   double highest = -INFINITY;
   for (int i = 0; i <= steps; ++i) {
     const Vector2d p = a + (b - a) * i / steps;
-    highest = std::max(highest, 1.0 * look_up(near_foot_, map_->grid(), p));
+    highest = std::max(highest, 1.0 * look_up(near, map_->grid(), p));
   }
   return highest;
 }

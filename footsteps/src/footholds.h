@@ -51,7 +51,7 @@ class Footholds {
   // m, W, at the cell of `p`; NaN: unknown, or no map.
   double height(const Eigen::Vector2d& p) const;
 
-  // m, W: the highest ground within the width of a foot of the way of a sole from `from` to `to`.
+  // m, W: the highest ground that a sole is above on its way from `from` to `to`.
   // -infinity: nothing is known to be there.
   double highest_between(const GaitdPose& from, const GaitdPose& to) const;
   // Whether nothing around `middle`, between the feet, is too high for the legs, or for the arms,
@@ -77,7 +77,8 @@ class Footholds {
   double level_ = 0.0;
   std::array<Sole, GAITD_MAX_FEET> soles_;
   terrain::PlanarRegions regions_;
-  std::vector<float> near_foot_;  // by cell: highest ground within half a foot
+  // By cell: highest ground within half a foot, as it is long [0] and wide [1].
+  std::array<std::vector<float>, 2> near_foot_;
   std::vector<float> near_legs_;  // likewise, of the legs
   std::vector<float> near_arms_;  // likewise, of the arms
 };

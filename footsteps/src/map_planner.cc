@@ -19,6 +19,10 @@ constexpr double kAsideCost = 40.0;    // steps per metre
 constexpr double kSameHeight = 0.003;  // m, and
 constexpr double kSameTilt = 0.01;     // rad: a foothold is where it was
 
+bool changed(const GaitdFootstep& step, const GaitdFootstep& before) {
+  return !same_foothold(step.pose, before.pose) || step.swing_height != before.swing_height;
+}
+
 }  // namespace
 
 bool same_foothold(const GaitdPose& a, const GaitdPose& b) {
@@ -43,6 +47,7 @@ Plan MapPlanner::adapt(const Start& start, const std::vector<GaitdFootstep>& ahe
                        const walking::GaitParameters& parameters) {
   Plan plan;
   GaitdPose feet[GAITD_MAX_FEET] = {start.feet[GAITD_LEFT], start.feet[GAITD_RIGHT]};
+  steps_->set_level(start);
   for (const GaitdFootstep& old : ahead) {
     const Place place = place_of(old.pose);
     const Foothold foothold = steps_->footholds().at(old.side, place, walking::kMaxStepTilt);
@@ -105,27 +110,43 @@ std::vector<GaitdFootstep> MapPlanner::refine(const Start& start,
                                               const std::vector<GaitdFootstep>& ahead,
                                               const walking::GaitParameters& parameters) {
   std::vector<GaitdFootstep> refined = ahead;
+  if (!steps_->footholds().has_map()) return {};
   GaitdPose feet[GAITD_MAX_FEET] = {start.feet[GAITD_LEFT], start.feet[GAITD_RIGHT]};
-  std::vector<bool> changed;
+  double raised = 0.0;  // m, by the ground below the footsteps before
   for (GaitdFootstep& step : refined) {
     const GaitdFootstep before = step;
-    const bool put = steps_->footholds().has_map() &&
-                     put_on_ground(feet[other_side(step.side)], feet[step.side], parameters, &step);
-    changed.push_back(put && !same_foothold(step.pose, before.pose));
-    if (!changed.back()) step = before;
-    if (changed.back()) steps_->footholds().add_landing_region(&step);
+    const GaitdPose& stance = feet[other_side(step.side)];
+    const GaitdPose& from = feet[step.side];
+    if (put_on_ground(stance, from, parameters, &step)) {
+      raised = step.pose.position[2] - before.pose.position[2];
+      // A foot that strikes something all the same goes as high as it was told to.
+      static_cast<void>(steps_->raise_swing(stance, from, parameters, &step));
+      if (changed(step, before)) {
+        steps_->footholds().add_landing_region(&step);
+      } else {
+        step = before;
+      }
+    } else {
+      step.pose.position[2] += raised;
+      for (int i = 0; i < step.region_count; ++i) step.landing_region[i][2] += raised;
+    }
     feet[step.side] = step.pose;
   }
-  std::vector<GaitdFootstep> result;
-  if (std::none_of(changed.begin(), changed.end(), [](bool c) { return c; })) return result;
-  // Longer transfers where heights ask for them. Where that is not enough nothing is changed.
-  if (steps_->rules().finish(start, parameters, &refined).refused()) return result;
-  for (std::size_t i = 0; i < refined.size(); ++i) {
-    if (changed[i] || refined[i].transfer_duration != ahead[i].transfer_duration) {
-      result.push_back(refined[i]);
+  // Longer transfers where heights ask for them. Where that is not enough, those behind are left as
+  // they were.
+  for (std::size_t kept = refined.size(); kept > 0; --kept) {
+    if (kept < refined.size()) refined[kept] = ahead[kept];
+    std::vector<GaitdFootstep> steps = refined;
+    if (steps_->rules().finish(start, parameters, &steps).refused()) continue;
+    std::vector<GaitdFootstep> result;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      if (changed(steps[i], ahead[i]) || steps[i].transfer_duration != ahead[i].transfer_duration) {
+        result.push_back(steps[i]);
+      }
     }
+    return result;
   }
-  return result;
+  return {};
 }
 
 std::optional<double> MapPlanner::ground_below(int side, const GaitdPose& sole) const {

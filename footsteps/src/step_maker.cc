@@ -73,14 +73,21 @@ StepState StepMaker::make(int side, const GaitdPose& pose, const GaitdPose& stan
     return StepState::kBody;
   }
   if (rules_.check(*step, stance, from, 1, parameters).refused()) return StepState::kReach;
-  if (even) return StepState::kGood;
-  const double usual = step->swing_height;
-  for (int i = 0; i <= kRaises; ++i) {
-    step->swing_height = usual + i * kRaise * unit_;
-    if (i > 0 && rules_.check(*step, stance, from, 1, parameters).refused()) break;
-    if (swings_clear(*step, from)) return StepState::kGood;
-  }
+  if (even || raise_swing(stance, from, parameters, step)) return StepState::kGood;
   return StepState::kSwing;
+}
+
+bool StepMaker::raise_swing(const GaitdPose& stance, const GaitdPose& from,
+                            const walking::GaitParameters& parameters, GaitdFootstep* step) const {
+  GaitdFootstep raised = *step;
+  for (int i = 0; i <= kRaises; ++i) {
+    raised.swing_height = step->swing_height + i * kRaise * unit_;
+    if (i > 0 && rules_.check(raised, stance, from, 1, parameters).refused()) return false;
+    if (!swings_clear(raised, from)) continue;
+    *step = raised;
+    return true;
+  }
+  return false;
 }
 
 double StepMaker::cost(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
@@ -109,7 +116,7 @@ bool StepMaker::swings_clear(const GaitdFootstep& step, const GaitdPose& from) c
         swing.evaluate(step.swing_duration * k / kSamples);
     const double end = 2 * k < kSamples ? from.position[2] : step.pose.position[2];
     const double clearance =
-        std::min(kClearance, 0.5 * std::max(0.0, sole.position.z() - end)) - kTouches;
+        std::min(kClearance, 0.5 * std::max(0.0, sole.position.z() - end) - kTouches);
     for (int i = 0; i < foot.point_count; ++i) {
       const Eigen::Vector2d a(foot.points[i]), b(foot.points[(i + 1) % foot.point_count]);
       for (const Eigen::Vector2d& p : {a, Eigen::Vector2d(0.5 * (a + b))}) {

@@ -18,6 +18,11 @@ class StepMaker {
   const GaitdModel& model() const { return model_; }
   Footholds& footholds() { return footholds_; }
   const Footholds& footholds() const { return footholds_; }
+  // Without a map the ground is level at the feet.
+  void set_level(const Start& start) {
+    footholds_.set_level(
+        0.5 * (start.feet[GAITD_LEFT].position[2] + start.feet[GAITD_RIGHT].position[2]));
+  }
   const StepRules& rules() const { return rules_; }
   double unit() const { return unit_; }  // m, height of the pelvis: lengths scale with it
 
@@ -25,6 +30,11 @@ class StepMaker {
   // at `stance` by the one at `from`.
   StepState make(int side, const GaitdPose& pose, const GaitdPose& stance, const GaitdPose& from,
                  const walking::GaitParameters& parameters, GaitdFootstep* step) const;
+
+  // Raises the swing until the foot clears the ground on its way. False: no swing does, and the
+  // step is as it was.
+  bool raise_swing(const GaitdPose& stance, const GaitdPose& from,
+                   const walking::GaitParameters& parameters, GaitdFootstep* step) const;
 
   // Of a footstep, as the lattice weighs it, but for its foothold.
   double cost(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,

@@ -120,8 +120,7 @@ Plan TurnWalkTurn::walk(const Start& start, const Goal& goal, const Manner& mann
 Plan TurnWalkTurn::plan(const Start& start, const Goal& goal,
                         const walking::GaitParameters& parameters) {
   constexpr Manner kManners[] = {{0.0, 0.38}, {M_PI, 0.2}, {M_PI_2, 0.15}, {-M_PI_2, 0.15}};
-  steps_->footholds().set_level(
-      0.5 * (start.feet[GAITD_LEFT].position[2] + start.feet[GAITD_RIGHT].position[2]));
+  steps_->set_level(start);
   std::optional<Plan> best;
   std::string why;
   for (const Manner& manner : kManners) {

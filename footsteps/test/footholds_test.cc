@@ -71,6 +71,35 @@ TEST(Footholds, AnEdgeCostsAndARiserBlocks) {
   EXPECT_NEAR(far.cost, 0.0, 1e-9);
 }
 
+// A pipe of one cell and 5 cm, wherever it lies below a sole; and a post.
+TEST(Footholds, WhatIsOneCellWideIsNotOverlooked) {
+  const Footholds pipe(atlas(), field({-1, -1}, {1, 1}, [](double x, double) {
+                         return std::abs(x) < 0.0101 ? 0.05 : 0.0;
+                       }));
+  const Footholds post(atlas(), field({-1, -1}, {1, 1}, [](double x, double y) {
+                         return std::abs(x) < 0.0101 && std::abs(y) < 0.0101 ? 0.05 : 0.0;
+                       }));
+  for (int mm = -105; mm <= 105; mm += 5) {
+    EXPECT_EQ(at(pipe, 0.001 * mm, 0).state, FootholdState::kRough) << mm;
+    EXPECT_EQ(at(post, 0.001 * mm, 0.03, 0.3).state, FootholdState::kRough) << mm;
+  }
+}
+
+// A brick beside the middle of a foot that goes to the left, where its toe passes.
+TEST(Footholds, AFootGoesAsideWithItsWholeLength) {
+  const Footholds map(atlas(), field({-1, -1}, {1, 1}, [](double x, double y) {
+                        return std::abs(x - 0.115) < 0.02 && std::abs(y - 0.2) < 0.02 ? 0.2 : 0.0;
+                      }));
+  Foothold level;
+  level.state = FootholdState::kGood;
+  const GaitdPose from = Footholds::pose_of({0, 0.05, 0}, level);
+  const GaitdPose aside = Footholds::pose_of({0, 0.4, 0}, level);
+  EXPECT_NEAR(map.highest_between(from, aside), 0.2, 1e-6);
+  const GaitdPose behind = Footholds::pose_of({-0.4, 0.08, 0}, level);
+  EXPECT_NEAR(map.highest_between(behind, Footholds::pose_of({0.4, 0.08, 0}, level)), 0.0, 1e-6)
+      << "it passes beside";
+}
+
 TEST(Footholds, TheWayOfASwingIsAsHighAsWhatItPasses) {
   const Footholds map(atlas(), field({-1, -1}, {2, 1}, [](double x, double y) {
                         return std::abs(x - 0.5) < 0.05 && y > -0.3 ? 0.12 : 0.0;

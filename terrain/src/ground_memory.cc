@@ -74,7 +74,7 @@ void GroundMemory::move_to(const Eigen::Vector2d& middle) {
 }
 
 double GroundMemory::variance_at(const Cell& cell, double time) const {
-  if (cell.doubts == kFelt) return static_cast<double>(cell.variance);
+  if (cell.told || cell.doubts == kFelt) return static_cast<double>(cell.variance);
   const double age = std::max(0.0, time - static_cast<double>(cell.seen));
   return static_cast<double>(cell.variance) + rules_.drift * rules_.drift * age;
 }
@@ -88,6 +88,7 @@ void GroundMemory::learn(Cell* cell, double height, double variance, double time
                                                  rules_.believable * std::sqrt(before + variance);
   if (known && !fits && ++cell->doubts < rules_.repeated) return;
   cell->doubts = 0;
+  cell->told = false;
   cell->seen = static_cast<float>(time);
   if (!fits) {
     cell->height = static_cast<float>(height);
@@ -166,7 +167,8 @@ void GroundMemory::stand_on(std::span<const Eigen::Vector3d> outline, double var
                             double time) {
   bool learned = false;
   visit(outline, [&](Cell& cell, const Eigen::Vector2d&, double height) {
-    if (cell.variance >= 0.0F) return;
+    if (cell.variance >= 0.0F && variance_at(cell, time) < rules_.unknown * rules_.unknown) return;
+    cell = Cell{};
     learn(&cell, height, variance, time);
     learned = true;
   });
@@ -199,7 +201,8 @@ int GroundMemory::put(const HeightMap& tile, bool forget, double time) {
     for (int i = first.x(); i <= last.x(); ++i) {
       const Eigen::Vector2i c = from.cell(grid_.centre(i, j));
       if (!from.contains(c.x(), c.y())) continue;
-      const bool known = tile.known(c.x(), c.y());
+      const bool known =
+          tile.known(c.x(), c.y()) && tile.variance(c.x(), c.y()) < rules_.unknown * rules_.unknown;
       if (!known && !forget) continue;
       Cell cell;
       if (known) {
@@ -207,6 +210,7 @@ int GroundMemory::put(const HeightMap& tile, bool forget, double time) {
         cell.height = static_cast<float>(tile.height(c.x(), c.y()));
         cell.variance = static_cast<float>(tile.variance(c.x(), c.y()));
         cell.seen = static_cast<float>(time);
+        cell.told = true;
       }
       at(i, j) = cell;
     }

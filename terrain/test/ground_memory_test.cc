@@ -89,6 +89,9 @@ TEST(GroundMemory, WhereAFootStandsThereIsGroundUnlessSomethingElseIsKnown) {
   const std::uint64_t revision = memory.revision();
   memory.stand_on(sole, 1e-5, 1.0);
   EXPECT_EQ(memory.revision(), revision);
+  EXPECT_FALSE(memory.map(1000.0).surface({0.02, 0.0}));
+  memory.stand_on(sole, 1e-5, 1000.0);
+  EXPECT_TRUE(memory.map(1000.0).surface({0.02, 0.0})) << "it still stands there";
 }
 
 TEST(GroundMemory, WhatDidNotCarryAFootStaysLowWhateverIsSeen) {
@@ -137,6 +140,20 @@ TEST(GroundMemory, ATileTakesThePlaceOfWhatWasKnown) {
   EXPECT_FALSE(memory.map(1.0).surface({0.16, 0.1}));
   memory.clear();
   EXPECT_EQ(memory.map(1.0).known_cells(), 0);
+}
+
+TEST(GroundMemory, WhatWasToldHolds) {
+  GroundMemory memory;
+  memory.move_to({0.0, 0.0});
+  HeightMap tile(Grid{10, 10, 0.02, {0.0, 0.0}});
+  for (int j = 0; j < 10; ++j) {
+    for (int i = 0; i < 10; ++i) tile.set(i, j, 0.5, i < 5 ? 1e-6 : 1e-3);
+  }
+  EXPECT_EQ(memory.put(tile, false, 1.0), 50) << "the others are too uncertain to step on";
+  EXPECT_NEAR(memory.map(1e5).surface({0.04, 0.1})->height, 0.5, 1e-6);
+  for (unsigned k = 0; k < 3; ++k) memory.see(scan(0.0, k), kCommon, 2.0 + k);
+  EXPECT_NEAR(memory.map(5.0).surface({0.04, 0.1})->height, 0.0, 0.02) << "it was seen otherwise";
+  EXPECT_FALSE(memory.map(1e5).surface({0.04, 0.1})) << "which grows old";
 }
 
 TEST(GroundMemory, PointsThatAreNoNumbersOrFarAwayAreLeftOut) {

@@ -88,6 +88,7 @@ TEST(PlanService, ARouteStaysUntilTheGroundChanges) {
   request.start.feet[route[0].side] = route[0].pose;
   request.start.first_side = route[1].side;
   request.serial = 2;
+  request.taken = 1;
   ASSERT_TRUE(service.port().request(request));
   const PlanAnswer same = wait_for_answer(&service.port());
   EXPECT_TRUE(same.unchanged);
@@ -110,6 +111,22 @@ TEST(PlanService, ARouteStaysUntilTheGroundChanges) {
   EXPECT_NEAR(highest, 0.1, 0.01) << "over it";
   EXPECT_NEAR(other.plan->footsteps.back().pose.position[0], 1.5, 1e-6);
   service.port().retire(other.plan);
+
+  // That one came too late: what is ahead is still the first one. Then it is taken.
+  for (const std::uint64_t taken : {1u, 4u}) {
+    request.serial = 3 + taken;
+    request.taken = taken;
+    ASSERT_TRUE(service.port().request(request));
+    const PlanAnswer answer = wait_for_answer(&service.port());
+    EXPECT_EQ(answer.unchanged, taken != 1);
+    if (taken == 1) {  // its first step swings next
+      ASSERT_GE(answer.plan->footsteps.size(), 2U);
+      request.start.under_way = answer.plan->footsteps[0];
+      request.start.feet[answer.plan->footsteps[0].side] = answer.plan->footsteps[0].pose;
+      request.start.first_side = answer.plan->footsteps[1].side;
+    }
+    service.port().retire(answer.plan);
+  }
 }
 
 TEST(PlanService, BeyondTheMapAPlanLeadsToItsEnd) {
@@ -123,6 +140,34 @@ TEST(PlanService, BeyondTheMapAPlanLeadsToItsEnd) {
   EXPECT_GT(answer.plan->footsteps.back().pose.position[0], 2.0);
   EXPECT_LT(answer.plan->footsteps.back().pose.position[0], 3.0);
   service.port().retire(answer.plan);
+}
+
+// Beyond what is known footsteps stay level with those before.
+TEST(PlanService, FootstepsBeyondTheMapGoOnAsHighAsItEnds) {
+  PlanService service({&atlas(), ground_with_block(2.5, 0.1), "auto", {}});
+  service.start();
+  PlanRequest request = request_to(0.0, 1);
+  request.kind = PlanKind::kRefine;
+  for (GaitdPose& foot : request.start.feet) foot.position[0] = 2.25;
+  for (int i = 0; i < 3; ++i) {
+    GaitdFootstep& step = request.ahead[request.ahead_count++];
+    step = {};
+    step.side = i % 2 == 0 ? GAITD_LEFT : GAITD_RIGHT;
+    step.id = static_cast<std::uint32_t>(10 + i);
+    step.pose = request.start.feet[step.side];
+    constexpr double kWay[] = {2.7, 2.8, 3.2};
+    step.pose.position[0] = kWay[i];
+    step.swing_duration = 0.8;
+    step.transfer_duration = 0.3;
+    step.swing_height = 0.12;
+  }
+  ASSERT_TRUE(service.refinements().request(request));
+  const PlanAnswer answer = wait_for_answer(&service.refinements());
+  ASSERT_EQ(answer.plan->footsteps.size(), 3U);
+  for (const GaitdFootstep& step : answer.plan->footsteps) {
+    EXPECT_NEAR(step.pose.position[2], 0.1, 0.005);
+  }
+  service.refinements().retire(answer.plan);
 }
 
 // Footsteps of a walk that knows nothing: onto the block, and beside its edge.

@@ -49,7 +49,7 @@ class GroundMemory {
   void see(std::span<const SeenPoint> points, double common, double time);
 
   // Level ground or a plane that something stands on: cells inside of the convex `outline`
-  // (counter-clockwise, on the plane, m, W) of which nothing is known yet.
+  // (counter-clockwise, on the plane, m, W) of which nothing is known, or nothing certain any more.
   void stand_on(std::span<const Eigen::Vector3d> outline, double variance, double time);
 
   // What a foot has found out: its sole, `outline` (likewise), was carried inside of `bears` only.
@@ -59,7 +59,8 @@ class GroundMemory {
             double time);
 
   // What another process knows: its known cells take the place of what is there, cell by cell of
-  // this map. Where `forget`, its unknown ones do as well. How many cells became known.
+  // this map, and stay as certain as they are. Where `forget`, its unknown ones do as well. How
+  // many cells became known; those that are too uncertain to step on are not.
   int put(const HeightMap& tile, bool forget, double time);
 
   void clear();
@@ -70,10 +71,11 @@ class GroundMemory {
 
  private:
   struct Cell {
-    float height = 0.0F;  // m, W
-    float variance = -1;  // m^2, at `seen`; < 0: unknown
-    float seen = 0.0F;    // s
-    int doubts = 0;       // scans in a row that contradicted; kFelt: nobody believes them
+    float height = 0.0F;      // m, W
+    float variance = -1;      // m^2, at `seen`; < 0: unknown
+    float seen = 0.0F;        // s
+    std::int16_t doubts = 0;  // scans in a row that contradicted; kFelt: nobody believes them
+    bool told = false;        // by another process: it holds until a sensor sees something else
   };
   Cell& at(int i, int j) {
     return cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.columns) +
@@ -83,7 +85,7 @@ class GroundMemory {
   // Takes the storage, with the first that is learned: most robots are never told anything.
   void prepare();
   double variance_at(const Cell& cell, double time) const;
-  static constexpr int kFelt = -1;
+  static constexpr std::int16_t kFelt = -1;
   // Cells of which the middle is inside of `outline`, seen from above, with the height of its
   // plane. visit(cell, p, height): p (m, W) its middle, `height` (m) that of the plane.
   template <class Visit>
