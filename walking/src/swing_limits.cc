@@ -13,7 +13,7 @@ namespace {
 // Largest speed of a quintic from rest to rest, per way / time.
 constexpr double kPeakSpeed = 1.875;
 // sqrt(g h), of a foot on the average of its swing. Of 250 walks of 20 steps, one in 200 fell below
-// and half of those above: what the leg takes from the body, and what is lost where it lands,
+// and two of five above: what the leg takes from the body, and what is lost where it lands,
 // is more than the CMP brings back (docs/decisions/swing-foot.md).
 constexpr double kFastestFoot = 0.9;
 
