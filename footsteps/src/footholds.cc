@@ -107,14 +107,14 @@ Footholds::Footholds(const GaitdModel& model, std::shared_ptr<const terrain::Hei
     // A grid that touches the edges of the sole, and the same spacing beyond them.
     const Vector2d size = high - low;
     const Eigen::Vector2i count = (size / spacing).array().ceil().cast<int>();
-    const int beyond = static_cast<int>(std::ceil(1.5 * kRim / spacing));
+    const int beyond = static_cast<int>(std::ceil(kRim / spacing));
     for (int i = -beyond; i <= count.x() + beyond; ++i) {
       for (int j = -beyond; j <= count.y() + beyond; ++j) {
         const Vector2d p =
             low + size.cwiseProduct(Vector2d(1.0 * i / count.x(), 1.0 * j / count.y()));
         const double inside = outline.inside_distance(p);
         if (inside > -1e-6) sole.points.push_back(p);
-        if (inside < -0.5 * kRim && inside > -1.5 * kRim) sole.rim.push_back(p);
+        if (inside < -0.25 * kRim && inside > -kRim - 1e-6) sole.rim.push_back(p);
       }
     }
     sole.mean.setZero();

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 
-#include "gaitd/walking/foothold_check.h"
 #include "gaitd/walking/support.h"
 
 namespace gaitd::footsteps {
@@ -20,15 +19,11 @@ constexpr double kLongestTransfer = 1.0;  // s
 }  // namespace
 
 StepRules::StepRules(const GaitdModel& model)
-    : model_(model), turn_reach_(model), swing_limits_(model), capture_check_(model) {}
+    : model_(model), step_check_(model), capture_check_(model) {}
 
 Refusal StepRules::check(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
                          int number, const GaitParameters& parameters) const {
-  Refusal r = walking::check_footstep(step, stance, from, number, {model_, parameters});
-  if (!r.refused()) r = turn_reach_.check(step, stance, number);
-  if (!r.refused()) r = walking::check_contact_polygon(model_, step, number);
-  if (!r.refused()) r = swing_limits_.check(step, stance, from, number);
-  return r;
+  return step_check_.check(step, stance, from, number, parameters);
 }
 
 // For the footstep after the one that lands. False: no transfer is long enough.

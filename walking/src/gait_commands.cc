@@ -39,15 +39,9 @@ void GaitMachine::complete(GaitdFootstep& step) {
 
 Refusal GaitMachine::check(const GaitdFootstep& step, const GaitdPose& stance,
                            const GaitdPose& from, int number) const {
-  Refusal r = check_footstep(step, stance, from, number, limits());
-  if (!r.refused()) r = turn_reach_.check(step, stance, number);
-  if (!r.refused()) r = check_contact_polygon(model_, step, number);
-  if (r.refused()) return r;
   GaitdFootstep filled = step;
   fill_in(filled);
-  r = check_straddle(filled, stance, from, number, limits());
-  if (!r.refused()) r = check_stride(filled, stance, from, number, limits());
-  return r.refused() ? r : swing_limits_.check(filled, stance, from, number);
+  return step_check_.check(filled, stance, from, number, parameters_);
 }
 
 Refusal GaitMachine::check_capture(const GaitdFootstep* steps, int count, int kept,

@@ -38,8 +38,7 @@ GaitMachine::GaitMachine(const GaitdModel& model)
     : model_(model),
       parameters_(kGaitParameters),
       timing_(model),
-      turn_reach_(model),
-      swing_limits_(model),
+      step_check_(model),
       capture_check_(model),
       drive_(model),
       scale_(model) {

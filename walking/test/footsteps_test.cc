@@ -202,7 +202,7 @@ TEST(Straddle, ALongStepLeavesLittleTimeForItsTransfer) {
   EXPECT_TRUE(refused(1.0, 0.65));
 }
 
-TEST(Stride, ALongStepAsksForASlowerFoot) {
+TEST(Stride, AFootIsAsFastAsBalanceAllows) {
   const double separation = atlas().nominal_foot_separation;
   const auto refused = [&](double length, double start, double swing) {
     GaitdFootstep step = footstep(GAITD_RIGHT, length, -separation);
@@ -210,9 +210,13 @@ TEST(Stride, ALongStepAsksForASlowerFoot) {
     const GaitdPose stance = pose(0.0, 0.0, 0.0), from = pose(start, -separation, 0.0);
     return check_stride(step, stance, from, 1, limits()).refused();
   };
-  EXPECT_FALSE(refused(0.7, -0.7, 0.35)) << "a step of an ordinary length";
-  EXPECT_FALSE(refused(0.75, -0.75, 0.45));
-  EXPECT_TRUE(refused(0.78, -0.78, 0.45));
+  // 2.8 m/s: the speed of 0.825 of the pendulum.
+  EXPECT_TRUE(refused(0.7, -0.7, 0.49));
+  EXPECT_FALSE(refused(0.7, -0.7, 0.5));
+  EXPECT_TRUE(refused(0.5, -0.5, 0.35));
+  EXPECT_FALSE(refused(0.5, -0.5, 0.36));
+  EXPECT_TRUE(refused(0.78, -0.78, 0.5));
+  EXPECT_FALSE(refused(0.78, -0.78, 0.56));
   EXPECT_TRUE(refused(0.9, -0.9, 0.5));
   EXPECT_TRUE(refused(-0.9, 0.9, 0.5));
   EXPECT_FALSE(refused(0.9, -0.9, 0.7));

@@ -10,12 +10,11 @@
 #include "gaitd/walking/capture_check.h"
 #include "gaitd/walking/footsteps.h"
 #include "gaitd/walking/refusal.h"
-#include "gaitd/walking/swing_limits.h"
-#include "gaitd/walking/turn_reach.h"
+#include "gaitd/walking/step_check.h"
 
 namespace gaitd::footsteps {
 
-// The checks of a command, in the same order as GaitMachine makes them.
+// The checks of a command, as GaitMachine makes them.
 class StepRules {
  public:
   explicit StepRules(const GaitdModel& model);
@@ -35,8 +34,7 @@ class StepRules {
                  std::vector<GaitdFootstep>* footsteps) const;
 
   const GaitdModel model_;
-  walking::TurnReach turn_reach_;
-  walking::SwingLimits swing_limits_;
+  walking::StepCheck step_check_;
   walking::CaptureCheck capture_check_;
 };
 

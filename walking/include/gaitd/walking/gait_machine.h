@@ -11,9 +11,8 @@
 #include "gaitd/walking/footsteps.h"
 #include "gaitd/walking/gait_scale.h"
 #include "gaitd/walking/refusal.h"
+#include "gaitd/walking/step_check.h"
 #include "gaitd/walking/step_timing.h"
-#include "gaitd/walking/swing_limits.h"
-#include "gaitd/walking/turn_reach.h"
 #include "gaitd/walking/velocity_walk.h"
 
 namespace gaitd::walking {
@@ -164,8 +163,7 @@ class GaitMachine {
   std::array<FootContact, GAITD_MAX_FEET> contacts_{};
   std::array<GaitdFoothold, GAITD_MAX_FEET> told_{};
   StepTiming timing_;
-  TurnReach turn_reach_;
-  SwingLimits swing_limits_;
+  StepCheck step_check_;
   CaptureCheck capture_check_;
   VelocityWalk drive_;
   StepTiming::Changes time_changes_{};  // s, from the transfer of the current step on

@@ -12,8 +12,7 @@ namespace gaitd::walking {
 
 // What hip and knee can do in a swing, by the velocity limits of the model and the lengths of its
 // legs: hip pitch and knee go from lift-off over the apex to touchdown, with the hip half-way
-// between the feet and as high as in the nominal posture, or as low as the longer leg makes it. And
-// what balance can: a foot is as fast as the speed of the pendulum on it allows.
+// between the feet and as high as in the nominal posture, or as low as the longer leg makes it.
 class SwingLimits {
  public:
   explicit SwingLimits(const GaitdModel& model);
@@ -41,7 +40,6 @@ class SwingLimits {
 
   std::array<Leg, GAITD_MAX_FEET> legs_;
   double separation_;  // m, of the feet in the nominal posture
-  double fastest_;     // m/s, of a foot on the average of its swing
 };
 
 }  // namespace gaitd::walking
