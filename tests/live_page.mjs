@@ -105,7 +105,11 @@ check(best >= kFrames && latency.mean < kLatency, 'too slow');
 if (picture) await page.screenshot({path: `${picture}.png`});
 
 // What is held drives, and what is let go, or not looked at, does not.
-for (const letGo of [() => page.keyboard.up('KeyW'), () => page.evaluate(() => dispatchEvent(new Event('blur')))]) {
+const meta = () => page.evaluate(() => {  // macOS tells nothing of the key that is let go meanwhile
+  for (const type of ['keydown', 'keyup']) dispatchEvent(new KeyboardEvent(type, {key: 'Meta', code: 'MetaLeft'}));
+});
+for (const letGo of [() => page.keyboard.up('KeyW'), meta,
+                     () => page.evaluate(() => dispatchEvent(new Event('blur')))]) {
   server.forget();
   await page.keyboard.down('KeyW');
   await until('the key W does not drive', () => server.calls('drive').length > 3);
@@ -134,6 +138,35 @@ check(server.asked[0].method === 'mode' && server.asked[0].params.mode === 'walk
 await page.mouse.up();
 await until('the stick drives on', () => server.calls('drive').at(-1).end === true);
 server.status.mode = 'walk-bent';
+
+// A gamepad drives if the browser knows its layout, from when it was seen at rest.
+const pad = (mapping, turn) => page.evaluate(([mapping, turn]) => {
+  navigator.getGamepads = () => [{index: 0, connected: true, mapping, axes: [0, 0, turn, 0], buttons: []}];
+}, [mapping, turn]);
+for (const [mapping, first] of [['', 0], ['standard', -1]]) {
+  server.forget();
+  await pad(mapping, first);
+  await page.waitForTimeout(300);
+  await pad(mapping, -1);
+  await page.waitForTimeout(400);
+  check(!server.calls('drive').length, `a gamepad of the layout '${mapping}' drives, at first at ${first}`);
+}
+await pad('standard', 0);
+await page.waitForTimeout(300);
+await pad('standard', -1);
+await until('the gamepad does not drive', () => server.calls('drive').some(({turn}) => turn > 0));
+await pad('standard', 0);
+await until('the gamepad drives on', () => server.calls('drive').at(-1).end === true);
+await page.evaluate(() => { navigator.getGamepads = () => []; });
+
+// A gaitd that does not answer: the last that it said is shown as what it is, old.
+server.silent = 4;
+await shows('#alerts', /has not answered for 4 s/);
+check(await page.evaluate(() => document.body.classList.contains('away')), 'an old picture looks like a new one');
+check(/standing/.test(await text('#state')), 'the last state is gone');
+check(!/as it should be/.test(await text('#status')) || /standing/.test(await text('#status')), 'it looks calm');
+server.silent = 0;
+await until('the alert stays', async () => !/has not answered/.test(await text('#alerts')));
 
 // Who drags a link pushes it; elsewhere the camera turns.
 const scene = await page.locator('#scene').boundingBox();

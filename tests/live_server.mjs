@@ -34,7 +34,7 @@ function unframed(bytes) {
 export class LiveServer {
   // `robot`: the message of that type; `row(time)`: values of its signals.
   constructor(page, token, robot, row) {
-    Object.assign(this, {page, token, robot, row, role: 'administer', away: false, hangs: false,
+    Object.assign(this, {page, token, robot, row, role: 'administer', away: false, hangs: false, silent: 0,
                          answer: () => ({accepted: true, tick: 1, note: null}), asked: []});
     this.status = {state: 'standing', mode: 'walk-bent', faults: [], phase: 'stand', layers: []};
     this.map = {revision: 0};
@@ -99,7 +99,8 @@ export class LiveServer {
   }
 
   sendStatus() {
-    if (!this.away) this.send({type: 'status', status: this.status});
+    if (this.silent) this.send({type: 'status', status: null, silent: this.silent});
+    else if (!this.away) this.send({type: 'status', status: this.status});
   }
 
   event(kind, text) {

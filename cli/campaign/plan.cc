@@ -93,6 +93,13 @@ std::optional<CampaignPlan> make_plan(const CampaignOrigin& origin, const std::s
   return plan;
 }
 
+// `name` and the sum of the file that it stands for, as a line.
+std::string named_sum(const std::string& name, const std::string& file) {
+  char sum[32];
+  std::snprintf(sum, sizeof(sum), "%08x", daemon::crc32(read_file(file)));
+  return one_line(name) + " " + sum + "\n";
+}
+
 // Of one shard: it is another folder than those of the others.
 std::string text_of(const CampaignPlan& plan) {
   const Shard& shard = plan.origin.shard;
@@ -105,16 +112,20 @@ std::optional<CampaignPlan> plan_of_file(const CampaignOrigin& origin, std::stri
   std::optional<CampaignPlan> plan = make_plan(origin, origin.file, error);
   if (!plan) return plan;
   // What --set says makes another campaign of it, and so does what the scenarios say.
-  for (const std::string& setting : origin.settings) plan->text += "# --set " + setting + "\n";
+  for (const std::string& setting : origin.settings) {
+    plan->text += "# --set " + setting + "\n";
+    // Of a file that it names: a library that is built anew is another one.
+    const std::string file = setting.substr(setting.find('=') + 1);
+    std::error_code none;
+    if (fs::is_regular_file(file, none)) plan->text += "# file " + named_sum(file, file);
+  }
   const daemon::Paths paths = daemon::Paths::detect();
   std::vector<std::string> scenarios = plan->campaign.scenarios;
   if (!plan->campaign.motions.empty()) scenarios.push_back(plan->campaign.motions);
   for (const std::string& scenario : scenarios) {
     const auto path = paths.scenario(scenario_from(origin.file, scenario));
     if (plan->campaign.drawn.contains(scenario) || !path) continue;
-    char line[32];
-    std::snprintf(line, sizeof(line), "%08x", daemon::crc32(read_file(*path)));
-    plan->text += "# scenario " + one_line(scenario) + " " + line + "\n";
+    plan->text += "# scenario " + named_sum(scenario, *path);
   }
   return plan;
 }

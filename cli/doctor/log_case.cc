@@ -35,7 +35,13 @@ nlohmann::json metadata(const daemon::LogReader& log, const char* key) {
 LogCase::LogCase(const daemon::LogReader& log) : log_(log), run_(log, wanted_signals()) {
   read_settings();
   const double period = std::atof(log.metadata_value("period").value_or("0").c_str());
-  if (period > 0.0) period_ = period;
+  const auto& time = run_.time();
+  if (period > 0.0) {
+    period_ = period;
+  } else if (time.size() > 1) {  // without times it counts ticks
+    const double mean = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
+    if (mean > 0.0 && mean < 0.5) period_ = mean;
+  }
   realtime_ = log.metadata_value("clock").value_or("") == "realtime";
   controlled_.assign(run_.ticks(), false);
   for (const char* word : {"standing", "walking", "stopping"}) {

@@ -92,6 +92,7 @@ void LiveSource::lose(const std::string& reason) {
     reason_ = reason;
     listener_.on_robot();
   }
+  listener_.on_away();
   retry_.expires_after(kRetryPeriod);
   retry_.async_wait([this](boost::system::error_code error) {
     if (!error && !stopped_) connect();

@@ -38,6 +38,7 @@ class LiveSource {
     std::function<void(const nlohmann::json& status, double silent)> on_status;
     std::function<void(const daemon::Event&)> on_event;
     std::function<void(const LiveFrame&)> on_frame;
+    std::function<void()> on_away = [] {};  ///< gaitd was looked for, and is not there
   };
 
   /// What is asked of gaitd, and the least role to ask it with.

@@ -111,6 +111,7 @@ void Teleop::take_input(Time now) {
   if (SuspendSignal::requested()) {
     send(pilot_.finish(), now);
     keys_.let_go();
+    pilot_.let_go();  // nor what is held still when it goes on
     console_->suspend();
   }
 }

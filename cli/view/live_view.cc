@@ -88,7 +88,12 @@ LiveView::LiveView(boost::asio::io_context* io, const std::string& socket, Acces
                      send_all(text_of(message));
                    },
                .on_event = [this](const daemon::Event& event) { on_event(event); },
-               .on_frame = [this](const LiveFrame& frame) { on_frame(frame); }}),
+               .on_frame = [this](const LiveFrame& frame) { on_frame(frame); },
+               // A page that hears nothing takes its own connection for lost.
+               .on_away =
+                   [this] {
+                     send_all(text_of({{"type", "alive"}}));
+                   }}),
       recorder_(io, std::move(log_folder)),
       robot_(text_of({{"type", "robot"}, {"connected", false}, {"reason", "not connected yet"}})) {}
 

@@ -168,6 +168,7 @@ void read_landing_region(MapReader* map, GaitdFootstep* footstep) {
   const std::vector<double> points = read_points(nodes, path, 3, kPositionBounds, map->issues());
   if (points.empty()) return;
   footstep->region_count = static_cast<int>(points.size() / 3);
+  footstep->region_told = 1;
   std::copy(points.begin(), points.end(), &footstep->landing_region[0][0]);
   std::string why;
   if (!is_convex_counter_clockwise(points, 3, &why)) {

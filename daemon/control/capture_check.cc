@@ -20,7 +20,8 @@ bool CaptureCheck::lost(double dt, const GaitdRobotState& robot, const GaitdGait
   }
   distance_ = -feet.inside_distance(sdk::view(robot.icp));
   const double swing = gait.phase == GAITD_PHASE_SWING ? gait.time_remaining : 0.0;
-  limit_ = reach / (1.0 - std::exp(-gait.omega * kStepTime)) * std::exp(-gait.omega * swing);
+  const double step_time = kStepTime * std::sqrt(model_.nominal_com_height / model_.gravity);
+  limit_ = reach / (1.0 - std::exp(-gait.omega * step_time)) * std::exp(-gait.omega * swing);
   time_beyond_ = distance_ > limit_ ? time_beyond_ + dt : 0.0;
   return time_beyond_ > kPatience;
 }

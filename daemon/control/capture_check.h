@@ -16,7 +16,7 @@ namespace gaitd::daemon {
 // no sequence of steps catches it, whatever their direction.
 class CaptureCheck {
  public:
-  static constexpr double kStepTime = 0.5;   // s, T above
+  static constexpr double kStepTime = 1.44;  // sqrt(h / g), T above: 0.5 s for Atlas
   static constexpr double kPatience = 0.02;  // s: noise of the velocity is shorter
 
   explicit CaptureCheck(const GaitdModel& model) : model_(model) {}

@@ -124,6 +124,7 @@ std::string input_text(const Command& c, int parameter_owner, int parameter_plac
         json step;
         visit(c.footsteps[i], Write{&step});
         if (c.footsteps[i].id != 0) step["id"] = c.footsteps[i].id;
+        if (c.footsteps[i].region_told != 0) step["region_told"] = c.footsteps[i].region_told;
         out["footsteps"].push_back(std::move(step));
       }
       break;
@@ -205,6 +206,7 @@ bool read_input(const json& in, Command* c, int* parameter_owner, int* parameter
         footstep = {};
         visit(footstep, Read{&step});
         footstep.id = step.value("id", std::uint32_t{0});
+        footstep.region_told = step.value("region_told", 0);
       }
     }
     if (c->type == CommandType::kSetParameter) {

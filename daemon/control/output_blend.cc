@@ -97,8 +97,7 @@ void cross_fade(const GaitdIcpPlan& from, double share, GaitdIcpPlan& to) {
 }
 
 void cross_fade(const GaitdStepAdjustment& from, double share, GaitdStepAdjustment& to) {
-  mix(from.shift, share, to.shift);
-  mix(from.time_shift, share, to.time_shift);
+  // What was decided of the step is in the state of the gait, from which the layer goes on.
   mix(from.ecmp, share, to.ecmp);
   mix(from.cmp, share, to.cmp);
   mix(from.kappa, share, to.kappa);

@@ -154,6 +154,7 @@ void Safety::write(double dt, bool control_ok, TickData& d) {
       }
       break;
   }
+  if (!controlled()) last_good_torque_ = last_torque_;
   for (int i = 0; i < model_.joint_count; ++i) {
     if ((d.dropped >> i & 1u) != 0) damp(i, d.commands);
   }
@@ -167,21 +168,27 @@ void Safety::clamp(double dt, const TickData& d, GaitdJointCommands& commands) {
     GaitdJointCommand& c = commands.joints[i];
     const GaitdJoint& joint = model_.joints[i];
     const double limit = limits_[Limit::kTorqueRatio] * joint.effort_limit;
-    double torque = std::clamp(c.torque, -limit, limit);
-    if (controlled()) {
-      const double step = p_[P::kTorqueRate] * joint.effort_limit * dt;
-      torque = std::clamp(torque, last_torque_[i] - step, last_torque_[i] + step);
-    }
     const double rate = d.robot.joint_velocity[i];
     const double fastest = limits_[Limit::kVelocityRatio] * joint.velocity_limit;
-    if (rate > fastest) torque = std::min(torque, 0.0);
-    if (rate < -fastest) torque = std::max(torque, 0.0);
-    c.torque = torque;
     // Of a joint that has less room than two margins the middle is left.
     const double margin =
         std::min(limits_[Limit::kPositionMargin], 0.5 * (joint.position_max - joint.position_min));
     c.position = std::clamp(c.position, joint.position_min + margin, joint.position_max - margin);
     c.velocity = std::clamp(c.velocity, -fastest, fastest);
+    // What the drive adds around its reference counts as well.
+    const double feedback =
+        c.stiffness * (c.position - d.robot.joint_position[i]) + c.damping * (c.velocity - rate);
+    double torque = std::clamp(c.torque, -limit, limit);
+    if (limits_[Limit::kTorqueRatio] < 1.0 && c.mode == GAITD_JOINT_MODE_TORQUE) {
+      torque = std::clamp(torque + feedback, -limit, limit) - feedback;
+    }
+    if (controlled()) {
+      const double step = p_[P::kTorqueRate] * joint.effort_limit * dt;
+      torque = std::clamp(torque, last_torque_[i] - step, last_torque_[i] + step);
+    }
+    if (rate > fastest) torque = std::min(torque, 0.0);
+    if (rate < -fastest) torque = std::max(torque, 0.0);
+    c.torque = torque;
     // While readying the drives make the torque: what they make now is where control takes over.
     last_torque_[i] = state_ == SafetyState::kReadying ? d.sensors.joints[i].torque : torque;
   }

@@ -16,12 +16,20 @@ namespace fs = std::filesystem;
 RotatingLog::RotatingLog(SignalTable table)
     : table_(std::move(table)), writer_(std::make_unique<LogWriter>(table_)) {}
 
-std::string RotatingLog::path_of(int part) const {
-  if (part == 1) return path_;
+std::string RotatingLog::path_of(int number) const {
+  if (number == 1) return path_;
   const fs::path path(path_);
   const std::string name =
-      path.stem().string() + "-" + std::to_string(part) + path.extension().string();
+      path.stem().string() + "-" + std::to_string(number) + path.extension().string();
   return (path.parent_path() / name).string();
+}
+
+// Nobody has named the files after the first: what is there already stays.
+int RotatingLog::next_number() const {
+  int number = number_ + 1;
+  std::error_code unknown;
+  while (number > 1 && fs::is_regular_file(path_of(number), unknown)) ++number;
+  return number;
 }
 
 bool RotatingLog::open(const std::string& path, const LogMetadata& metadata,
@@ -42,7 +50,8 @@ bool RotatingLog::open_next_part() {
     metadata["previous"] = fs::path(file_).filename().string();
   }
   auto writer = std::make_unique<LogWriter>(table_);
-  const std::string next = path_of(part_ + 1);
+  const int number = next_number();
+  const std::string next = path_of(number);
   std::string error;
   if (!writer->open(next, metadata, options_, &error)) {
     error_ = error;
@@ -52,6 +61,7 @@ bool RotatingLog::open_next_part() {
   before_ = {bytes_written(), ticks_written(), ticks_lost(), events_lost()};
   writer_ = std::move(writer);
   ++part_;
+  number_ = number;
   file_ = next;
   files_.push_back(next);
   delete_oldest();
@@ -62,7 +72,7 @@ void RotatingLog::next_file_if_due() {
   if (part_ == 0) return;
   if (!writer_->is_open()) return go_on_after_failure();
   if (limits_.max_bytes == 0 || writer_->bytes_written() < limits_.max_bytes) return;
-  const std::string next = fs::path(path_of(part_ + 1)).filename().string();
+  const std::string next = fs::path(path_of(next_number())).filename().string();
   if (!writer_->close({{"next", next}})) return;
   told_ = latest_;
   open_next_part();

@@ -20,9 +20,10 @@ struct LogLimits {
 };
 
 // A log that goes on in a file of its own whenever one is full or cannot be written any more (a
-// full disk, a file that somebody removed): walk.mcap, walk-2.mcap, ... "part" and "previous" in
-// the metadata of each say what it follows. After a failure it goes on as soon as the disk has room
-// again; what is lost meanwhile counts as dropouts of the file that follows.
+// full disk, a file that somebody removed): walk.mcap, walk-2.mcap, ..., past those that are there.
+// "part" and "previous" in the metadata of each say what it follows. After a failure it goes on as
+// soon as the disk has room again; what is lost meanwhile counts as dropouts of the file that
+// follows.
 class RotatingLog {
  public:
   explicit RotatingLog(SignalTable table);
@@ -67,12 +68,14 @@ class RotatingLog {
     std::uint64_t events = 0;
   };
 
-  std::string path_of(int part) const;
+  std::string path_of(int number) const;
+  int next_number() const;  // in the name of the file that follows
   bool open_next_part();
   void go_on_after_failure();
   bool has_room() const;
   void delete_oldest();
 
+  int number_ = 0;  // in the name of the file, from 1
   const SignalTable table_;
   std::unique_ptr<LogWriter> writer_;  // never null; one per file
   std::string path_;

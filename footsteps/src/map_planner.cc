@@ -19,6 +19,10 @@ constexpr double kAsideCost = 40.0;    // steps per metre
 constexpr double kSameHeight = 0.003;  // m, and
 constexpr double kSameTilt = 0.01;     // rad: a foothold is where it was
 
+void raise_region(double by, GaitdFootstep* step) {
+  for (int i = 0; i < step->region_count; ++i) step->landing_region[i][2] += by;
+}
+
 bool changed(const GaitdFootstep& step, const GaitdFootstep& before) {
   return !same_foothold(step.pose, before.pose) || step.swing_height != before.swing_height;
 }
@@ -82,6 +86,9 @@ bool MapPlanner::put_on_ground(const GaitdPose& stance, const GaitdPose& from,
   const Place wanted = place_of(step->pose);
   const double c = std::cos(wanted.yaw), s = std::sin(wanted.yaw);
   const int reach = static_cast<int>(std::lround(kAside / kAsideStep));
+  // Whoever sent it may know more of what is around than the map.
+  const walking::ConvexPolygon region =
+      step->region_told != 0 ? walking::landing_region(*step) : walking::ConvexPolygon{};
   double least = std::numeric_limits<double>::infinity();
   GaitdFootstep best;
   for (int i = -reach; i <= reach; ++i) {
@@ -91,6 +98,7 @@ bool MapPlanner::put_on_ground(const GaitdPose& stance, const GaitdPose& from,
       if (cost >= least || std::hypot(ahead, left) > kAside + 1e-9) continue;
       const Place place{wanted.x + c * ahead - s * left, wanted.y + s * ahead + c * left,
                         wanted.yaw};
+      if (region.size() > 2 && region.inside_distance({place.x, place.y}) < -1e-6) continue;
       const Foothold foothold = steps_->footholds().at(step->side, place, walking::kMaxStepTilt);
       if (foothold.state == FootholdState::kUnknown && i == 0 && j == 0) return false;
       if (foothold.state != FootholdState::kGood || cost + foothold.cost >= least) continue;
@@ -121,14 +129,16 @@ std::vector<GaitdFootstep> MapPlanner::refine(const Start& start,
       raised = step.pose.position[2] - before.pose.position[2];
       // A foot that strikes something all the same goes as high as it was told to.
       static_cast<void>(steps_->raise_swing(stance, from, parameters, &step));
-      if (changed(step, before)) {
-        steps_->footholds().add_landing_region(&step);
-      } else {
+      if (!changed(step, before)) {
         step = before;
+      } else if (step.region_told != 0) {
+        raise_region(raised, &step);
+      } else {
+        steps_->footholds().add_landing_region(&step);
       }
     } else {
       step.pose.position[2] += raised;
-      for (int i = 0; i < step.region_count; ++i) step.landing_region[i][2] += raised;
+      raise_region(raised, &step);
     }
     feet[step.side] = step.pose;
   }

@@ -250,7 +250,7 @@
   X(GaitdFootstep, polygon_count, 88) \
   X(GaitdFootstep, region_count, 92) \
   X(GaitdFootstep, closing, 96) \
-  X(GaitdFootstep, reserved, 100) \
+  X(GaitdFootstep, region_told, 100) \
   X(GaitdFootstep, contact_polygon, 104) \
   X(GaitdFootstep, landing_region, 232) \
   X(GaitdFootstep, reserve, 424) \

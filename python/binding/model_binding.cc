@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -63,6 +64,7 @@ class Model {
     double* out = poses.mutable_data();
     {
       const py::gil_scoped_release others_run;
+      const std::scoped_lock lock(mutex_);
       const auto joint_count = static_cast<std::size_t>(motion_->model().joint_count);
       for (py::ssize_t i = 0; i < count;
            ++i, pelvis_row += 6, joints_row += joint_count, out += 16) {
@@ -75,6 +77,7 @@ class Model {
   }
 
  private:
+  std::mutex mutex_;  // of the pose that motion_ is in
   std::unique_ptr<daemon::RobotMotion> motion_;
 };
 

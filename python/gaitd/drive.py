@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import threading
 import time
+import weakref
 from typing import Any, Dict, Optional
 
 from .errors import GaitdError
@@ -23,7 +24,8 @@ class Drive:
     ...     drive.set(forward=0.3, turn=0.2)
     ...     drive.sleep(5)
 
-    A thread of its own renews the velocity. If somebody else takes the robot over, or the robot faults, ``sleep``,
+    A thread of its own renews the velocity as long as this object lives, whatever the program does meanwhile: bound it
+    with ``seconds`` of :meth:`Robot.drive` where the program may hang. If somebody else takes the robot over, or the robot faults, ``sleep``,
     ``set`` and ``end`` raise what gaitd said (:class:`Refused`).
     """
 
@@ -33,12 +35,15 @@ class Drive:
         self._lock = threading.Lock()
         self._ended = threading.Event()
         self._over = False
-        self._failure: Optional[GaitdError] = None
+        self._failure: Optional[BaseException] = None
         self._velocity = {"forward": forward, "lateral": lateral, "turn": turn}
         self.tick = -1  #: of the tick that took the last command
         self.note: Optional[str] = None  #: why it walks slower than asked, or None
         self._send(dict(self._velocity))
-        self._thread = threading.Thread(target=self._renew, name="gaitd-drive", daemon=True)
+        # The thread holds the object only while it sends: dropped, it drives no longer.
+        self._thread = threading.Thread(
+            target=_renew, args=(weakref.ref(self), self._ended), name="gaitd-drive", daemon=True
+        )
         self._thread.start()
 
     def __enter__(self) -> "Drive":
@@ -55,8 +60,9 @@ class Drive:
         """Another velocity: m/s, m/s, rad/s."""
         self._check()
         with self._lock:
-            self._velocity = {"forward": forward, "lateral": lateral, "turn": turn}
-            self._send({**self._velocity, "renew": True})
+            velocity = {"forward": forward, "lateral": lateral, "turn": turn}
+            self._send({**velocity, "renew": True})
+            self._velocity = velocity
 
     def sleep(self, seconds: float) -> None:
         """Drives on for so long, s of this machine's clock."""
@@ -87,10 +93,18 @@ class Drive:
         self.tick, self.note = answer["tick"], answer["note"]
 
     def _renew(self) -> None:
-        while not self._ended.wait(_RENEWAL):
-            try:
-                with self._lock:
-                    self._send({**self._velocity, "renew": True})
-            except GaitdError as error:
-                self._failure = error
-                self._ended.set()
+        try:
+            with self._lock:
+                self._send({**self._velocity, "renew": True})
+        except BaseException as error:  # whatever it is, the robot is not driven any more
+            self._failure = error
+            self._ended.set()
+
+
+def _renew(reference: "weakref.ref[Drive]", ended: threading.Event) -> None:
+    while not ended.wait(_RENEWAL):
+        drive = reference()
+        if drive is None:
+            return
+        drive._renew()
+        del drive

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Union
 
 from .errors import ProgramError
+from .plain import plain
 
 __all__ = ["find_program", "write_yaml"]
 
@@ -46,19 +47,6 @@ def assignments(settings: Optional[Mapping[str, Any]]) -> List[str]:
         text = value if isinstance(value, str) else json.dumps(plain(value), allow_nan=False)
         arguments += ["--set", f"{key}={text}"]
     return arguments
-
-
-def plain(value: Any) -> Any:
-    """With numpy's scalars and arrays, paths and tuples as what JSON knows."""
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    if isinstance(value, os.PathLike):
-        return os.fspath(value)
-    if isinstance(value, Mapping):
-        return {str(key): plain(one) for key, one in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(one) for one in value]
-    return value
 
 
 def write_yaml(path: Union[str, "os.PathLike[str]"], document: Mapping[str, Any]) -> None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import time
+import weakref
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from .drive import Drive
-from .errors import Fault, WaitTimeout
+from .errors import Fault, GaitdError, WaitTimeout
 from .height_map import HeightMap
 from .log import Event
 from .model import Model
@@ -48,6 +49,7 @@ class Robot:
         self._given = socket
         self._role = role
         self._taken = -1  # tick of the last command
+        self._drives: "weakref.WeakSet[Drive]" = weakref.WeakSet()
 
     def __enter__(self) -> "Robot":
         return self
@@ -59,7 +61,12 @@ class Robot:
         return f"<gaitd.Robot on {self.socket}>"
 
     def close(self) -> None:
-        """Ends the connection. The robot goes on with what it was told."""
+        """Ends the connection, and what drives the robot. It goes on with what else it was told."""
+        for drive in list(self._drives):
+            try:
+                drive.end()
+            except GaitdError:
+                pass  # nobody drives any more
         self._connection.close()
 
     @property
@@ -119,7 +126,8 @@ class Robot:
     def events(self, timeout: Optional[float] = None) -> Iterator[Event]:
         """Commands, states, faults, swaps, parameters, as they happen, over a connection of its own.
 
-        It is connected when this returns: what happens from here on is in it. The iterator ends when nothing happened
+        It is connected when this returns: what happens from here on is in it. An event of the kind "lost" says how many
+        were left out because they were not read in time. The iterator ends when nothing happened
         for timeout (s); None: it waits. Raises :class:`NoDaemon` when gaitd ends.
         """
         connection = Connection(self.socket, "observe")
@@ -141,11 +149,13 @@ class Robot:
     ) -> Drive:
         """Walks at a velocity: forward and lateral in m/s (positive to the left), turn in rad/s.
 
-        Without seconds it goes on in the background until the :class:`Drive` ends, also with a ``with`` block; with
-        seconds this returns after that time, s of this machine's clock, and the robot comes to a stand. If this program
-        ends or hangs, the robot comes to a stand by itself (drive.timeout, 0.5 s).
+        Without seconds it goes on in the background until the :class:`Drive` ends, also with a ``with`` block, is
+        dropped, or this robot is closed; with seconds this returns after that time, s of this machine's clock, and the
+        robot comes to a stand. If this program ends or is stopped, the robot comes to a stand by itself (drive.timeout,
+        0.5 s); while it waits for something else, it is driven on.
         """
         drive = Drive(self.socket, forward, lateral, turn)
+        self._drives.add(drive)
         self._taken = max(self._taken, drive.tick)
         if seconds is not None:
             with drive:
@@ -349,6 +359,8 @@ def _events(connection: Connection, timeout: Optional[float]) -> Iterator[Event]
         for message in connection.notifications(timeout):
             if message["method"] == "telemetry.event":
                 params = message["params"]
+                if params.get("lost"):
+                    yield Event(params["tick"], params["time"], "lost", {"events": params["lost"]})
                 yield Event(params["tick"], params["time"], params["kind"], params["text"])
                 quiet_since = time.monotonic()
             elif timeout is not None and time.monotonic() - quiet_since > timeout:

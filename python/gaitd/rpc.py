@@ -9,6 +9,7 @@ from typing import Any, Dict, Iterator, Optional
 
 from . import _native
 from .errors import NoDaemon, Refused
+from .plain import plain
 
 __all__ = ["Connection"]
 
@@ -41,7 +42,7 @@ class Connection:
         deadline = time.monotonic() + timeout
         try:
             self._socket.settimeout(timeout)
-            self._socket.sendall(json.dumps(request, allow_nan=False).encode() + b"\n")
+            self._socket.sendall(json.dumps(plain(request), allow_nan=False).encode() + b"\n")
         except OSError as error:
             raise NoDaemon(f"{self.path}: cannot send to gaitd: {error}") from None
         while True:

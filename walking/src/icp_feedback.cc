@@ -9,8 +9,13 @@
 #include "gaitd/walking/support.h"
 
 namespace gaitd::walking {
+namespace {
 
 using sdk::view;
+
+constexpr double kIntegralFade = 1.0;  // 1/s, of an integral whose gain is zero
+
+}  // namespace
 
 void IcpFeedback::reset() {
   state_ = {};
@@ -55,16 +60,19 @@ Eigen::Vector2d IcpFeedback::feedback(const GaitdStepAdjusterInput& in) {
   const double omega = in.gait->omega;
   auto integral = view(state_.integral);
   const double step = p_[Feedback::kIntegralStanding] * in.time.period;
+  const double limit = p_[Feedback::kIntegralLimit];
+  // Without a gain nothing is left of what was summed up before.
+  if (step <= 0.0) integral *= std::max(0.0, 1.0 - kIntegralFade * in.time.period);
   if (in.gait->phase == GAITD_PHASE_STAND) {
     // A tilt that is not known (bias of the accelerometer) pushes like a constant force: without
     // the integral the robot would lean against it.
     const Eigen::Vector2d proportional = (1.0 + p_[Feedback::kGainStanding] / omega) * error;
     integral += step * proportional;
-    const double limit = p_[Feedback::kIntegralLimit];
     if (integral.norm() > limit) integral *= limit / integral.norm();
     return proportional + integral;
   }
   integral *= std::max(0.0, 1.0 - step);
+  if (integral.norm() > limit) integral *= limit / integral.norm();
   const Eigen::Vector2d velocity = view(in.plan->icp_velocity);
   auto direction = view(state_.direction);
   if (velocity.norm() >= p_[Feedback::kDirectionSpeed]) direction = velocity.normalized();

@@ -27,6 +27,24 @@ Eigen::Vector3d origin_in(const GaitdModel& model, int body, const GaitdJoint& j
   return p;
 }
 
+// rad, of the joint of the ankle where the sole is square to the shank, whose way from the knee to
+// the ankle is `shank` (in the body of the knee).
+double square_ankle(const GaitdModel& model, int side, const Eigen::Vector3d& shank) {
+  const GaitdJoint& ankle = model.joints[model.legs[side].ankle_pitch];
+  const GaitdFoot& foot = model.feet[side];
+  Eigen::Quaterniond to_ankle = sdk::quaternion(ankle.orientation);
+  origin_in(model, model.joints[model.legs[side].knee].child_body, ankle, &to_ankle);
+  Eigen::Quaterniond to_foot = Eigen::Quaterniond::Identity();
+  for (int at = foot.body; at != ankle.child_body && at > 0; at = model.bodies[at].parent) {
+    to_foot = sdk::quaternion(model.joints[model.bodies[at].joint].orientation) * to_foot;
+  }
+  const Eigen::Vector3d axis = sdk::view(ankle.axis);
+  const Eigen::Vector3d up = across(to_ankle.conjugate() * -shank, axis);
+  const Eigen::Vector3d normal =
+      across(to_foot * sdk::quaternion(foot.sole.orientation) * Eigen::Vector3d::UnitZ(), axis);
+  return std::atan2(axis.dot(normal.cross(up)), normal.dot(up));
+}
+
 constexpr double kLeastBend = 0.1;  // rad, from the straight line
 constexpr double kSameZero = 0.3;   // rad, of a straight leg from the zero of its knee
 
@@ -52,6 +70,9 @@ LegGeometry::LegGeometry(const GaitdModel& model, int side) {
   const double straight = std::clamp(-sign_ * offset_, knee.position_min, knee.position_max);
   if (std::abs(straight) > kSameZero) straight_ = straight;
   offset_ += sign_ * straight_;
+  ankle_sign_ = leg.ankle_pitch_bend_sign;
+  const double square = square_ankle(model, side, knee_to_ankle);
+  if (std::abs(square) > kSameZero) ankle_square_ = square;
 }
 
 double LegGeometry::length(double knee) const {

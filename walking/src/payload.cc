@@ -59,8 +59,10 @@ Refusal Payload::check(const GaitdLoad& load, const dynamics::Kinematics& robot)
         "payload.set: expected at most %.1f kg in all, %.2g of the robot's mass, got %.1f kg", most,
         kMost, sdk::mass_of(loads));
   }
+  // Of all loads together, from the CoM of the robot that carries nothing.
+  const Eigen::Vector3d carried = moment_of(loads_, robot) / model_.total_mass;
   const Eigen::Vector3d shift =
-      (moment_of(loads, robot) - moment_of(loads_, robot)) / sdk::total_mass(model_, loads);
+      (moment_of(loads, robot) + sdk::mass_of(loads) * carried) / sdk::total_mass(model_, loads);
   const double far = shift.head<2>().norm();
   if (far > kMostShift * model_.nominal_com_height) {
     return refuse(

@@ -57,6 +57,20 @@ TEST(LegGeometry, BendsCountFromTheStraightLeg) {
   EXPECT_NEAR(LegGeometry(model, GAITD_LEFT).straight(), -0.5, 1e-12);
 }
 
+// Of a robot whose feet are square to their shanks elsewhere than at zero.
+TEST(LegGeometry, AnklesCountFromASquareFoot) {
+  GaitdModel model = atlas();
+  const GaitdLeg& leg = model.legs[GAITD_LEFT];
+  GaitdJoint& ankle = model.joints[leg.ankle_pitch];
+  const double sign = leg.ankle_pitch_bend_sign;
+  EXPECT_NEAR(LegGeometry(model, GAITD_LEFT).dorsiflexion(sign * 0.3), 0.3, 1e-12);
+  const double turned = sign * 0.4;
+  sdk::store(sdk::quaternion(ankle.orientation) *
+                 Eigen::Quaterniond(Eigen::AngleAxisd(turned, sdk::view(ankle.axis))),
+             ankle.orientation);
+  EXPECT_NEAR(LegGeometry(model, GAITD_LEFT).dorsiflexion(sign * 0.3 - turned), 0.3, 0.1);
+}
+
 TEST(LegGeometry, ABendShortensALegWhereverItsKneeIs) {
   const LegGeometry leg(atlas(), GAITD_LEFT);
   for (double knee : {0.4, 0.9, 1.8}) {

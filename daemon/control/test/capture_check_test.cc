@@ -53,8 +53,11 @@ TEST(CaptureCheck, ItsLimitIsWhereStepsBeginToFail) {
   Scene scene;
   scene.ticks_until_lost(0.1, 1);
   const double reach = safety_parameter(P::kCaptureReach) * atlas().nominal_com_height;
-  EXPECT_TRUE(steps_catch(0.99 * scene.check.limit(), reach, CaptureCheck::kStepTime));
-  EXPECT_FALSE(steps_catch(1.01 * scene.check.limit(), reach, CaptureCheck::kStepTime));
+  const double time =
+      CaptureCheck::kStepTime * std::sqrt(atlas().nominal_com_height / atlas().gravity);
+  EXPECT_NEAR(time, 0.5, 0.01);
+  EXPECT_TRUE(steps_catch(0.99 * scene.check.limit(), reach, time));
+  EXPECT_FALSE(steps_catch(1.01 * scene.check.limit(), reach, time));
   EXPECT_NEAR(scene.check.distance(), 0.1, 1e-9);
 }
 

@@ -170,6 +170,45 @@ TEST(PlanService, FootstepsBeyondTheMapGoOnAsHighAsItEnds) {
   service.refinements().retire(answer.plan);
 }
 
+// A footstep over an edge goes aside only as far as who sent it allows.
+TEST(PlanService, AFootstepStaysInTheRegionThatItWasSentWith) {
+  PlanService service({&atlas(), ground_with_block(0.5, 0.08), "auto", {}});
+  service.start();
+  PlanRequest request = request_to(0.0, 1);
+  request.kind = PlanKind::kRefine;
+  GaitdFootstep& step = request.ahead[request.ahead_count++];
+  step = {};
+  step.side = GAITD_RIGHT;
+  step.pose = request.start.feet[GAITD_RIGHT];
+  step.pose.position[0] = 0.59;
+  step.swing_duration = 0.8;
+  step.transfer_duration = 0.3;
+  step.swing_height = 0.12;
+  constexpr double kCorners[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  for (const double half : {0.01, 0.1}) {
+    step.region_told = 1;
+    step.region_count = 4;
+    for (int i = 0; i < 4; ++i) {
+      step.landing_region[i][0] = 0.59 + half * kCorners[i][0];
+      step.landing_region[i][1] = step.pose.position[1] + half * kCorners[i][1];
+      step.landing_region[i][2] = 0.0;
+    }
+    ++request.serial;
+    ASSERT_TRUE(service.refinements().request(request));
+    const PlanAnswer answer = wait_for_answer(&service.refinements());
+    if (half < 0.05) {
+      EXPECT_TRUE(answer.plan->footsteps.empty()) << "there is no good place in it";
+    } else {
+      ASSERT_EQ(answer.plan->footsteps.size(), 1U);
+      EXPECT_GT(answer.plan->footsteps[0].pose.position[0], 0.62);
+      EXPECT_EQ(answer.plan->footsteps[0].region_count, 4);
+      EXPECT_NEAR(answer.plan->footsteps[0].landing_region[0][0], 0.49, 1e-9);
+      EXPECT_NEAR(answer.plan->footsteps[0].landing_region[0][2], 0.08, 0.005);
+    }
+    service.refinements().retire(answer.plan);
+  }
+}
+
 // Footsteps of a walk that knows nothing: onto the block, and beside its edge.
 TEST(PlanService, FootstepsOfOthersArePutOnTheGroundAndOffEdges) {
   PlanService service({&atlas(), ground_with_block(0.5, 0.08), "auto", {}});

@@ -84,6 +84,14 @@ TEST_F(Rotation, KeepsTheNewestFilesAndNoColumnsOfOthers) {
   EXPECT_FALSE(fs::exists(file("walk.mcap")));
 }
 
+TEST_F(Rotation, FilesThatAreThereAlreadyStayAsTheyAre) {
+  std::ofstream(file("walk-2.mcap")) << "of somebody else";
+  write({.max_bytes = 20000}, 300);
+  ASSERT_GT(log_.part(), 1);
+  EXPECT_EQ(fs::file_size(file("walk-2.mcap")), 16u);
+  EXPECT_TRUE(fs::exists(file("walk-3.mcap")));
+}
+
 TEST_F(Rotation, WithoutALimitThereIsOneFile) {
   write({}, 300);
   EXPECT_EQ(log_.part(), 1);

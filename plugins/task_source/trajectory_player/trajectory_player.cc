@@ -64,6 +64,7 @@ void TrajectoryPlayer::advance(int part, const GaitdMotion& motion, double dt) {
   Part& p = parts_[part];
   if (motion.id != p.id) {
     p.id = motion.id;
+    p.resumed = false;  // another motion than the one that was handed over
     if (part == GAITD_PART_PELVIS) leaving_ = false;
     begin(part, motion, 0.0);
   } else if (p.resumed) {

@@ -45,6 +45,9 @@ IcpCriteria::IcpCriteria(const GaitdModel& model) : model_(model) {
   const walking::SoleExtent sole = walking::sole_extent(
       walking::whole_sole(model_, GAITD_LEFT, GaitdPose{{0, 0, 0}, {0, 0, 0, 1}}));
   foot_length_ = sole.x_max - sole.x_min;
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    legs_[side] = walking::LegGeometry(model_, side);
+  }
   reset();
 }
 
@@ -100,7 +103,7 @@ bool IcpCriteria::evaluate(const GaitdToeOffInput& in, const Candidate& c, Gaitd
   const double span = std::max(distance(lead, toe_world), 1e-3);
   const Eigen::Vector2d cop_to_toe = view(measured.cop) - edge.head<2>();
   const GaitdLeg& leg = model_.legs[c.side];
-  const double dorsiflexion = leg.ankle_pitch_bend_sign * in.robot->joint_position[leg.ankle_pitch];
+  const double dorsiflexion = legs_[c.side].dorsiflexion(in.robot->joint_position[leg.ankle_pitch]);
 
   double* value = out.criterion;
   value[GAITD_TOE_OFF_ICP] =

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "gaitd/sdk/layer.h"
+#include "gaitd/walking/leg_geometry.h"
 #include "gaitd/walking/polygon.h"
 
 namespace gaitd::plugins {
@@ -59,6 +62,7 @@ class IcpCriteria {
   GaitdToeOffState state_{};
   double foot_length_;  // m
   double leg_length_;   // m, hip to ankle, joints of the leg straight
+  std::array<walking::LegGeometry, GAITD_MAX_FEET> legs_;
 };
 
 }  // namespace gaitd::plugins

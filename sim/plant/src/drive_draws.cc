@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "gaitd/sdk/views.h"
 #include "gaitd/sim/drive_figures.h"
 #include "gaitd/sim/random.h"
 
@@ -24,13 +26,25 @@ struct DrawStreams {
 
 enum class LegJoint { kNone, kHipYaw, kHipRoll, kHipPitch };
 
+// With the joints between at zero: URDFs turn the frames of joints as they like.
+Eigen::Vector3d axis_in_pelvis(const GaitdModel& model, int joint) {
+  Eigen::Vector3d axis = sdk::view(model.joints[joint].axis);
+  for (int at = joint; at >= 0;) {
+    axis = sdk::quaternion(model.joints[at].orientation) * axis;
+    const int parent = model.joints[at].parent_body;
+    at = parent > 0 ? model.bodies[parent].joint : -1;
+  }
+  return axis;
+}
+
 // The joints of a leg before the knee.
 LegJoint leg_joint(const GaitdModel& model, int joint) {
   for (const GaitdLeg& leg : model.legs) {
     for (int i = 0; i < leg.joint_count && leg.joints[i] != leg.knee; ++i) {
       if (leg.joints[i] != joint) continue;
       if (joint == leg.hip_pitch) return LegJoint::kHipPitch;
-      return std::abs(model.joints[joint].axis[2]) > 0.7 ? LegJoint::kHipYaw : LegJoint::kHipRoll;
+      return std::abs(axis_in_pelvis(model, joint).z()) > 0.7 ? LegJoint::kHipYaw
+                                                              : LegJoint::kHipRoll;
     }
   }
   return LegJoint::kNone;

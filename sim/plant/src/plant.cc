@@ -59,7 +59,7 @@ void Plant::place(const State& state) {
   tick_ = 0;
   diverged_ = false;
   pushes_.clear();
-  loads_changed_ = loads_.count > 0;
+  loads_changed_ = loads_changed_ || loads_.count > 0;
   loads_ = {};
   take_loads();
   drives_->reset();

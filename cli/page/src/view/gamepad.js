@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The standard layout: left stick goes, right stick turns.
+// The standard layout of https://www.w3.org/TR/gamepad: left stick goes, right stick turns.
+
+import {isZero} from './drive.js';
 
 const kDead = 0.15;
 const kButtons = {1: 'stop', 8: 'estop'};  // the right one of the four, and the one left of the middle
@@ -12,12 +14,17 @@ export function wantedOf(pad) {
   return {forward: forward ?? 0, lateral: lateral ?? 0, turn: turn ?? 0};
 }
 
-// Gives what has to be called again and again: a browser tells nothing of a gamepad by itself.
-export function readGamepads(drive, actions) {
-  let pressed = new Set();
+// Gives what has to be called again and again: a browser tells nothing of a gamepad by itself. Only of
+// pads whose layout the browser knows, and from when they were seen at rest: on others an axis may be
+// a trigger, which rests at its end.
+export function readGamepads(drive, actions, source = navigator) {
+  let pressed = new Set(), rested;
   return () => {
-    const pad = navigator.getGamepads?.().find((one) => one?.connected);
-    drive.want('gamepad', wantedOf(document.hasFocus() ? pad : undefined));
+    const pad = source.getGamepads?.().find((one) => one?.connected && one.mapping === 'standard');
+    const wanted = wantedOf(pad);
+    if (isZero(wanted)) rested = pad?.index;
+    const held = pad && rested === pad.index && document.hasFocus();
+    drive.want('gamepad', held ? wanted : wantedOf(undefined));
     const now = new Set(Object.keys(kButtons).filter((i) => pad?.buttons[i]?.pressed));
     for (const i of now) if (!pressed.has(i)) actions[kButtons[i]]();
     pressed = now;

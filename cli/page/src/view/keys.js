@@ -17,7 +17,8 @@ const kOthers = [
 // Not a modal dialog: the E-STOP has to stay within reach.
 const toggleList = () => { $('keys').open = !$('keys').open; };
 
-// `actions`: {estop(), stop(), driveDown(code) and isDriving(code), true if it is a key for driving, driveUp(code)}.
+// `actions`: {estop(), stop(), driveDown(code) and isDriving(code), true if it is a key for driving, driveUp(code),
+// release(): of all keys for driving}.
 export function listenToKeys(actions) {
   for (const [key, meaning] of [...kShown, ...kOthers]) {
     const line = $('keys').querySelector('table').insertRow();
@@ -29,6 +30,8 @@ export function listenToKeys(actions) {
   // Before any element has it.
   addEventListener('keydown', (event) => {
     const {key, code, target, repeat} = event;
+    // Of keys that are let go while it is held macOS tells nothing.
+    if (key === 'Meta') actions.release();
     if (key === 'Escape') {
       event.preventDefault();
       if (!repeat) actions.estop();
@@ -47,6 +50,8 @@ export function listenToKeys(actions) {
   }, {capture: true});
   addEventListener('keyup', (event) => {
     actions.driveUp(event.code);
+    if (event.key === 'Meta') actions.release();
     if (event.key === ' ' && !isText(event.target)) event.preventDefault();
   }, {capture: true});
+  addEventListener('contextmenu', () => actions.release());
 }

@@ -105,6 +105,7 @@ listenToKeys({
     return obstacle ? false : keys.down(code);
   },
   driveUp: (code) => keys.up(code),
+  release: () => keys.release(),
 });
 
 // Who does not see the page does not hold the stick.

@@ -21,8 +21,10 @@ export class State extends EventTarget {
       Object.assign(this, {connected, reason, simulation, name});
     });
     connection.addEventListener('status', ({detail: {status, silent = 0}}) => {
-      const changed = status?.state !== this.status?.state;
-      Object.assign(this, {status, silent});  // s since gaitd answered: the status is how it was then
+      // s since gaitd answered; without a status the last one is shown, as old as that.
+      const changed = (status && status.state !== this.status?.state) || silent > 1 !== this.silent > 1;
+      this.status = status ?? this.status;
+      this.silent = silent;
       if (changed) this.dispatchEvent(new Event('change'));
       this.dispatchEvent(new Event('status'));
     });

@@ -36,11 +36,10 @@ function alerts(state, connection, view) {
   const {status} = state;
   if (!state.connected) {
     found.push([`gaitd is away${state.reason ? `: ${state.reason}` : ''}; trying again`, 'bad']);
+  } else if (state.silent > 1) {
+    found.push([`gaitd has not answered for ${number(state.silent, 0)} s: all that is shown is old`, 'bad']);
   } else if (status) {
     if (status.faults?.length) found.push([`FAULT: ${status.faults.join(', ')} – reset, then arm`, 'bad']);
-    if (state.silent > 1) {
-      found.push([`gaitd has not answered for ${number(state.silent, 0)} s: all that is shown may be old`, 'bad']);
-    }
     if (status.stale) {
       const where = status.hangs_in ? ` in ${status.hangs_in}` : '';
       found.push([`The control loop hangs${where}: its last round was ${number(status.age, 1)} s ago`, 'bad']);
@@ -74,7 +73,7 @@ export function addStatus(state, connection) {
   let forget;
   const change = () => {
     fillAlerts(alerts(state, connection.state, view));
-    document.body.classList.toggle('away', !state.online || !state.connected);
+    document.body.classList.toggle('away', !state.online || !state.connected || state.silent > 1);
     const name = state.connected ? state.name : '';
     say($('title'), name || 'gaitd');
     document.title = name ? `${name} – gaitd` : 'gaitd';

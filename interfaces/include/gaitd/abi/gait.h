@@ -30,7 +30,7 @@ typedef struct GaitdFootstep {
   int32_t polygon_count;    /* 0: whole sole */
   int32_t region_count;     /* 0: anywhere */
   int32_t closing;          /* brings the feet side by side; not counted as a step */
-  int32_t reserved;
+  int32_t region_told;      /* whoever sent the footstep wants it in that region */
   double contact_polygon[GAITD_MAX_FOOT_POINTS][2];  /* m, sole frame, counter-clockwise */
   double landing_region[GAITD_MAX_REGION_POINTS][3]; /* m, W, convex, counter-clockwise */
   double reserve[8];                                 /* 0 */

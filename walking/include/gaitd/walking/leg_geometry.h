@@ -17,6 +17,9 @@ class LegGeometry {
   double bend(double position) const { return sign_ * (position - straight_); }
   // rad, of the joint where its bend is 0.
   double straight() const { return straight_; }
+  // rad, by which an ankle joint at `position` bends the shank ahead over a sole that is square to
+  // it at 0: of the zero of the joint, to 0.3 rad.
+  double dorsiflexion(double position) const { return ankle_sign_ * (position - ankle_square_); }
   // m, for a knee bent by `knee` (rad, positive when bent).
   double length(double knee) const;
   // m/rad, by which it is shorter the more the knee bends there; that of a little bend where the
@@ -32,6 +35,8 @@ class LegGeometry {
   double sign_ = 1.0;
   double straight_ = 0.0;  // rad, of the joint
   double offset_ = 0.0;    // rad, bend of the line hip-knee-ankle at bend 0
+  double ankle_sign_ = 1.0;
+  double ankle_square_ = 0.0;  // rad, of the joint of the ankle
 };
 
 // rad: least bend of a leg that stands, for a step of `horizontal` metres without what the feet
