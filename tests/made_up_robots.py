@@ -468,7 +468,7 @@ def five_joints(name, width):
 
 
 ROBOTS = [tiny, spheres, sideways, tilted, toes, backwards, nameless, twisted, crouched,
-          skewed,          five_joints("narrow", 0.047), five_joints("wide", 0.12)]
+          skewed, five_joints("narrow", 0.047), five_joints("wide", 0.12)]
 
 
 def main():

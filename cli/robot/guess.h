@@ -32,7 +32,7 @@ struct LegGuess {
 
 struct SoleGuess {
   FrameGuess frame;                      // x to the toe, z up, at the middle
-  std::vector<Eigen::Vector2d> outline;  // m, in that frame, counter-clockwise, at most 8
+  std::vector<Eigen::Vector2d> outline;  // m, in that frame, counter-clockwise, at most 7
 };
 
 struct FixedGuess {

@@ -186,8 +186,9 @@ void Safety::clamp(double dt, const TickData& d, GaitdJointCommands& commands) {
       const double step = p_[P::kTorqueRate] * joint.effort_limit * dt;
       torque = std::clamp(torque, last_torque_[i] - step, last_torque_[i] + step);
     }
-    if (rate > fastest) torque = std::min(torque, 0.0);
-    if (rate < -fastest) torque = std::max(torque, 0.0);
+    const double reference = limits_[Limit::kTorqueRatio] < 1.0 ? -feedback : 0.0;
+    if (rate > fastest) torque = std::min(torque, std::max(reference, 0.0));
+    if (rate < -fastest) torque = std::max(torque, std::min(reference, 0.0));
     c.torque = torque;
     // While readying the drives make the torque: what they make now is where control takes over.
     last_torque_[i] = state_ == SafetyState::kReadying ? d.sensors.joints[i].torque : torque;

@@ -55,6 +55,10 @@ bool RotatingLog::open_next_part() {
   std::string error;
   if (!writer->open(next, metadata, options_, &error)) {
     error_ = error;
+    std::error_code ignored;  // what could not even be begun is not to be left behind
+    if (part_ > 0 && fs::is_regular_file(next, ignored) && fs::file_size(next, ignored) == 0) {
+      fs::remove(next, ignored);
+    }
     return false;
   }
   error_ = this->error();

@@ -18,10 +18,13 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// m, of the points of a sole that are looked at: every cell, of cells that are not smaller.
+// Of the points of a sole that are looked at, cells: none is left out, however the foot is turned.
+// And m, at most and at least.
+constexpr double kSpacing = 0.7;
 constexpr double kWidestSpacing = 0.027;
-constexpr double kLeastSpacing = 0.01;
+constexpr double kLeastSpacing = 0.007;
 constexpr double kRim = 0.03;         // m, around the sole
+constexpr double kOuterRim = 0.5;     // of it, from the sole
 constexpr double kRoughness = 0.012;  // m, of the ground from the plane of the sole
 constexpr double kEdge = 0.02;        // m, by which the ground beside the sole is lower at an edge
 constexpr double kRiser = 0.03;       // m, by which it is too high beside the sole
@@ -91,7 +94,8 @@ walking::ConvexPolygon shrunk(const std::vector<Vector3d>& part, const GaitdFoot
 Footholds::Footholds(const GaitdModel& model, std::shared_ptr<const terrain::HeightMap> map)
     : model_(model), map_(std::move(map)) {
   const double spacing =
-      map_ ? std::clamp(map_->grid().resolution, kLeastSpacing, kWidestSpacing) : kWidestSpacing;
+      map_ ? std::clamp(kSpacing * map_->grid().resolution, kLeastSpacing, kWidestSpacing)
+           : kWidestSpacing;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdFoot& foot = model.feet[side];
     walking::ConvexPolygon outline;
@@ -114,7 +118,9 @@ Footholds::Footholds(const GaitdModel& model, std::shared_ptr<const terrain::Hei
             low + size.cwiseProduct(Vector2d(1.0 * i / count.x(), 1.0 * j / count.y()));
         const double inside = outline.inside_distance(p);
         if (inside > -1e-6) sole.points.push_back(p);
-        if (inside < -0.25 * kRim && inside > -kRim - 1e-6) sole.rim.push_back(p);
+        if (inside > -1e-6 || inside < -kRim - 1e-6) continue;
+        sole.beside.push_back(p);
+        if (inside < -kOuterRim * kRim) sole.rim.push_back(p);
       }
     }
     sole.mean.setZero();
@@ -127,10 +133,9 @@ Footholds::Footholds(const GaitdModel& model, std::shared_ptr<const terrain::Hei
   if (!map_) return;
   regions_ = terrain::find_planar_regions(*map_);
   const double resolution = map_->grid().resolution;
-  for (int axis : {0, 1}) {
-    const double half = half_extent(model.feet[0], axis);
-    near_foot_[axis] = dilated(*map_, static_cast<int>(std::ceil(half / resolution)));
-  }
+  half_length_ = half_extent(model.feet[0], 0);
+  const double half_width = half_extent(model.feet[0], 1);
+  near_foot_ = dilated(*map_, static_cast<int>(std::ceil(half_width / resolution)));
   const auto cells = [&](double width) {
     return static_cast<int>(std::ceil(width * model.nominal_pelvis_height / resolution));
   };
@@ -185,17 +190,18 @@ Foothold Footholds::at(int side, const Place& place, double max_tilt) const {
     result.state = FootholdState::kSteep;
     return result;
   }
-  int edges = 0;
-  for (const Vector2d& p : sole.rim) {
-    const double over = height(at + R * p) - (mean + slope.dot(p - sole.mean));
-    if (over > kRiser) {
-      result.state = FootholdState::kBlocked;
-      return result;
-    }
-    if (!(over >= -kEdge)) ++edges;
+  const auto over = [&](const Vector2d& p) {  // m, of the ground, the plane of the sole
+    return height(at + R * p) - (mean + slope.dot(p - sole.mean));
+  };
+  if (std::any_of(sole.beside.begin(), sole.beside.end(),
+                  [&](const Vector2d& p) { return over(p) > kRiser; })) {
+    result.state = FootholdState::kBlocked;
+    return result;
   }
+  const auto edges = std::count_if(sole.rim.begin(), sole.rim.end(),
+                                   [&](const Vector2d& p) { return !(over(p) >= -kEdge); });
   result.state = FootholdState::kGood;
-  result.cost = kEdgeCost * edges / static_cast<double>(sole.rim.size()) +
+  result.cost = kEdgeCost * static_cast<double>(edges) / static_cast<double>(sole.rim.size()) +
                 kRoughnessCost * roughness / kRoughness + kSlopeCost * tilt / max_tilt;
   return result;
 }
@@ -229,15 +235,17 @@ GaitdPose Footholds::pose_of(const Place& place, const Foothold& foothold) {
 double Footholds::highest_between(const GaitdPose& from, const GaitdPose& to) const {
   if (!map_) return -INFINITY;
   const Vector2d a(from.position), b(to.position);
-  // A foot that goes aside sweeps the ground with its whole length.
-  const Vector2d way =
-      Eigen::Rotation2Dd(-sdk::yaw_of(sdk::quaternion(to.orientation))) * Vector2d(b - a);
-  const std::vector<float>& near = near_foot_[std::abs(way.y()) > kAside * way.norm() ? 0 : 1];
+  // A foot that goes aside sweeps the ground with its heel and toe as well.
+  const Eigen::Rotation2Dd turn(sdk::yaw_of(sdk::quaternion(to.orientation)));
+  const bool aside = std::abs((turn.inverse() * Vector2d(b - a)).y()) > kAside * (b - a).norm();
+  const Vector2d end = turn * Vector2d(aside ? half_length_ : 0.0, 0.0);
   const int steps = static_cast<int>(std::ceil((b - a).norm() / map_->grid().resolution)) + 1;
   double highest = -INFINITY;
   for (int i = 0; i <= steps; ++i) {
     const Vector2d p = a + (b - a) * i / steps;
-    highest = std::max(highest, 1.0 * look_up(near, map_->grid(), p));
+    for (const Vector2d& at : {p, Vector2d(p + end), Vector2d(p - end)}) {
+      highest = std::max(highest, 1.0 * look_up(near_foot_, map_->grid(), at));
+    }
   }
   return highest;
 }

@@ -66,7 +66,8 @@ class Footholds {
  private:
   struct Sole {
     std::vector<Eigen::Vector2d> points;  // m, sole frame: under it
-    std::vector<Eigen::Vector2d> rim;     // around it, where edges and risers are looked for
+    std::vector<Eigen::Vector2d> beside;  // around it, where no riser may be
+    std::vector<Eigen::Vector2d> rim;     // those furthest out, where an edge costs
     Eigen::Matrix2d slope_of;             // (sum p p^T)^-1 of the points about their mean
     Eigen::Vector2d mean;
   };
@@ -77,8 +78,8 @@ class Footholds {
   double level_ = 0.0;
   std::array<Sole, GAITD_MAX_FEET> soles_;
   terrain::PlanarRegions regions_;
-  // By cell: highest ground within half a foot, as it is long [0] and wide [1].
-  std::array<std::vector<float>, 2> near_foot_;
+  double half_length_ = 0.0;      // m, of a foot
+  std::vector<float> near_foot_;  // by cell: highest ground within half the width of a foot
   std::vector<float> near_legs_;  // likewise, of the legs
   std::vector<float> near_arms_;  // likewise, of the arms
 };

@@ -79,10 +79,9 @@ Plan MapPlanner::adapt(const Start& start, const std::vector<GaitdFootstep>& ahe
   return plan;
 }
 
-// False: nothing is known there, or no place near it is good.
-bool MapPlanner::put_on_ground(const GaitdPose& stance, const GaitdPose& from,
-                               const walking::GaitParameters& parameters,
-                               GaitdFootstep* step) const {
+MapPlanner::Put MapPlanner::put_on_ground(const GaitdPose& stance, const GaitdPose& from,
+                                          const walking::GaitParameters& parameters,
+                                          GaitdFootstep* step) const {
   const Place wanted = place_of(step->pose);
   const double c = std::cos(wanted.yaw), s = std::sin(wanted.yaw);
   const int reach = static_cast<int>(std::lround(kAside / kAsideStep));
@@ -100,7 +99,7 @@ bool MapPlanner::put_on_ground(const GaitdPose& stance, const GaitdPose& from,
                         wanted.yaw};
       if (region.size() > 2 && region.inside_distance({place.x, place.y}) < -1e-6) continue;
       const Foothold foothold = steps_->footholds().at(step->side, place, walking::kMaxStepTilt);
-      if (foothold.state == FootholdState::kUnknown && i == 0 && j == 0) return false;
+      if (foothold.state == FootholdState::kUnknown && i == 0 && j == 0) return Put::kUnknown;
       if (foothold.state != FootholdState::kGood || cost + foothold.cost >= least) continue;
       GaitdFootstep candidate = *step;
       candidate.pose = Footholds::pose_of(place, foothold);
@@ -109,9 +108,9 @@ bool MapPlanner::put_on_ground(const GaitdPose& stance, const GaitdPose& from,
       best = candidate;
     }
   }
-  if (!std::isfinite(least)) return false;
+  if (!std::isfinite(least)) return Put::kNoPlace;
   *step = best;
-  return true;
+  return Put::kDone;
 }
 
 std::vector<GaitdFootstep> MapPlanner::refine(const Start& start,
@@ -125,7 +124,8 @@ std::vector<GaitdFootstep> MapPlanner::refine(const Start& start,
     const GaitdFootstep before = step;
     const GaitdPose& stance = feet[other_side(step.side)];
     const GaitdPose& from = feet[step.side];
-    if (put_on_ground(stance, from, parameters, &step)) {
+    const Put put = put_on_ground(stance, from, parameters, &step);
+    if (put == Put::kDone) {
       raised = step.pose.position[2] - before.pose.position[2];
       // A foot that strikes something all the same goes as high as it was told to.
       static_cast<void>(steps_->raise_swing(stance, from, parameters, &step));
@@ -136,7 +136,7 @@ std::vector<GaitdFootstep> MapPlanner::refine(const Start& start,
       } else {
         steps_->footholds().add_landing_region(&step);
       }
-    } else {
+    } else if (put == Put::kUnknown) {
       step.pose.position[2] += raised;
       raise_region(raised, &step);
     }

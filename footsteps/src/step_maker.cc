@@ -2,6 +2,7 @@
 #include "step_maker.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -24,6 +25,7 @@ constexpr double kSlowSwing = 1.67;    // times the parameter of the gait
 constexpr double kSlowTransfer = 1.4;  // likewise
 constexpr double kEven = 0.015;        // m, of the ground on the way above the lower foothold
 constexpr double kClearance = 0.02;    // m, of the sole above the ground on the way
+constexpr double kSideways = 0.02;     // m, of the sole from what is higher beside its way
 constexpr double kTouches = 0.012;     // m, by which the ground may be rough where the foot stands
 constexpr double kRaise = 0.04;        // pelvis heights, by which a swing is raised at a time
 constexpr int kRaises = 6;
@@ -111,14 +113,21 @@ bool StepMaker::swings_clear(const GaitdFootstep& step, const GaitdPose& from) c
   walking::SwingTrajectory swing;
   swing.begin(from, sdk::Vector6d::Zero(), from.position[2], step, step.swing_duration, shape);
   const GaitdFoot& foot = model_.feet[step.side];
+  // A foot is no nearer to its planned way than that, nor turned as planned.
+  std::array<Eigen::Vector2d, GAITD_MAX_FOOT_POINTS> outline;
+  for (int i = 0; i < foot.point_count; ++i) {
+    const Eigen::Vector2d p(foot.points[i]);
+    outline[static_cast<std::size_t>(i)] = p + kSideways * p.normalized();
+  }
+  const auto corners = static_cast<std::size_t>(foot.point_count);
   for (int k = 1; k < kSamples; ++k) {
     const walking::SwingTrajectory::Sample sole =
         swing.evaluate(step.swing_duration * k / kSamples);
     const double end = 2 * k < kSamples ? from.position[2] : step.pose.position[2];
     const double clearance =
         std::min(kClearance, 0.5 * std::max(0.0, sole.position.z() - end) - kTouches);
-    for (int i = 0; i < foot.point_count; ++i) {
-      const Eigen::Vector2d a(foot.points[i]), b(foot.points[(i + 1) % foot.point_count]);
+    for (std::size_t i = 0; i < corners; ++i) {
+      const Eigen::Vector2d &a = outline[i], &b = outline[(i + 1) % corners];
       for (const Eigen::Vector2d& p : {a, Eigen::Vector2d(0.5 * (a + b))}) {
         const Eigen::Vector3d point =
             sole.position + sole.orientation * Eigen::Vector3d(p.x(), p.y(), 0.0);

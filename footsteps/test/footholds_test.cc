@@ -71,17 +71,19 @@ TEST(Footholds, AnEdgeCostsAndARiserBlocks) {
   EXPECT_NEAR(far.cost, 0.0, 1e-9);
 }
 
-// A pipe of one cell and 5 cm, wherever it lies below a sole; and a post.
+// A pipe and a post of one cell, which begins at 0, and 5 cm, wherever they lie below a sole.
 TEST(Footholds, WhatIsOneCellWideIsNotOverlooked) {
-  const Footholds pipe(atlas(), field({-1, -1}, {1, 1}, [](double x, double) {
-                         return std::abs(x) < 0.0101 ? 0.05 : 0.0;
+  const auto in_cell = [](double p) { return p > 0.0 && p < 0.02; };
+  const Footholds pipe(
+      atlas(), field({-1, -1}, {1, 1}, [&](double x, double) { return in_cell(x) ? 0.05 : 0.0; }));
+  const Footholds post(atlas(), field({-1, -1}, {1, 1}, [&](double x, double y) {
+                         return in_cell(x) && in_cell(y) ? 0.05 : 0.0;
                        }));
-  const Footholds post(atlas(), field({-1, -1}, {1, 1}, [](double x, double y) {
-                         return std::abs(x) < 0.0101 && std::abs(y) < 0.0101 ? 0.05 : 0.0;
-                       }));
-  for (int mm = -105; mm <= 105; mm += 5) {
-    EXPECT_EQ(at(pipe, 0.001 * mm, 0).state, FootholdState::kRough) << mm;
-    EXPECT_EQ(at(post, 0.001 * mm, 0.03, 0.3).state, FootholdState::kRough) << mm;
+  for (int mm = -35; mm <= 35; mm += 5) {
+    for (const double yaw : {0.0, 0.3, M_PI_4, 1.2}) {
+      EXPECT_EQ(at(pipe, 0.001 * mm, 0, yaw).state, FootholdState::kRough) << mm << ' ' << yaw;
+      EXPECT_EQ(at(post, 0.001 * mm, 0.02, yaw).state, FootholdState::kRough) << mm << ' ' << yaw;
+    }
   }
 }
 

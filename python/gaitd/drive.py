@@ -25,8 +25,8 @@ class Drive:
     ...     drive.sleep(5)
 
     A thread of its own renews the velocity as long as this object lives, whatever the program does meanwhile: bound it
-    with ``seconds`` of :meth:`Robot.drive` where the program may hang. If somebody else takes the robot over, or the robot faults, ``sleep``,
-    ``set`` and ``end`` raise what gaitd said (:class:`Refused`).
+    with ``seconds`` of :meth:`Robot.drive` where the program may hang. If somebody else takes the robot over, or the
+    robot faults, ``sleep``, ``set`` and ``end`` raise what gaitd said (:class:`Refused`).
     """
 
     def __init__(self, socket: str, forward: float, lateral: float, turn: float):

@@ -7,7 +7,7 @@ import weakref
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from .drive import Drive
-from .errors import Fault, GaitdError, WaitTimeout
+from .errors import Fault, WaitTimeout
 from .height_map import HeightMap
 from .log import Event
 from .model import Model
@@ -62,12 +62,14 @@ class Robot:
 
     def close(self) -> None:
         """Ends the connection, and what drives the robot. It goes on with what else it was told."""
-        for drive in list(self._drives):
-            try:
-                drive.end()
-            except GaitdError:
-                pass  # nobody drives any more
-        self._connection.close()
+        try:
+            for drive in list(self._drives):
+                try:
+                    drive.end()
+                except Exception:  # what it failed of: it does not drive any more
+                    pass
+        finally:
+            self._connection.close()
 
     @property
     def socket(self) -> str:

@@ -88,7 +88,7 @@ void GroundMemory::learn(Cell* cell, double height, double variance, double time
                                                  rules_.believable * std::sqrt(before + variance);
   if (known && !fits && ++cell->doubts < rules_.repeated) return;
   cell->doubts = 0;
-  cell->told = false;
+  cell->told = cell->told && fits;
   cell->seen = static_cast<float>(time);
   if (!fits) {
     cell->height = static_cast<float>(height);

@@ -151,6 +151,8 @@ TEST(GroundMemory, WhatWasToldHolds) {
   }
   EXPECT_EQ(memory.put(tile, false, 1.0), 50) << "the others are too uncertain to step on";
   EXPECT_NEAR(memory.map(1e5).surface({0.04, 0.1})->height, 0.5, 1e-6);
+  for (unsigned k = 0; k < 3; ++k) memory.see(scan(0.5, k), kCommon, 2.0 + k);
+  EXPECT_NEAR(memory.map(1e5).surface({0.04, 0.1})->height, 0.5, 0.02) << "and was seen";
   for (unsigned k = 0; k < 3; ++k) memory.see(scan(0.0, k), kCommon, 2.0 + k);
   EXPECT_NEAR(memory.map(5.0).surface({0.04, 0.1})->height, 0.0, 0.02) << "it was seen otherwise";
   EXPECT_FALSE(memory.map(1e5).surface({0.04, 0.1})) << "which grows old";

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "gaitd/sdk/views.h"
-#include "gaitd/walking/foothold_check.h"
 #include "gaitd/walking/gait_machine.h"
 #include "gaitd/walking/support.h"
 
@@ -27,9 +26,9 @@ Refusal GaitMachine::check_room(int count) const {
 }
 
 void GaitMachine::fill_in(GaitdFootstep& step) const {
-  if (step.swing_duration <= 0.0) step.swing_duration = parameters_[Gait::kSwingDuration];
-  if (step.transfer_duration <= 0.0) step.transfer_duration = parameters_[Gait::kTransferDuration];
-  if (step.swing_height <= 0.0) step.swing_height = parameters_[Gait::kSwingHeight];
+  if (step.swing_duration == 0.0) step.swing_duration = parameters_[Gait::kSwingDuration];
+  if (step.transfer_duration == 0.0) step.transfer_duration = parameters_[Gait::kTransferDuration];
+  if (step.swing_height == 0.0) step.swing_height = parameters_[Gait::kSwingHeight];
 }
 
 void GaitMachine::complete(GaitdFootstep& step) {

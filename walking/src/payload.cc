@@ -76,7 +76,9 @@ Refusal Payload::check(const GaitdLoad& load, const dynamics::Kinematics& robot)
 Refusal Payload::set(const GaitdLoad& load, const GaitdRobotState& robot) {
   Refusal refusal;
   if (load.mass > 0.0) {
-    kinematics_.update(robot);
+    GaitdRobotState now = robot;
+    now.loads = loads_;  // of this tick as well
+    kinematics_.update(now);
     refusal = check(load, kinematics_);
   }
   if (refusal.refused()) return refusal;

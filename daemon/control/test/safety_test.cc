@@ -326,6 +326,31 @@ TEST(Safety, TorquesAreClampedToTheLimits) {
   }
 }
 
+// What the drive adds around its reference counts as well: joints that are held away from theirs,
+// at rest and moved faster than they may be.
+TEST(Safety, ReadyingIsBoundedByTheTorqueRatio) {
+  for (const double rate : {0.0, -100.0, 100.0}) {
+    Bench b({{Limit::kTorqueRatio, 0.3}});
+    ASSERT_EQ(b.safety.arm(), nullptr);
+    b.tick();
+    for (int i = 0; i < atlas().joint_count; ++i) b.data->robot.joint_position[i] -= 0.3;
+    b.data->robot.joint_velocity[4] = rate;
+    b.tick();
+    double most = 0.0;
+    for (int i = 0; i < atlas().joint_count; ++i) {
+      const GaitdJointCommand& c = b.command(i);
+      ASSERT_EQ(c.mode, GAITD_JOINT_MODE_TORQUE);
+      const double torque = c.torque +
+                            c.stiffness * (c.position - b.data->robot.joint_position[i]) +
+                            c.damping * (c.velocity - b.data->robot.joint_velocity[i]);
+      const double share = torque / atlas().joints[i].effort_limit;
+      EXPECT_LE(std::abs(share), 0.3 + 1e-9) << atlas().joints[i].name << ' ' << rate;
+      most = std::max(most, share);
+    }
+    EXPECT_NEAR(most, 0.3, 1e-6);
+  }
+}
+
 TEST(Safety, TorquesAreClampedInTheirRate) {
   Bench b;
   b.safety.set_parameter(static_cast<int>(SafetyParameter::kTorqueRate), 20.0);

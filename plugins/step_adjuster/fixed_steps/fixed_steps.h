@@ -14,18 +14,22 @@ class FixedSteps {
   explicit FixedSteps(const GaitdModel& model) : feedback_(model) {}
   void set_parameter(int index, double value) { feedback_.set_parameter(index, value); }
   GaitdStatus process(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out);
-  void reset() { feedback_.reset(); }
-  // It has shifted nothing, whatever it took over.
-  void get_state(GaitdStepAdjusterState& s) const {
-    feedback_.get_state(s);
-    s.step_index = -1;
-    s.shift[0] = s.shift[1] = s.shift[2] = 0.0;
-    s.time_shift = 0.0;
+  void reset() {
+    feedback_.reset();
+    phase_ = kUnknownPhase;
   }
-  void set_state(const GaitdStepAdjusterState& s) { feedback_.set_state(s); }
+  void get_state(GaitdStepAdjusterState& s) const { feedback_.get_state(s); }
+  void set_state(const GaitdStepAdjusterState& s) {
+    feedback_.set_state(s);
+    phase_ = kUnknownPhase;
+  }
 
  private:
+  static constexpr int kUnknownPhase = -1;
+
   walking::IcpFeedback feedback_;
+  // What somebody else has shifted is kept for him until the phase ends.
+  int phase_ = kUnknownPhase;
 };
 
 }  // namespace gaitd::plugins

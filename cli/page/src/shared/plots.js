@@ -11,7 +11,10 @@ export function panels(log) {
   const sides = ['left', 'right'];
   const knees = sides.map((side) => [side, legs[side]?.knee]).filter(([, knee]) => knee);
   const lines = (...list) => list.filter(([name]) => log.has(name))
-      .map(([name, label, scale = 1]) => ({name, label, scale}));
+      .map(([name, label, scale = 1, zero = 0]) => ({name, label, scale, zero}));
+  // Its bend, as that which is wanted: from where the leg is straight.
+  const kneeBend = (side, knee) => [`joint/${knee}/position`, side, legs[side].knee_bend_sign ?? 1,
+                                    legs[side].knee_straight ?? 0];
   const torques = sides.flatMap((side) => (legs[side]?.joints ?? [])
       .map((joint) => [`joint/${joint}/torque_desired`, joint, 1 / (efforts[joint] || NaN)]));
   return [
@@ -22,7 +25,7 @@ export function panels(log) {
     {id: 'com-height', title: 'Height of the centre of mass', unit: 'm', lines: lines(
         ['com/z', 'estimated'], ['truth/com/z', 'true'], ['com/height_target', 'target'])},
     {id: 'knees', title: 'Knee angles and states of the legs', unit: 'rad', lines: lines(
-        ...knees.flatMap(([side, knee]) => [[`joint/${knee}/position`, side],
+        ...knees.flatMap(([side, knee]) => [kneeBend(side, knee),
                                             [`leg/${side}/knee_privileged`, `${side}, wanted`]])),
      states: 'leg'},
     {id: 'torques', title: 'Torques of the legs over their limits', unit: '1', lines: lines(...torques)},
@@ -162,9 +165,9 @@ export function timePlot(log, panel, player, element, width, height, options = {
       .filter(({name}) => one.has(name)));
   const data = () => {
     const {time} = longest();
-    const columns = lines.map(({one, name, scale}) => {
+    const columns = lines.map(({one, name, scale, zero}) => {
       const column = one.columnAt(name, time);
-      return scale === 1 ? column : column.map((value) => value * scale);
+      return scale === 1 && !zero ? column : column.map((value) => (value - zero) * scale);
     });
     return [time, ...columns, ...(states ? [new Float32Array(time.length).fill(NaN)] : [])];
   };

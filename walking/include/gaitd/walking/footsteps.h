@@ -93,7 +93,7 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const
 // durations. Arguments as above.
 Refusal check_straddle(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
                        int number, const StepLimits& limits);
-// Whether the body follows a foot that goes so far in the swing of `step`. Arguments as above.
+// Whether the body follows a foot as fast as that in the swing of `step`. Arguments as above.
 Refusal check_stride(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
                      int number, const StepLimits& limits);
 
