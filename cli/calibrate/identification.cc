@@ -142,6 +142,7 @@ class Problem {
     sigma_ = VectorXd::Constant(layout_.count(), prior.ground);
     for (int i = 0; i < layout_.joint_count(); ++i) {
       const double stiffness = known_.joints[layout_.joints[i]].stiffness;
+      mean_[layout_.zero(i)] = known_.joints[layout_.joints[i]].zero;
       sigma_[layout_.zero(i)] = prior.zero;
       mean_[layout_.compliance(i)] = stiffness > 0 ? 1 / stiffness : 0.0;
       sigma_[layout_.compliance(i)] = stiffness > 0 ? prior.compliance / stiffness : prior.unknown;

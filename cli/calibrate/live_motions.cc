@@ -2,6 +2,7 @@
 #include "cli/calibrate/live_motions.h"
 
 #include <chrono>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -106,6 +107,13 @@ int play_live(const Context& context, const std::string& name, std::string* log)
                 "`log`, see docs/configuration.md");
   }
   *log = written.value("file", "");
+  if (!std::ifstream(*log)) {
+    return fail(
+        context, kFailed, kCalibrate,
+        *log +
+            ": gaitd writes this log, and it cannot be read from here; run this where gaitd "
+            "was started, and as a user who may read its logs");
+  }
   if (before.value("state", "") != "disarmed") {
     return fail(context, kFailed, kCalibrate,
                 "expected a disarmed robot on its hoist, got one that is " +
@@ -147,6 +155,14 @@ int play_live(const Context& context, const std::string& name, std::string* log)
   }
   wait_until(client.get(), due + kLastPosture);
   std::this_thread::sleep_for(std::chrono::seconds(2));  // until it is in the log
+  const json after = status(client.get()).value("log", json::object());
+  if (after.is_object() && after.value("file", "") != *log) {
+    return fail(
+        context, kFailed, kCalibrate,
+        "the log went on in another file, " + after.value("file", "") +
+            ", in the middle of the motions, and is only read as one; start gaitd anew with "
+            "`log.max_size: 0`");
+  }
   return kDone;
 }
 

@@ -135,7 +135,7 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
                   const CampaignResults& results, RunOrder* order, const RunnerOptions& options,
                   const fs::path& shown) {
   json cells = json::array();
-  int total = 0;
+  int total = 0, unjudged = 0;
   bool pass = order->remaining() == 0;
   std::map<int, std::pair<int, int>> counts;  // successes and runs by cell
   std::map<int, int> falls, refusals;
@@ -146,6 +146,7 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
     falls[cell] += result.fell ? 1 : 0;
     refusals[cell] += result.refused ? 1 : 0;
     total += result.success ? 1 : 0;
+    unjudged += result.problem.empty() ? 0 : 1;
   }
   if (campaign.search) pass = add_found(campaign, order, &cells) && pass;
   for (const auto& [cell, count] : counts) {
@@ -188,6 +189,7 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
           {"runs", results.size() + order->remaining()},
           {"finished", results.size()},
           {"successes", total},
+          {"unjudged", unjudged},
           {"success_min", campaign.success_min},
           {"search", search_json(campaign)},
           {"cells", cells},
@@ -202,6 +204,12 @@ std::string summary_text(const json& summary, std::size_t columns) {
   std::string text = summary["campaign"].get<std::string>() + ": " + summary["finished"].dump() +
                      " of " + summary["runs"].dump() + " runs, " + summary["successes"].dump() +
                      " succeeded\n\n";
+  if (const int unjudged = summary["unjudged"].get<int>(); unjudged > 0) {
+    text +=
+        std::to_string(unjudged) +
+        " runs could not be judged: they count as failures below, and as nothing where variants "
+        "are compared; the same command plays them again\n\n";
+  }
   const std::string groups = groups_text(summary["groups"], columns);
   if (!summary["search"].is_null()) {
     text += search_text(summary, columns);

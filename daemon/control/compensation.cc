@@ -102,14 +102,14 @@ void Compensation::sensors(double dt, TickData& d) {
   known_ = true;
 }
 
-void Compensation::commands(double dt, TickData& d) {
+void Compensation::commands(double dt, TickData& d, double torque_ratio) {
   if (!used_) return;
   const double share = d.gait.phase == GAITD_PHASE_STAND ? low_pass(kStandingBandwidth, dt) : 1.0;
   for (int i = 0; i < model_.joint_count; ++i) {
     GaitdJointCommand& command = d.commands.joints[i];
     command.position += calibration_.joints[i].zero + bend(i, command.torque);
     if (command.mode != GAITD_JOINT_MODE_TORQUE) continue;
-    const double limit = model_.joints[i].effort_limit;
+    const double limit = torque_ratio * model_.joints[i].effort_limit;
     rate_[i] += share * (command.velocity - rate_[i]);
     command.torque = std::clamp(command.torque + lost(i, rate_[i]), -limit, limit);
   }

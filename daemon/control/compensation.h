@@ -28,8 +28,8 @@ class Compensation {
   void sensors(double dt, TickData& d);
   /// Once in a tick of `dt` seconds, in place: d.commands. With the torque of the command, not the
   /// measured one: that would close a loop around the encoder through the stiffness, with the delay
-  /// of its filter.
-  void commands(double dt, TickData& d);
+  /// of its filter. `torque_ratio`: of the effort limits, that torques may reach.
+  void commands(double dt, TickData& d, double torque_ratio = 1.0);
 
  private:
   double bend(int joint, double torque) const;

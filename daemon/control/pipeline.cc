@@ -216,7 +216,7 @@ void Pipeline::run(std::int64_t tick) {
     d.icp_margin = std::numeric_limits<double>::quiet_NaN();
   }
   safety_.write(period_, ok, d);
-  compensation_.commands(period_, d);
+  compensation_.commands(period_, d, safety_.torque_ratio());
 }
 
 bool Pipeline::control(double dt) {

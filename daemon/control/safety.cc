@@ -84,7 +84,7 @@ bool Safety::update(double dt, const TickData& d, bool walking) {
   return false;
 }
 
-void Safety::hold(const TickData& d, GaitdJointCommands& commands) const {
+void Safety::hold(GaitdJointCommands& commands) const {
   const double s = std::min(1.0, time_in_state_ / p_[P::kReadyDuration]);
   const double smooth = s * s * (3.0 - 2.0 * s);
   for (int i = 0; i < model_.joint_count; ++i) {
@@ -137,7 +137,7 @@ void Safety::write(double dt, bool control_ok, TickData& d) {
       damp(d.commands);
       break;
     case SafetyState::kReadying:
-      hold(d, d.commands);
+      hold(d.commands);
       break;
     case SafetyState::kTesting:
       swing_joint(d.commands);

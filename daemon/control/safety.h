@@ -47,6 +47,7 @@ class Safety {
   void going_on();  // new footsteps while stopping: it walks again
 
   const CaptureCheck& capture() const { return capture_; }
+  double torque_ratio() const { return limits_[Limit::kTorqueRatio]; }
   // Looks at health, sensors and estimate; raises what it finds. `estimate_ok` as the layer said.
   void check(const TickData& data, bool estimate_ok);
   // Follows the gait once the controller has the joints. True in the tick it is handed over.
@@ -60,7 +61,7 @@ class Safety {
   static constexpr double kReadyDamping = 1.0 / 32.0;
 
   void fall_back(double dt, TickData& data);
-  void hold(const TickData& data, GaitdJointCommands& commands) const;
+  void hold(GaitdJointCommands& commands) const;
   void damp(int joint, GaitdJointCommands& commands) const;
   void damp(GaitdJointCommands& commands) const;
   void clamp(double dt, const TickData& data, GaitdJointCommands& commands);

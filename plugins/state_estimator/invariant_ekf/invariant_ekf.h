@@ -78,6 +78,8 @@ class InvariantEkf {
     std::array<Eigen::Vector3d, 2> points;             // m, sole frame, by Point
     Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  // m, W: sole origin when last trusted
     double anchor_yaw = 0.0;
+    Eigen::Quaterniond rest = Eigen::Quaterniond::Identity();  // of the sole, where it came to rest
+    double time_turned = 0.0;                                  // s, for which it lies otherwise
   };
   // Two low-passes in a row, and what is known of the acceleration between them.
   struct LaggedRate {
@@ -97,6 +99,8 @@ class InvariantEkf {
   void choose_imu(int imu, const GaitdRobotState& joints);
   void predict(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
   void update_trust(const GaitdStateEstimatorInput& in);
+  // Whether a foot lies otherwise than where it came to rest.
+  bool has_turned(int side, double dt);
   void correct(const GaitdStateEstimatorInput& in, const GaitdRobotState& joints);
   void observe_balance(const GaitdStateEstimatorInput& in, const GaitdRobotState& robot);
   void write(const GaitdStateEstimatorInput& in, GaitdRobotState& out);

@@ -18,6 +18,10 @@ constexpr double kPushStanding = 0.6;     // m/s^2 that only a push makes
 constexpr double kPushWalking = 3.0;
 constexpr double kTrustOn = 0.35;     // share of the load that makes a foot a contact
 constexpr double kHoistNoise = 0.05;  // m/sqrt(Hz), by which a robot on its hoist moves about
+// rad, by which a sole lies otherwise than where it came to rest: it turns, or rolls on an edge.
+// And s, after which it lies there.
+constexpr double kTurned = 0.05;
+constexpr double kLies = 0.5;
 // Densities: of a foot seen through the encoders (m/sqrt(Hz)), of the specific force that CoP and
 // CoM tell (m/s^2/sqrt(Hz)).
 constexpr double kKinematicNoise = 5e-5;
@@ -82,13 +86,19 @@ void InvariantEkf::correct(const GaitdStateEstimatorInput& in, const GaitdRobotS
   if (hung && !hangs_) filter_.remove_point(index(GAITD_LEFT, kToe));
   if (hangs_) return hold_on_hoist(in.time.period);
   const double sigma = per_sample(kKinematicNoise, in.time.period);
+  const bool turned[] = {has_turned(GAITD_LEFT, in.time.period),
+                         has_turned(GAITD_RIGHT, in.time.period)};
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const bool only_toe = in.gait->footholds[side].contact == GAITD_CONTACT_TOE ||
-                          feet_[side].time_trusted < kRestDelay;
+                          feet_[side].time_trusted < kRestDelay || turned[side];
+    // One that is dragged along tells nothing where another one stands.
+    const int other = side == GAITD_LEFT ? GAITD_RIGHT : GAITD_LEFT;
+    const bool stands =
+        feet_[side].trusted && !(turned[side] && feet_[other].trusted && !turned[other]);
     for (const Point point : {kToe, kHeel}) {
       const int i = index(side, point);
       const Eigen::Vector3d place = sole_point(side, feet_[side].points[point]) - lever();
-      if (!feet_[side].trusted || (only_toe && point == kHeel)) {
+      if (!stands || (only_toe && point == kHeel)) {
         filter_.remove_point(i);
       } else if (!filter_.has_point(i)) {
         filter_.add_point(i, place, sigma);
@@ -97,6 +107,18 @@ void InvariantEkf::correct(const GaitdStateEstimatorInput& in, const GaitdRobotS
       }
     }
   }
+}
+
+bool InvariantEkf::has_turned(int side, double dt) {
+  Foot& f = feet_[side];
+  const Eigen::Quaterniond now = sole_orientation(side);
+  if (f.time_trusted < kRestDelay || f.time_turned > kLies) {
+    f.rest = now;
+    f.time_turned = 0.0;
+  }
+  const bool turned = now.angularDistance(f.rest) > kTurned;
+  f.time_turned = turned ? f.time_turned + dt : 0.0;
+  return turned;
 }
 
 void InvariantEkf::observe_balance(const GaitdStateEstimatorInput& in,

@@ -156,9 +156,9 @@ Frame CanRobot::frame_for(int index, const GaitdJointCommand& command) {
   };
   if (faulty(index)) {
     // The daemon latches the fault; the motor stays off, and forgets its error once it is over.
-    state.enabled = false;
+    const bool off = !std::exchange(state.enabled, false);  // it was told so before
     const auto interval = static_cast<int64_t>(kClearInterval / options_.period);
-    const bool clear = fault_of(index) != 0 && cycle_ % std::max<int64_t>(1, interval) == 0;
+    const bool clear = off && fault_of(index) != 0 && cycle_ % std::max<int64_t>(1, interval) == 0;
     if (clear) state.told = 0;
     return special(clear ? Special::kClear : Special::kDisable);
   }

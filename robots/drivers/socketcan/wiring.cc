@@ -259,6 +259,7 @@ class WiringReader {
     const json nothing = json::object();
     JsonReader map(root->has(key) ? root->at(key) : nothing, root->path(key), errors_);
     for (int i = 0; i < count; ++i) {
+      if (!imus && model_.feet[i].force_sensor.body < 0) continue;  // it has no sensor
       const std::string name = imus ? model_.imus[i].name : (i == GAITD_LEFT ? "left" : "right");
       if (!map.has(name.c_str())) {
         map.error(map.path(name), "its bus and identifier", nullptr);
@@ -275,7 +276,8 @@ class WiringReader {
       senders->push_back(sender);
     }
     if (static_cast<int>(map.object().size()) > static_cast<int>(senders->size())) {
-      map.error(root->path(key), imus ? "the IMUs of the model" : "left and right", map.object());
+      map.error(root->path(key), imus ? "the IMUs of the model" : "the feet that have a sensor",
+                map.object());
     }
   }
 
