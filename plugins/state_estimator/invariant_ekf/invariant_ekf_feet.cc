@@ -91,14 +91,10 @@ void InvariantEkf::correct(const GaitdStateEstimatorInput& in, const GaitdRobotS
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const bool only_toe = in.gait->footholds[side].contact == GAITD_CONTACT_TOE ||
                           feet_[side].time_trusted < kRestDelay || turned[side];
-    // One that is dragged along tells nothing where another one stands.
-    const int other = side == GAITD_LEFT ? GAITD_RIGHT : GAITD_LEFT;
-    const bool stands =
-        feet_[side].trusted && !(turned[side] && feet_[other].trusted && !turned[other]);
     for (const Point point : {kToe, kHeel}) {
       const int i = index(side, point);
       const Eigen::Vector3d place = sole_point(side, feet_[side].points[point]) - lever();
-      if (!stands || (only_toe && point == kHeel)) {
+      if (!feet_[side].trusted || (only_toe && point == kHeel)) {
         filter_.remove_point(i);
       } else if (!filter_.has_point(i)) {
         filter_.add_point(i, place, sigma);
