@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "gaitd/walking/gait_machine.h"
+#include "gaitd/walking/support.h"
 #include "walking/test/atlas.h"
 
 namespace gaitd::daemon {
@@ -142,6 +143,21 @@ TEST(PlanService, BeyondTheMapAPlanLeadsToItsEnd) {
   service.port().retire(answer.plan);
 }
 
+// Another footstep of `request`, of one side, to `x` (m, W); its id counts from 10.
+GaitdFootstep& step_ahead(PlanRequest* request, int side, double x) {
+  const auto id = static_cast<std::uint32_t>(10 + request->ahead_count);
+  GaitdFootstep& step = request->ahead[static_cast<std::size_t>(request->ahead_count++)];
+  step = {};
+  step.side = side;
+  step.id = id;
+  step.pose = request->start.feet[side];
+  step.pose.position[0] = x;
+  step.swing_duration = 0.8;
+  step.transfer_duration = 0.3;
+  step.swing_height = 0.12;
+  return step;
+}
+
 // Beyond what is known footsteps stay level with those before.
 TEST(PlanService, FootstepsBeyondTheMapGoOnAsHighAsItEnds) {
   PlanService service({&atlas(), ground_with_block(2.5, 0.1), "auto", {}});
@@ -149,17 +165,10 @@ TEST(PlanService, FootstepsBeyondTheMapGoOnAsHighAsItEnds) {
   PlanRequest request = request_to(0.0, 1);
   request.kind = PlanKind::kRefine;
   for (GaitdPose& foot : request.start.feet) foot.position[0] = 2.25;
-  for (int i = 0; i < 3; ++i) {
-    GaitdFootstep& step = request.ahead[request.ahead_count++];
-    step = {};
-    step.side = i % 2 == 0 ? GAITD_LEFT : GAITD_RIGHT;
-    step.id = static_cast<std::uint32_t>(10 + i);
-    step.pose = request.start.feet[step.side];
-    constexpr double kWay[] = {2.7, 2.8, 3.2};
-    step.pose.position[0] = kWay[i];
-    step.swing_duration = 0.8;
-    step.transfer_duration = 0.3;
-    step.swing_height = 0.12;
+  int side = GAITD_LEFT;
+  for (const double x : {2.7, 2.8, 3.2}) {
+    step_ahead(&request, side, x);
+    side = walking::other_side(side);
   }
   ASSERT_TRUE(service.refinements().request(request));
   const PlanAnswer answer = wait_for_answer(&service.refinements());
@@ -176,14 +185,7 @@ TEST(PlanService, AFootstepStaysInTheRegionThatItWasSentWith) {
   service.start();
   PlanRequest request = request_to(0.0, 1);
   request.kind = PlanKind::kRefine;
-  GaitdFootstep& step = request.ahead[request.ahead_count++];
-  step = {};
-  step.side = GAITD_RIGHT;
-  step.pose = request.start.feet[GAITD_RIGHT];
-  step.pose.position[0] = 0.59;
-  step.swing_duration = 0.8;
-  step.transfer_duration = 0.3;
-  step.swing_height = 0.12;
+  GaitdFootstep& step = step_ahead(&request, GAITD_RIGHT, 0.59);
   constexpr double kCorners[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
   for (const double half : {0.01, 0.1}) {
     step.region_told = 1;
@@ -216,17 +218,10 @@ TEST(PlanService, FootstepsOfOthersArePutOnTheGroundAndOffEdges) {
   PlanRequest request = request_to(0.0, 1);
   request.kind = PlanKind::kRefine;
   request.height_offset = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    GaitdFootstep& step = request.ahead[request.ahead_count++];
-    step = {};
-    step.side = i % 2 == 0 ? GAITD_LEFT : GAITD_RIGHT;
-    step.id = static_cast<std::uint32_t>(10 + i);
-    step.pose = request.start.feet[step.side];
-    constexpr double kWay[] = {0.2, 0.6, 0.8};
-    step.pose.position[0] = kWay[i];
-    step.swing_duration = 0.8;
-    step.transfer_duration = 0.3;
-    step.swing_height = 0.12;
+  int side = GAITD_LEFT;
+  for (const double x : {0.2, 0.6, 0.8}) {
+    step_ahead(&request, side, x);
+    side = walking::other_side(side);
   }
   ASSERT_TRUE(service.refinements().request(request));
   const PlanAnswer answer = wait_for_answer(&service.refinements());
