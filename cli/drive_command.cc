@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/drive_command.h"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -41,8 +42,21 @@ std::int64_t session() {
   return ((now << 16) ^ getpid()) & ((std::int64_t{1} << 53) - 1);
 }
 
+// Which of the standard streams lead to nobody any more. Over ssh without a terminal no signal
+// tells that the connection has ended, and who drives is no longer there.
+unsigned hung_up() {
+  pollfd streams[] = {{STDIN_FILENO, 0, 0}, {STDOUT_FILENO, 0, 0}, {STDERR_FILENO, 0, 0}};
+  poll(streams, std::size(streams), 0);
+  unsigned gone = 0;
+  for (const pollfd& stream : streams) {
+    if ((stream.revents & (POLLHUP | POLLERR)) != 0) gone |= 1u << stream.fd;
+  }
+  return gone;
+}
+
 int drive(const Context& context, const DriveOptions& options) {
   const StopSignals signals;
+  const unsigned without = hung_up();  // an input that ended before is none that ends
   const auto client = connect(context, "drive", daemon::least_role("drive"));
   if (!client) return kNoDaemon;
   json params = *options.velocity;
@@ -50,7 +64,8 @@ int drive(const Context& context, const DriveOptions& options) {
   const auto begin = Clock::now();
   const auto over = [&] {
     const std::chrono::duration<double> time = Clock::now() - begin;
-    return StopSignals::requested() || (options.seconds > 0.0 && time.count() >= options.seconds);
+    return StopSignals::requested() || (hung_up() & ~without) != 0 ||
+           (options.seconds > 0.0 && time.count() >= options.seconds);
   };
   std::optional<Waiting> driving("driving");
   std::string told;
@@ -96,7 +111,9 @@ void add_drive_command(CLI::App* app, Context* context) {
       "drive", "Walk at a velocity until Ctrl-C, in the place of the footsteps ahead");
   command->footer(
       "Whoever drives last has the robot: an earlier drive ends and says so. The robot comes to a\n"
-      "stand by itself when this program ends however it may (drive.timeout).");
+      "stand by itself when this program ends however it may (drive.timeout), and this program "
+      "ends\n"
+      "with the connection that it was started over.");
   auto options = std::make_shared<DriveOptions>();
   const auto& velocity = options->velocity;
   add_number(command, "--forward", velocity, "/forward", "Speed ahead, m/s");

@@ -64,8 +64,10 @@ std::optional<DaemonEnd> run_daemon(const DaemonRun& run, const Watch& watch, st
     return std::nullopt;
   }
   const std::string socket = directory.path() + "/gaitd.sock";
-  std::vector<std::string> arguments{run.program, "--scenario", run.scenario, "--clock", "lockstep",
-                                     "--socket",  socket,       "--log",      run.log};
+  // Without the gaitd.yaml of a robot's service: its backend is the robot.
+  std::vector<std::string> arguments{run.program, "--no-config", "--scenario", run.scenario,
+                                     "--clock",   "lockstep",    "--socket",   socket,
+                                     "--log",     run.log};
   if (run.trust) arguments.emplace_back("--trust");
   if (!run.robot.empty()) arguments.insert(arguments.end(), {"--robot", run.robot});
   for (const std::string& setting : run.settings) {

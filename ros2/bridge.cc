@@ -19,7 +19,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kDriveTick{20};
 constexpr std::chrono::seconds kDiagnostics{1};
 constexpr std::chrono::seconds kTroubleShown{5};
-constexpr std::chrono::seconds kEstopAnswer{2};
+constexpr std::chrono::milliseconds kEstopAgain{300};  // between two tries
+constexpr std::chrono::seconds kEstopPatience{10};     // of all of them
 
 // Two that drive at a time are told apart by it.
 std::int64_t new_session() {
@@ -50,7 +51,7 @@ Bridge::Bridge(boost::asio::io_context* io, const BridgeOptions& options, Partic
            .rate = options.rate,
            .role = daemon::Role::kObserve}),
       drive_relay_(std::make_shared<cli::RpcRelay>(daemon::Role::kCommand, &connector_)),
-      estop_relay_(std::make_shared<cli::RpcRelay>(daemon::Role::kObserve, &connector_)),
+      estop_relay_(std::make_shared<cli::RpcRelay>(daemon::Role::kObserve, &connector_, true)),
       drive_({.timeout = std::chrono::duration<double>(options.timeout),
               .auto_mode = options.auto_mode,
               .session = new_session()},
@@ -58,7 +59,8 @@ Bridge::Bridge(boost::asio::io_context* io, const BridgeOptions& options, Partic
                drive_relay_->call(method, params, std::move(done));
              }),
       drive_timer_(*io),
-      diagnostics_timer_(*io) {
+      diagnostics_timer_(*io),
+      estop_timer_(*io) {
   subscribe(io, *participant);
 }
 
@@ -95,6 +97,7 @@ void Bridge::stop() {
   subscribers_.clear();
   drive_timer_.cancel();
   diagnostics_timer_.cancel();
+  estop_timer_.cancel();
   source_.stop();
   drive_relay_->end();
   estop_relay_->end();
@@ -148,19 +151,30 @@ void Bridge::on_twist(const void* message) {
 }
 
 void Bridge::on_estop() {
-  if (estop_asked_at_ && Clock::now() - *estop_asked_at_ < kEstopAnswer) return;
-  estop_asked_at_ = Clock::now();
+  drive_.hold("the robot was stopped by /e_stop");
+  if (estop_until_ && Clock::now() < *estop_until_) return;
+  estop_until_ = Clock::now() + kEstopPatience;
+  spdlog::warn("e-stop: asked for on {}/e_stop", options_.name_space);
+  ask_estop();
+}
+
+// Until gaitd has taken it: whoever publishes once does not ask again.
+void Bridge::ask_estop() {
   estop_relay_->call("estop", nullptr, [this](const json& answer) {
-    estop_asked_at_.reset();
+    const bool told = !estop_error_.empty();
     estop_error_ = member(answer.value("error", json()), "message");
     if (!estop_error_.empty()) {
-      spdlog::critical("e-stop: the robot may not have stopped: {}", estop_error_);
-    } else {
-      spdlog::warn("e-stop: gaitd has taken it");
+      if (!told) spdlog::critical("e-stop: the robot may not have stopped: {}", estop_error_);
+      return;
     }
+    spdlog::warn("e-stop: gaitd has taken it");
+    estop_until_.reset();
+    estop_timer_.cancel();
   });
-  spdlog::warn("e-stop: asked for on {}/e_stop", options_.name_space);
-  drive_.hold("the robot was stopped by /e_stop");
+  estop_timer_.expires_after(kEstopAgain);
+  estop_timer_.async_wait([this](boost::system::error_code error) {
+    if (!error && estop_until_ && Clock::now() < *estop_until_) ask_estop();
+  });
 }
 
 void Bridge::drive_tick() {

@@ -49,6 +49,7 @@ class Bridge {
   void on_twist(const void* message);
   void on_estop();
   void drive_tick();
+  void ask_estop();
   void look_at_drive();
   void diagnose();
   Diagnosis diagnose_connection() const;
@@ -62,7 +63,7 @@ class Bridge {
   // Each on a connection of its own: an e-stop waits behind nothing.
   std::shared_ptr<cli::RpcRelay> drive_relay_, estop_relay_;
   VelocityDrive drive_;
-  boost::asio::steady_timer drive_timer_, diagnostics_timer_;
+  boost::asio::steady_timer drive_timer_, diagnostics_timer_, estop_timer_;
   std::vector<std::unique_ptr<Subscriber>> subscribers_;
   Subscriber* velocities_ = nullptr;
 
@@ -74,7 +75,7 @@ class Bridge {
   DiagnosticMessage diagnostics_;
   std::string trouble_;  // of the velocity, last told
   std::optional<std::chrono::steady_clock::time_point> trouble_at_;
-  std::optional<std::chrono::steady_clock::time_point> estop_asked_at_;
+  std::optional<std::chrono::steady_clock::time_point> estop_until_;  // it is asked for
   std::string estop_error_;
 };
 

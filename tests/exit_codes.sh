@@ -132,6 +132,13 @@ expect 0 gaitd --help >/dev/null
 expect 0 gaitd --version
 expect 0 gaitd --check-config
 expect 0 gaitd --scenario stand --clock lockstep --set duration=0.2 --log "$scratch/x.mcap"
+# The gaitd.yaml of a robot's service: what simulates does not take it, and a scenario moves no robot.
+mkdir -p "$scratch/service/etc"
+printf 'schema: gaitd.config/1\nbackend: socketcan\n' >"$scratch/service/etc/gaitd.yaml"
+GAITD_PATH=$scratch/service expect 0 gaitctl run stand --set duration=0.2 --log "$scratch/x.mcap"
+GAITD_PATH=$scratch/service expect 1 gaitd --scenario stand --clock lockstep 2>"$scratch/err"
+says "a scenario plays in a simulation"
+expect 2 gaitd --no-config --config etc/gaitd.yaml
 expect 2 gaitd --clock sundial
 expect 2 gaitd --nonsense
 expect 2 gaitd stray

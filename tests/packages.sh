@@ -8,7 +8,7 @@ root=$scratch/root
 for name in gaitd gaitd-dev gaitd-mujoco gaitd-tune gaitd-ros2 gaitd-unitree python3-gaitd; do dpkg-deb -x "$scratch/$name.deb" "$root"; done
 for file in etc/gaitd/gaitd.yaml usr/lib/sysusers.d/gaitd.conf usr/lib/tmpfiles.d/gaitd.conf \
   usr/lib/udev/rules.d/60-gaitd.rules \
-  lib/systemd/system/gaitd.service usr/share/doc/gaitd/examples/network/80-can-fd.network \
+  lib/systemd/system/gaitd.service usr/share/doc/gaitd/docs/configuration.md usr/share/doc/gaitd/examples/network/80-can-fd.network \
   usr/bin/gaitd usr/bin/gaitctl usr/bin/gaitd-fake-robot \
   usr/lib/gaitd/plugins/backend/socketcan.so usr/lib/gaitd/plugins/backend/mujoco.so usr/share/gaitd/robots/atlas/can-fd.yaml \
   usr/bin/gaitd-ros2 usr/share/man/man8/gaitd-ros2.8 lib/systemd/system/gaitd-ros2.service \

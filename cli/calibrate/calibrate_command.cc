@@ -2,6 +2,7 @@
 #include "cli/calibrate/calibrate_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -13,13 +14,18 @@
 
 #include "cli/calibrate/calibration_text.h"
 #include "cli/calibrate/live_motions.h"
+#include "cli/calibrate/motions.h"
 #include "cli/failure.h"
 #include "cli/log_damage.h"
 #include "cli/print.h"
+#include "cli/private_directory.h"
 #include "cli/progress.h"
 #include "cli/scenario_run.h"
 #include "cli/setting_option.h"
+#include "daemon/config/daemon_config.h"
+#include "daemon/config/names.h"
 #include "daemon/config/paths.h"
+#include "daemon/config/robot.h"
 #include "daemon/replay/robot_of_log.h"
 
 namespace gaitd::cli {
@@ -31,9 +37,11 @@ constexpr const char* kCommand = "calibrate";
 constexpr std::size_t kFewestPostures = 6;
 
 struct CalibrateArguments {
-  std::string log;
+  std::vector<std::string> logs;  // that were given
   std::string output;
-  std::string motions = "calibration";
+  std::string motions;        // empty: made for the robot
+  std::string robot;          // that is simulated, or whose motions are written
+  std::string write_motions;  // file
   std::vector<std::string> settings;
   std::string simulated_log;
   bool trust = false;
@@ -41,7 +49,7 @@ struct CalibrateArguments {
   calibrate::Prior prior;
 };
 
-int write(const Context& context, const std::string& file, const std::string& text) {
+int save_text(const Context& context, const std::string& file, const std::string& text) {
   std::error_code ignored;
   const fs::path folder = fs::path(file).parent_path();
   if (!folder.empty()) fs::create_directories(folder, ignored);
@@ -68,6 +76,7 @@ calibrate::Result measure(const daemon::Robot& robot, const calibrate::Recording
                           const calibrate::Prior& prior) {
   calibrate::Result result;
   result.hanging = static_cast<int>(recording.hanging.size());
+  result.known = robot.calibration;
   daemon::Calibration known = robot.calibration;
   if (result.hanging > 0) {
     result.feet = calibrate::foot_offsets(robot.model, known, recording.hanging);
@@ -94,66 +103,142 @@ calibrate::Result measure(const daemon::Robot& robot, const calibrate::Recording
   return result;
 }
 
-// `growing`: gaitd still writes the log, so that it has no end is no damage.
-int estimate(const Context& context, const CalibrateArguments& arguments, const std::string& file,
-             bool growing = false) {
-  std::string error;
-  const auto log = daemon::LogReader::open(file, &error);
-  if (!log) return fail(context, kFailed, kCommand, error);
-  const auto robot = daemon::robot_of_log(*log, nullptr, &error);
-  if (!robot) return fail(context, kFailed, kCommand, file + ": " + error);
-  if (robot->model.imu_count < 1) {
-    return fail(context, kFailed, kCommand, robot->model.name + std::string(": it has no IMU"));
+// Why a robot cannot be measured; empty: it can.
+std::string what_lacks(const GaitdModel& model) {
+  const std::string name = model.name;
+  if (model.imu_count < 1) return name + ": it has no IMU";
+  for (const GaitdFoot& foot : model.feet) {
+    if (foot.force_sensor.body >= 0) continue;
+    return name +
+           ": its feet have no force sensors, and what they read is what its zeros are found from; "
+           "measure them in a jig, and write them into a file as docs/configuration.md shows";
   }
-  const auto recording = calibrate::read_recording(*log, robot->model, &error);
+  return "";
+}
+
+// `growing`: gaitd still writes the log, so that it has no end is no damage.
+int estimate(const Context& context, const CalibrateArguments& arguments,
+             const std::vector<std::string>& files, bool growing = false) {
+  std::string error;
+  std::vector<std::unique_ptr<daemon::LogReader>> logs;
+  for (const std::string& part : files) {
+    logs.push_back(daemon::LogReader::open(part, &error));
+    if (logs.back() == nullptr) return fail(context, kFailed, kCommand, error);
+  }
+  const std::string& file = files.front();
+  const auto robot = daemon::robot_of_log(*logs.front(), nullptr, &error);
+  if (!robot) return fail(context, kFailed, kCommand, file + ": " + error);
+  if (const std::string lacking = what_lacks(robot->model); !lacking.empty()) {
+    return fail(context, kFailed, kCommand, lacking);
+  }
+  const auto recording = calibrate::read_recording(logs, robot->model, &error);
   if (!recording) return fail(context, kFailed, kCommand, file + ": " + error);
   if (recording->postures.size() < kFewestPostures) {
     return fail(context, kFailed, kCommand,
                 file + ": expected at least " + std::to_string(kFewestPostures) +
                     " postures in which the robot stands still, got " +
                     std::to_string(recording->postures.size()) +
-                    "; let it take the postures of the scenario calibration");
+                    "; let it take those of `gaitctl calibrate --write-motions FILE`");
   }
   std::optional<Waiting> waiting("estimating the calibration");
   const calibrate::Result result = measure(*robot, *recording, arguments.prior);
   waiting.reset();
-  const bool damaged = !growing || log->damaged() > 0;
+  const auto is_damaged = [growing](const std::unique_ptr<daemon::LogReader>& log) {
+    return log->damaged() > 0 ||
+           (!growing && (log->damage().any() || log->changed() || !log->sealed()));
+  };
+  const auto damaged = std::ranges::find_if(logs, is_damaged);
   const std::string output = output_of(arguments, *robot);
-  if (const int failed = write(context, output,
-                               calibration_yaml(robot->model, result, fs::path(file).filename()))) {
+  if (const int failed = save_text(
+          context, output, calibration_yaml(robot->model, result, fs::path(file).filename()))) {
     return failed;
   }
   if (context.json) {
     nlohmann::json json = summary_json(robot->model, result);
     json["file"] = output;
-    if (damaged) add_damage(*log, &json);
+    if (damaged != logs.end()) add_damage(**damaged, &json);
     std::cout << json_text(json);
   } else {
     std::cout << summary(robot->model, result) << "written: " << output << "\n";
   }
-  return damaged ? tell_damage(kCommand, *log, kDone) : kDone;
+  return damaged != logs.end() ? tell_damage(kCommand, **damaged, kDone) : kDone;
+}
+
+// The robot of --robot, of `--set robot=`, or that which gaitd has by default.
+std::string robot_named(const CalibrateArguments& arguments) {
+  constexpr std::string_view kKey = "robot=";
+  if (!arguments.robot.empty()) return arguments.robot;
+  std::string robot = daemon::DaemonConfig().robot;
+  for (const std::string& setting : arguments.settings) {
+    if (setting.starts_with(kKey)) robot = setting.substr(kKey.size());
+  }
+  return robot;
+}
+
+// The motions of that robot as the text of a scenario; nothing, with why in `error`.
+std::optional<std::string> motions_of(const std::string& name, std::string* error) {
+  const daemon::Paths paths = daemon::Paths::detect();
+  const auto file = paths.robot(name);
+  if (!file) {
+    *error = "no robot '" + name + "'; give a robot.yaml or a name with --robot; " +
+             daemon::suggestion(name, paths.robots());
+    return std::nullopt;
+  }
+  daemon::Settings settings;
+  daemon::Issues issues;
+  const auto robot =
+      daemon::load_robot(file->string(), daemon::Profile::kSimulation, &settings, &issues);
+  if (!robot) {
+    *error = issues.error_text();
+    return std::nullopt;
+  }
+  *error = what_lacks(robot->model);
+  if (!error->empty()) return std::nullopt;
+  return calibrate::motions_yaml(robot->model, fs::absolute(*file).string());
 }
 
 int simulate(const Context& context, const CalibrateArguments& arguments) {
-  RunOptions options{gaitd_program(), arguments.settings, arguments.simulated_log, arguments.trust};
-  const RunReport report = run_with_progress(arguments.motions, options, arguments.motions);
+  const PrivateDirectory directory;
+  std::string motions = arguments.motions;
+  if (motions.empty()) {
+    std::string error;
+    const auto text = motions_of(robot_named(arguments), &error);
+    if (!text) return fail(context, kFailed, kCommand, error);
+    motions = directory.path() + "/calibration.yaml";
+    if (const int failed = save_text(context, motions, *text)) return failed;
+  }
+  const RunOptions options{gaitd_program(), arguments.settings, arguments.simulated_log,
+                           arguments.trust, arguments.robot};
+  const std::string name = arguments.motions.empty() ? "calibration" : arguments.motions;
+  const RunReport report = run_with_progress(motions, options, name);
   if (!report.pass()) {
     std::cerr << report_text(report, true, 0);
-    return fail(context, kFailed, kCommand,
-                arguments.motions + ": the robot did not get through its motions");
+    return fail(context, kFailed, kCommand, name + ": the robot did not get through its motions");
   }
-  return estimate(context, arguments, report.log);
+  return estimate(context, arguments, {report.log});
+}
+
+int write_motions(const Context& context, const CalibrateArguments& arguments) {
+  std::string error;
+  const auto text = motions_of(robot_named(arguments), &error);
+  if (!text) return fail(context, kFailed, kCommand, error);
+  if (const int failed = save_text(context, arguments.write_motions, *text)) return failed;
+  std::cout << "written: " << arguments.write_motions << "\n";
+  return kDone;
 }
 
 int run(const Context& context, const CalibrateArguments& arguments) {
-  if (!arguments.log.empty()) return estimate(context, arguments, arguments.log);
+  if (!arguments.logs.empty()) return estimate(context, arguments, arguments.logs);
+  if (!arguments.write_motions.empty()) return write_motions(context, arguments);
   if (arguments.simulate) return simulate(context, arguments);
-  if (!arguments.settings.empty() || !arguments.simulated_log.empty() || arguments.trust) {
-    return fail(context, kUsage, kCommand, "--set, --log and --trust are for --simulate");
+  if (!arguments.settings.empty() || !arguments.simulated_log.empty() || arguments.trust ||
+      !arguments.robot.empty()) {
+    return fail(context, kUsage, kCommand,
+                "--set, --log, --robot and --trust are for --simulate; the robot is that of gaitd");
   }
-  std::string log;
-  if (const int failed = play_live(context, arguments.motions, &log)) return failed;
-  return estimate(context, arguments, log, true);
+  std::vector<std::string> logs;
+  if (const int failed = play_live(context, arguments.motions, &logs)) return failed;
+  return estimate(context, arguments, logs, true);
 }
 
 }  // namespace
@@ -170,8 +255,9 @@ void add_calibrate_command(CLI::App* app, Context* context) {
       "file is written; 1: refused or failed; 4: the log is damaged.");
   auto arguments = std::make_shared<CalibrateArguments>();
   command
-      ->add_option("LOG", arguments->log,
-                   "Nothing moves: a log of such motions is looked at (.mcap)")
+      ->add_option("LOG", arguments->logs,
+                   "Nothing moves: a log of such motions is looked at (.mcap), and those in which "
+                   "it goes on")
       ->type_name("FILE");
   command->add_flag("--simulate", arguments->simulate,
                     "With a simulated robot on a private gaitd, in lockstep");
@@ -187,10 +273,24 @@ void add_calibrate_command(CLI::App* app, Context* context) {
                     "path");
   const auto* motions =
       command
-          ->add_option("--motions", arguments->motions, "Scenario whose commands are the motions")
-          ->type_name("NAME|FILE")
-          ->capture_default_str();
+          ->add_option(
+              "--motions", arguments->motions,
+              "Scenario whose commands are the motions; by default made for the robot, from "
+              "its legs, their ranges and its size")
+          ->type_name("NAME|FILE");
   context->values[motions] = [](const auto&) { return daemon::Paths::detect().scenarios(); };
+  const auto* robot =
+      command
+          ->add_option("--robot", arguments->robot,
+                       "With --simulate or --write-motions: a name, or the path of a robot.yaml")
+          ->type_name("NAME|FILE");
+  context->values[robot] = [](const auto&) { return daemon::Paths::detect().robots(); };
+  command
+      ->add_option(
+          "--write-motions", arguments->write_motions,
+          "Write the motions made for a robot as a scenario, for --motions, and do nothing "
+          "else")
+      ->type_name("FILE");
   command
       ->add_option("-o,--output", arguments->output,
                    "Where to write; by default calibration/measured.yaml beside robot.yaml")

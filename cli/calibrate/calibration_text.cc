@@ -12,13 +12,14 @@
 namespace gaitd::calibrate {
 namespace {
 
+using daemon::JointCalibration;
 using doctor::format;
 
 constexpr const char* kSides[] = {"left", "right"};
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kSaid = 0.3;              // of the largest coefficient, that is worth telling
-constexpr double kLeastStiffness = 500.0;  // N m/rad
-constexpr double kLargestStiffness = 1e7;
+constexpr double kSaid = 0.3;             // of the largest coefficient, that is worth telling
+constexpr double kLeastStiffness = 0.25;  // by moment_scale()
+constexpr double kLargestStiffness = 5e3;
 constexpr double kLargestZero = 0.2;  // rad
 
 double sigma_of(const Zeros& zeros, std::size_t i) {
@@ -28,6 +29,10 @@ double sigma_of(const Zeros& zeros, std::size_t i) {
 
 std::string vector_text(const std::array<double, 3>& v) {
   return format("[%.4f, %.4f, %.4f]", v[0], v[1], v[2]);
+}
+
+std::string friction_text(double bias, double coulomb, double viscous) {
+  return format(", torque_bias: %.4g, coulomb: %.4g, viscous: %.4g", bias, coulomb, viscous);
 }
 
 // The joints that a sum is mostly made of: "l_leg_hpy + r_leg_hpy - 0.5 back_bky".
@@ -63,6 +68,7 @@ std::string calibration_yaml(const GaitdModel& model, const Result& result,
                              const std::string& source) {
   const Identified& found = result.identified;
   const Zeros& zeros = found.zeros;
+  const double moment = moment_scale(model);
   std::string text = "# Measured by gaitctl calibrate on " + source +
                      ".\nschema: gaitd.calibration/1\nrobot: " + std::string(model.name) +
                      "\njoints:\n";
@@ -71,15 +77,21 @@ std::string calibration_yaml(const GaitdModel& model, const Result& result,
     const double zero = std::clamp(zeros.value[k], -kLargestZero, kLargestZero);
     text += format("  %s: {zero: %.5f", model.joints[zeros.joints[i]].name, zero);
     const double compliance = found.compliance[i];
-    if (compliance > 1 / kLargestStiffness) {
-      text += format(", stiffness: %.0f", std::max(kLeastStiffness, 1 / compliance));
+    if (compliance * moment > 1 / kLargestStiffness) {
+      text += format(", stiffness: %.0f", std::max(kLeastStiffness * moment, 1 / compliance));
     }
     const DriveErrors& drive = result.drives[static_cast<std::size_t>(zeros.joints[i])];
-    if (drive.measured) {
-      text += format(", torque_bias: %.2f, coulomb: %.2f, viscous: %.2f", drive.bias, drive.coulomb,
-                     drive.viscous);
-    }
+    if (drive.measured) text += friction_text(drive.bias, drive.coulomb, drive.viscous);
     text += format("}  # +-%.5f\n", sigma_of(zeros, i));
+  }
+  for (int j = 0; j < model.joint_count; ++j) {
+    const daemon::JointCalibration& kind = result.known.joints[j];
+    if (std::ranges::find(zeros.joints, j) != zeros.joints.end() || kind == JointCalibration()) {
+      continue;
+    }
+    text += format("  %s: {zero: %.5f", model.joints[j].name, kind.zero);
+    if (kind.stiffness > 0) text += format(", stiffness: %.0f", kind.stiffness);
+    text += friction_text(kind.torque_bias, kind.coulomb, kind.viscous) + "}  # not measured\n";
   }
   text += "feet:\n";
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
@@ -113,7 +125,7 @@ std::string summary(const GaitdModel& model, const Result& result) {
         format("  %-12s zero %+7.3f deg +-%.3f", model.joints[zeros.joints[i]].name,
                zeros.value[static_cast<Eigen::Index>(i)] / kDegree, sigma_of(zeros, i) / kDegree);
     const double compliance = found.compliance[i];
-    if (compliance > 1 / kLargestStiffness) {
+    if (compliance * moment_scale(model) > 1 / kLargestStiffness) {
       text += format("   stiffness %6.0f N m/rad +-%.0f %%", 1 / compliance,
                      100 * found.compliance_sigma[i] / compliance);
     }

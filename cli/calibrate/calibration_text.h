@@ -17,6 +17,7 @@ namespace gaitd::calibrate {
 struct Result {
   Identified identified;
   std::array<FootOffset, GAITD_MAX_FEET> feet;
+  daemon::Calibration known;        // beforehand: of joints that were not measured it stays
   std::vector<DriveErrors> drives;  // one for each joint of the model
   int hanging = 0;                  // readings in the air
 };

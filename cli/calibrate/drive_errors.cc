@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 using Eigen::VectorXd;
 
-constexpr int kHalf = 8;              // samples before and after one, of the fit that smooths it
-constexpr double kLeastRate = 0.03;   // rad/s, below which the joint may stick
-constexpr double kTorqueSigma = 2.0;  // N m: masses, the other joints
-constexpr double kCorrelated = 20.0;  // samples that err alike
+constexpr int kHalf = 8;               // samples before and after one, of the fit that smooths it
+constexpr double kLeastRate = 0.03;    // rad/s, below which the joint may stick
+constexpr double kTorqueSigma = 1e-3;  // of weight and height: masses, the other joints
+constexpr double kCorrelated = 20.0;   // samples that err alike
 // Standard deviations beforehand, of the effort limit; of the inertia of the rotor, kg m^2.
 constexpr double kBias = 0.03, kCoulomb = 0.05, kViscous = 0.1;
 constexpr double kRotor = 0.3;
@@ -82,7 +82,8 @@ std::vector<DriveErrors> drive_errors(const GaitdModel& model, const daemon::Cal
     normal[j] = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
   }
   dynamics::Dynamics dynamics(model);
-  const double weight = 1 / (kTorqueSigma * kTorqueSigma * kCorrelated);
+  const double torque_sigma = kTorqueSigma * moment_scale(model);
+  const double weight = 1 / (torque_sigma * torque_sigma * kCorrelated);
   for (const JointTest& test : tests) {
     const auto j = static_cast<std::size_t>(test.joint);
     for (std::size_t i = kHalf; i + kHalf < test.samples.size(); ++i) {

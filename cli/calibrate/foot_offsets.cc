@@ -20,12 +20,13 @@ using Vector10d = Eigen::Matrix<double, kUnknowns, 1>;
 using Matrix10d = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
 // Standard deviations: of a mean reading, the foot swinging slowly; of the unknowns beforehand.
-constexpr double kForceNoise = 0.4;    // N
-constexpr double kMomentNoise = 0.04;  // N m
-constexpr double kForceOffset = 60.0;  // N
-constexpr double kMomentOffset = 5.0;  // N m
-constexpr double kMass = 2.0;          // kg
-constexpr double kPlace = 0.05;        // kg m
+// Forces of the weight, moments of moment_scale().
+constexpr double kForceNoise = 2.3e-4;
+constexpr double kMomentNoise = 2e-5;
+constexpr double kForceOffset = 0.035;
+constexpr double kMomentOffset = 2.5e-3;
+constexpr double kMass = 0.0115;   // of that of the robot
+constexpr double kPlace = 2.4e-4;  // of that and the height of the centre of mass
 
 Eigen::Matrix3d cross(const Vector3d& v) {
   Eigen::Matrix3d m;
@@ -65,8 +66,14 @@ std::array<FootOffset, GAITD_MAX_FEET> foot_offsets(const GaitdModel& model,
   std::array<Vector10d, GAITD_MAX_FEET> right;
   std::array<Vector10d, GAITD_MAX_FEET> mean;
   Vector10d sigma;
-  sigma << Vector3d::Constant(kForceOffset), Vector3d::Constant(kMomentOffset), kMass,
-      Vector3d::Constant(kPlace);
+  const double weight = model.total_mass * model.gravity;
+  const double moment = moment_scale(model);
+  sigma << Vector3d::Constant(kForceOffset * weight), Vector3d::Constant(kMomentOffset * moment),
+      kMass * model.total_mass,
+      Vector3d::Constant(kPlace * model.total_mass * model.nominal_com_height);
+  Vector6d noise;
+  noise << Vector3d::Constant(kForceNoise * weight), Vector3d::Constant(kMomentNoise * moment);
+  const Vector6d confidence = noise.cwiseAbs2().cwiseInverse();
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     const GaitdFoot& foot = model.feet[side];
     const daemon::FootCalibration& own = known.feet[side];
@@ -90,11 +97,8 @@ std::array<FootOffset, GAITD_MAX_FEET> foot_offsets(const GaitdModel& model,
       rows.block<3, 3>(3, 7) = -cross(gravity[side]);
       Vector6d reading;
       reading << still.foot_wrench[side].tail<3>(), still.foot_wrench[side].head<3>();
-      Vector6d noise;
-      noise << Vector3d::Constant(kForceNoise), Vector3d::Constant(kMomentNoise);
-      const auto weight = noise.cwiseAbs2().cwiseInverse().asDiagonal();
-      normal[side] += rows.transpose() * weight * rows;
-      right[side] += rows.transpose() * weight * (reading - rows * mean[side]);
+      normal[side] += rows.transpose() * confidence.asDiagonal() * rows;
+      right[side] += rows.transpose() * confidence.asDiagonal() * (reading - rows * mean[side]);
     }
   }
   std::array<FootOffset, GAITD_MAX_FEET> result;

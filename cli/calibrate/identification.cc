@@ -26,9 +26,9 @@ constexpr double kBalanceSigma = 2e-3;  // m, of the centre of mass against the 
 // Of unknowns that are not asked for.
 constexpr double kScaleSigma = 0.01;     // of the force sensors
 constexpr double kPressureSigma = 1e-3;  // m, of a foot's centre of pressure
-constexpr double kRollGive = 8e-4;       // rad/(N m), of a sole in the ground
-constexpr double kPitchGive = 3e-4;
-constexpr double kSinking = 1.5e-6;  // m/N
+constexpr double kRollGive = 1.6;        // rad, of a sole in the ground, by moment_scale()
+constexpr double kPitchGive = 0.6;
+constexpr double kSinking = 2.2e-3;  // of the height of the centre of mass, under the weight
 constexpr double kAnywhere = 1.0;    // m, rad: where the feet stand
 constexpr double kHuber = 3.0;       // standard deviations beyond which a residual counts less
 constexpr int kIterations = 12;
@@ -140,12 +140,14 @@ class Problem {
   void set_prior(const Prior& prior) {
     mean_ = VectorXd::Zero(layout_.count());
     sigma_ = VectorXd::Constant(layout_.count(), prior.ground);
+    const double moment = moment_scale(model_);
     for (int i = 0; i < layout_.joint_count(); ++i) {
       const double stiffness = known_.joints[layout_.joints[i]].stiffness;
       mean_[layout_.zero(i)] = known_.joints[layout_.joints[i]].zero;
       sigma_[layout_.zero(i)] = prior.zero;
       mean_[layout_.compliance(i)] = stiffness > 0 ? 1 / stiffness : 0.0;
-      sigma_[layout_.compliance(i)] = stiffness > 0 ? prior.compliance / stiffness : prior.unknown;
+      sigma_[layout_.compliance(i)] =
+          stiffness > 0 ? prior.compliance / stiffness : prior.unknown / moment;
     }
     sigma_.segment<3>(layout_.accelerometer()).setConstant(prior.accelerometer);
     sigma_.segment<3>(layout_.chest()).setConstant(prior.chest_com);
@@ -153,7 +155,8 @@ class Problem {
     for (int side = 0; side < GAITD_MAX_FEET; ++side) {
       sigma_.segment<2>(layout_.pressure(side)).setConstant(kPressureSigma);
     }
-    sigma_.segment<3>(layout_.give()) << kRollGive, kPitchGive, kSinking;
+    sigma_.segment<3>(layout_.give()) << kRollGive / moment, kPitchGive / moment,
+        kSinking * model_.nominal_com_height / (model_.total_mass * model_.gravity);
     for (int s = 0; s < layout_.stances; ++s) {
       // Where the feet stand and how they are turned is free; the ground is even and level.
       sigma_.segment<2>(layout_.stance(s)).setConstant(kAnywhere);
@@ -203,8 +206,9 @@ class Problem {
     const Quaterniond turn = sdk::quaternion(foot.force_sensor.orientation);
     const double scale = 1 - x[layout_.scale() + side];
     const Vector6d& reading = posture.foot_wrench[side];
-    // Without the foot below the sensor; it is level.
-    const Vector3d weight(0, 0, own.mass * model_.gravity);
+    // Without the foot below the sensor; its sole is level.
+    const Eigen::Matrix3d sole = sdk::quaternion(foot.sole.orientation).toRotationMatrix();
+    const Vector3d weight = own.mass * model_.gravity * sole.col(2);
     const Vector3d arm = Vector3d(own.com.data()) - sdk::view(foot.force_sensor.origin);
     Load l;
     l.force = scale * (turn * (reading.tail<3>() - Vector3d(own.force.data()))) + weight;
@@ -213,7 +217,7 @@ class Problem {
     const Vector3d to_sensor = sdk::view(foot.force_sensor.origin) - sdk::view(foot.sole.origin);
     l.moment += to_sensor.cross(l.force);
     const auto off = x.segment<2>(layout_.pressure(side));
-    l.moment += Vector3d(off.x(), off.y(), 0).cross(Vector3d(0, 0, l.force.z()));
+    l.moment += (sole.leftCols<2>() * off).cross(sole.col(2) * sole.col(2).dot(l.force));
     return {R * l.moment, R * l.force};
   }
 

@@ -15,7 +15,7 @@ namespace gaitd::calibrate {
 struct Prior {
   double zero = 0.0175;         // rad, encoders: 1 degree
   double compliance = 0.35;     // of the compliance that is known
-  double unknown = 7e-5;        // rad/(N m), of a joint of which nothing is known
+  double unknown = 0.14;        // rad, of a joint of which nothing is known, by moment_scale()
   double accelerometer = 0.06;  // m/s^2: bias and mounting of the IMU
   double chest_com = 0.01;      // m, each axis
   double ground = 2e-3;         // rad and m: how level and even the ground is

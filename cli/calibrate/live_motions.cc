@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/calibrate/live_motions.h"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <fstream>
 #include <iostream>
@@ -9,11 +11,15 @@
 #include <thread>
 
 #include "cli/ask.h"
+#include "cli/calibrate/motions.h"
 #include "cli/failure.h"
+#include "cli/private_directory.h"
 #include "daemon/config/command_parse.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/scenario.h"
 #include "daemon/config/settings.h"
+#include "daemon/log/log_reader.h"
+#include "daemon/replay/robot_of_log.h"
 
 namespace gaitd::cli {
 namespace {
@@ -68,6 +74,14 @@ bool wait_until(RpcClient* client, double time) {
   return true;
 }
 
+// The log that gaitd writes now: full ones go on in another file.
+void note_log(const json& status, std::vector<std::string>* logs) {
+  const json log = status.value("log", json::object());
+  if (!log.is_object() || log.value("file", "").empty()) return;
+  const std::string file = log["file"];
+  if (logs->empty() || logs->back() != file) logs->push_back(file);
+}
+
 bool wait_for(RpcClient* client, const std::string& state, std::string* got) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
   do {
@@ -78,25 +92,44 @@ bool wait_for(RpcClient* client, const std::string& state, std::string* got) {
   return false;
 }
 
-std::optional<daemon::Scenario> read(const std::string& name, std::string* error) {
-  const auto file = daemon::Paths::detect().scenario(name);
-  if (!file) {
-    *error = name + ": no such scenario";
-    return std::nullopt;
-  }
+std::optional<daemon::Scenario> read(const std::string& file, std::string* error) {
   daemon::Issues issues;
   daemon::Settings settings;
-  auto scenario = daemon::load_scenario(file->string(), &settings, &issues);
+  auto scenario = daemon::load_scenario(file, &settings, &issues);
   if (!scenario) *error = issues.error_text();
   return scenario;
 }
 
+// The motions that were asked for; by default those for the robot that writes `log`.
+std::optional<daemon::Scenario> motions_for(const std::string& name, const std::string& log,
+                                            std::string* error) {
+  if (!name.empty()) {
+    const auto file = daemon::Paths::detect().scenario(name);
+    if (file) return read(file->string(), error);
+    *error = name + ": no such scenario";
+    return std::nullopt;
+  }
+  const auto reader = daemon::LogReader::open(log, error);
+  if (!reader) return std::nullopt;
+  const auto robot = daemon::robot_of_log(*reader, nullptr, error);
+  if (!robot) return std::nullopt;
+  const PrivateDirectory directory;
+  const std::string file = directory.path() + "/calibration.yaml";
+  std::ofstream(file) << calibrate::motions_yaml(robot->model, robot->model.name);
+  return read(file, error);
+}
+
+// Somebody lowers the hoist, and says when that is done, if anyone can be asked.
+void wait_for_ground() {
+  if (isatty(STDIN_FILENO) == 0) return;
+  std::cerr << "press Enter when it stands on its own: ";
+  std::string line;
+  std::getline(std::cin, line);
+}
+
 }  // namespace
 
-int play_live(const Context& context, const std::string& name, std::string* log) {
-  std::string error;
-  const auto scenario = read(name, &error);
-  if (!scenario) return fail(context, kFailed, kCalibrate, error);
+int play_live(const Context& context, const std::string& name, std::vector<std::string>* logs) {
   const auto client = connect(context, kCalibrate, daemon::Role::kAdminister);
   if (!client) return kNoDaemon;
   const json before = status(client.get());
@@ -106,11 +139,11 @@ int play_live(const Context& context, const std::string& name, std::string* log)
                 "gaitd writes no log, and what it shows there is what is measured; start it with "
                 "`log`, see docs/configuration.md");
   }
-  *log = written.value("file", "");
-  if (!std::ifstream(*log)) {
+  const std::string log = written.value("file", "");
+  if (!std::ifstream(log)) {
     return fail(
         context, kFailed, kCalibrate,
-        *log +
+        log +
             ": gaitd writes this log, and it cannot be read from here; run this where gaitd "
             "was started, and as a user who may read its logs");
   }
@@ -119,6 +152,10 @@ int play_live(const Context& context, const std::string& name, std::string* log)
                 "expected a disarmed robot on its hoist, got one that is " +
                     before.value("state", "") + "; `gaitctl disarm` first");
   }
+  std::string error;
+  const auto scenario = motions_for(name, log, &error);
+  if (!scenario) return fail(context, kFailed, kCalibrate, error);
+  note_log(before, logs);
   const std::string mode(daemon::mode_name(scenario->mode));
   const daemon::RpcResult chosen = client->call("mode", {{"mode", mode}});
   if (const auto* refused = std::get_if<daemon::RpcError>(&chosen)) {
@@ -132,7 +169,8 @@ int play_live(const Context& context, const std::string& name, std::string* log)
     if (!wait_until(client.get(), due)) {
       return fail(context, kFailed, kCalibrate, "gaitd does not go on; see `gaitctl status`");
     }
-    if (command.method == "arm") {
+    const bool arms = command.method == "arm";
+    if (arms) {
       std::cerr
           << "arming; lower the hoist until both feet carry the robot and the rope is slack\n";
     }
@@ -151,18 +189,14 @@ int play_live(const Context& context, const std::string& name, std::string* log)
       text += "; see `gaitctl status`";
       return fail(context, kFailed, kCalibrate, text);
     }
-    due = std::max(due, time_of(status(client.get())));
+    if (arms) wait_for_ground();
+    const json now = status(client.get());
+    note_log(now, logs);
+    due = std::max(due, time_of(now));
   }
   wait_until(client.get(), due + kLastPosture);
   std::this_thread::sleep_for(std::chrono::seconds(2));  // until it is in the log
-  const json after = status(client.get()).value("log", json::object());
-  if (after.is_object() && after.value("file", "") != *log) {
-    return fail(
-        context, kFailed, kCalibrate,
-        "the log went on in another file, " + after.value("file", "") +
-            ", in the middle of the motions, and is only read as one; start gaitd anew with "
-            "`log.max_size: 0`");
-  }
+  note_log(status(client.get()), logs);
   return kDone;
 }
 

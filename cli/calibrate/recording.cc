@@ -19,7 +19,7 @@ constexpr double kRest = 4e-3;        // rad that an encoder moves in it, robot 
 constexpr double kTravel = 15e-3;     // rad beyond which it is of no use that the robot stands
 constexpr double kSlowTravel = 0.08;  // rad, hanging
 constexpr double kNewPosture = 0.02;  // rad, by which one posture differs from the next
-constexpr double kAirborne = 0.1;     // of the weight, on both feet together
+constexpr double kAirborne = 0.1;     // of the weight, on both feet together, beside their own
 constexpr double kLeastLoad = 0.15;   // of the weight, on each foot that stands
 constexpr double kWholeLoad = 0.93;   // of the weight, on both: no rope carries any of it
 
@@ -63,6 +63,13 @@ struct Window {
   std::array<Vector6d, GAITD_MAX_FEET> wrench;
 };
 
+// N, that the ground pushes a foot up with, by a force sensor that hangs in it.
+double push(const GaitdFoot& foot, const Vector6d& reading) {
+  const Eigen::Vector3d force =
+      sdk::quaternion(foot.force_sensor.orientation) * Eigen::Vector3d(reading.tail<3>());
+  return (sdk::quaternion(foot.sole.orientation).conjugate() * force).z();
+}
+
 // Value of the word of an enumeration, -1 if the log has no such word.
 int word_of(const LogReader& log, std::string_view signal, std::string_view word) {
   const int i = daemon::find_signal(log.signals(), signal);
@@ -96,6 +103,142 @@ double largest(const Eigen::VectorXd& values, const std::vector<int>& joints) {
   return most;
 }
 
+// Sorts what is still into readings in the air and postures.
+class Sorter {
+ public:
+  Sorter(const GaitdModel& model, Recording* recording)
+      : model_(model),
+        weight_(model.total_mass * model.gravity),
+        joints_(carrying_joints(model)),
+        recording_(*recording) {
+    for (const GaitdFoot& foot : model.feet) feet_ += model.bodies[foot.body].mass * model.gravity;
+  }
+
+  // The window ended at `end` s; the robot stood meanwhile, for the `stand`th time in this log, or
+  // did not (-1).
+  void take(const Window& window, double begin, double end, int stand) {
+    if (window.count == 0 || end - begin < 0.99 * kWindow) return;
+    const Stillness still = window.mean(0.5 * (begin + end));
+    std::array<double, GAITD_MAX_FEET> load{};
+    for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+      load[side] = push(model_.feet[side], still.foot_wrench[side]);
+    }
+    const double travel = largest(window.highest - window.lowest, joints_);
+    const bool in_air = std::abs(load[0]) + std::abs(load[1]) < kAirborne * weight_ + feet_;
+    if (in_air && travel < kSlowTravel) {
+      recording_.hanging.push_back(still);
+      const auto count = static_cast<double>(recording_.hanging.size());
+      for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+        tare_[side] += (load[side] - tare_[side]) / count;
+      }
+      return;
+    }
+    if (stand < 0 || travel >= kTravel) return;
+    for (int side = 0; side < GAITD_MAX_FEET; ++side) load[side] -= tare_[side];
+    // Unless it was seen in the air, what hangs below the sensors is missing.
+    const double missing = recording_.hanging.empty() ? feet_ : 0.0;
+    if (std::min(load[0], load[1]) < kLeastLoad * weight_ ||
+        load[0] + load[1] < kWholeLoad * weight_ - missing) {
+      return;
+    }
+    std::vector<Posture>& all = recording_.postures;
+    if (stand != stand_) {
+      stance_ = all.empty() ? 0 : stance_ + 1;
+      stand_ = stand;
+    } else if (largest(all.back().position - still.position, joints_) < kNewPosture) {
+      all.pop_back();  // it has settled further
+    }
+    all.push_back({still, stance_, std::max(1.0, travel / kRest)});
+  }
+
+ private:
+  const GaitdModel& model_;
+  double weight_;                              // N
+  double feet_ = 0;                            // N, that may hang below the sensors
+  std::vector<int> joints_;                    // that carry
+  std::array<double, GAITD_MAX_FEET> tare_{};  // N, what the sensors show of feet in the air
+  int stand_ = -1, stance_ = 0;                // of the last posture
+  Recording& recording_;
+};
+
+// Reads one log after the other; where one ends, the next goes on.
+class Reader {
+ public:
+  explicit Reader(const GaitdModel& model)
+      : model_(model), sorter_(model, &recording_), window_(model.joint_count) {}
+
+  bool read(const LogReader& log, std::string* error) {
+    const std::vector<double> time = log.column("time", error);
+    const std::vector<double> phase = log.column("gait/phase", error);
+    const std::vector<double> step = log.column("gait/step_index", error);
+    const std::vector<double> state = log.column("safety/state", error);
+    if (time.empty() || phase.empty() || step.empty() || state.empty()) return false;
+    const int standing = word_of(log, "safety/state", "standing");
+    const int testing = word_of(log, "safety/state", "testing");
+    const std::map<std::int64_t, int> joints = tested_joints(log, model_.joint_count);
+    LogReader::SensorsCursor cursor = log.sensors();
+    GaitdSensors sensors;
+    while (cursor.next(&sensors)) {
+      const std::size_t row = cursor.row();
+      if (row >= time.size()) break;
+      if (state[row] == testing) {
+        test(sensors, time[row], joints);
+      } else {
+        testing_ = false;
+      }
+      stand(sensors, time[row], phase[row] == GAITD_PHASE_STAND && state[row] == standing,
+            step[row]);
+    }
+    return true;
+  }
+
+  Recording finish() {
+    std::erase_if(recording_.tests,
+                  [](const JointTest& test) { return test.samples.size() < kFewSamples; });
+    return recording_;
+  }
+
+ private:
+  void test(const GaitdSensors& sensors, double time, const std::map<std::int64_t, int>& joints) {
+    if (!testing_) {
+      testing_ = true;
+      const auto next = joints.upper_bound(sensors.tick);
+      known_ = next != joints.begin();
+      if (known_) recording_.tests.push_back({std::prev(next)->second, {}});
+    }
+    if (!known_) return;
+    JointTest& test = recording_.tests.back();
+    if (test.samples.empty() || time > test.samples.back().time + 0.99 * kSampling) {
+      test.samples.push_back(sample_of(sensors, test.joint, time, model_.joint_count));
+    }
+  }
+
+  void stand(const GaitdSensors& sensors, double time, bool stands, double step) {
+    // It has its feet elsewhere after each step, and after each time that it did not stand.
+    const bool begins = stands && (!stood_ || step != step_);
+    if (begins || stands != stood_ || time - begin_ >= kWindow) {
+      sorter_.take(window_, begin_, time, stood_ ? stands_ : -1);
+      window_ = Window(model_.joint_count);
+      begin_ = time;
+    }
+    if (begins) ++stands_;
+    stood_ = stands;
+    step_ = step;
+    window_.add(sensors);
+  }
+
+  const GaitdModel& model_;
+  Recording recording_;
+  Sorter sorter_;
+  Window window_;
+  double begin_ = 0;  // s, of the window
+  int stands_ = 0;    // how many times it began to stand
+  bool stood_ = false;
+  double step_ = 0;
+  bool testing_ = false;
+  bool known_ = false;  // which joint is tested
+};
+
 }  // namespace
 
 std::vector<int> carrying_joints(const GaitdModel& model) {
@@ -109,74 +252,13 @@ std::vector<int> carrying_joints(const GaitdModel& model) {
   return joints;
 }
 
-std::optional<Recording> read_recording(const LogReader& log, const GaitdModel& model,
-                                        std::string* error) {
-  const std::vector<double> time = log.column("time", error);
-  const std::vector<double> phase = log.column("gait/phase", error);
-  const std::vector<double> step = log.column("gait/step_index", error);
-  const std::vector<double> state = log.column("safety/state", error);
-  if (time.empty() || phase.empty() || step.empty() || state.empty()) return std::nullopt;
-  const int standing = word_of(log, "safety/state", "standing");
-  const int testing = word_of(log, "safety/state", "testing");
-  const std::map<std::int64_t, int> joints = tested_joints(log, model.joint_count);
-  const double weight = model.total_mass * model.gravity;
-  const std::vector<int> carrying = carrying_joints(model);
-  Recording recording;
-  LogReader::SensorsCursor cursor = log.sensors();
-  GaitdSensors sensors;
-  Window window(model.joint_count);
-  double begin = 0;
-  int stance = -1;
-  const auto close = [&](double end) {
-    if (window.count == 0 || end - begin < 0.99 * kWindow) return;
-    const Stillness still = window.mean(0.5 * (begin + end));
-    const double left = still.foot_wrench[GAITD_LEFT][5];
-    const double right = still.foot_wrench[GAITD_RIGHT][5];
-    const double travel = largest(window.highest - window.lowest, carrying);
-    if (std::abs(left) + std::abs(right) < kAirborne * weight && travel < kSlowTravel) {
-      recording.hanging.push_back(still);
-    } else if (stance >= 0 && travel < kTravel && std::min(left, right) > kLeastLoad * weight &&
-               left + right > kWholeLoad * weight) {
-      std::vector<Posture>& all = recording.postures;
-      const bool again = !all.empty() && all.back().stance == stance &&
-                         largest(all.back().position - still.position, carrying) < kNewPosture;
-      if (again) all.pop_back();  // it has settled further
-      all.push_back({still, stance, std::max(1.0, travel / kRest)});
-    }
-  };
-  bool tested = false;
-  while (cursor.next(&sensors)) {
-    const std::size_t row = cursor.row();
-    if (row >= time.size()) break;
-    const bool tests = state[row] == testing && !joints.empty();
-    if (tests) {
-      if (!tested) {
-        const auto next = joints.upper_bound(sensors.tick);
-        if (next != joints.begin()) recording.tests.push_back({std::prev(next)->second, {}});
-      }
-      if (!recording.tests.empty()) {
-        JointTest& test = recording.tests.back();
-        const bool due =
-            test.samples.empty() || time[row] > test.samples.back().time + 0.99 * kSampling;
-        if (due) {
-          test.samples.push_back(sample_of(sensors, test.joint, time[row], model.joint_count));
-        }
-      }
-    }
-    tested = tests;
-    const bool stands = phase[row] == GAITD_PHASE_STAND && state[row] == standing;
-    const int now = stands ? static_cast<int>(step[row]) : -1;
-    if (now != stance || time[row] - begin >= kWindow) {
-      close(time[row]);
-      window = Window(model.joint_count);
-      begin = time[row];
-      stance = now;
-    }
-    window.add(sensors);
+std::optional<Recording> read_recording(std::span<const std::unique_ptr<daemon::LogReader>> parts,
+                                        const GaitdModel& model, std::string* error) {
+  Reader reader(model);
+  for (const auto& part : parts) {
+    if (!reader.read(*part, error)) return std::nullopt;
   }
-  std::erase_if(recording.tests,
-                [](const JointTest& test) { return test.samples.size() < kFewSamples; });
-  return recording;
+  return reader.finish();
 }
 
 }  // namespace gaitd::calibrate

@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,7 +28,7 @@ struct Stillness {
 // A posture of the robot on both feet, almost at rest; those with the same `stance` had their feet
 // in the same places.
 struct Posture : Stillness {
-  int stance = 0;
+  int stance = 0;       // from 0
   double unrest = 1.0;  // standard deviations of its readings, in those of a robot at rest
 };
 
@@ -53,8 +55,14 @@ struct Recording {
 // to the foot, then those from the chest down to the pelvis.
 std::vector<int> carrying_joints(const GaitdModel& model);
 
-// Nothing, with why in `error`, if the log does not have what it takes.
-std::optional<Recording> read_recording(const daemon::LogReader& log, const GaitdModel& model,
-                                        std::string* error);
+// N m: weight times height of the centre of mass, what torques and stiffnesses go with.
+inline double moment_scale(const GaitdModel& model) {
+  return model.total_mass * model.gravity * model.nominal_com_height;
+}
+
+// `parts`: a log, and those in which it went on. Nothing, with why in `error`, if one of them does
+// not have what it takes.
+std::optional<Recording> read_recording(std::span<const std::unique_ptr<daemon::LogReader>> parts,
+                                        const GaitdModel& model, std::string* error);
 
 }  // namespace gaitd::calibrate

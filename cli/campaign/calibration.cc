@@ -16,7 +16,9 @@
 #include "cli/scenario_run.h"
 #include "cli/stop_signals.h"
 #include "cli/whole_file.h"
+#include "daemon/config/daemon_config.h"
 #include "daemon/config/paths.h"
+#include "daemon/config/scenario.h"
 #include "daemon/config/settings.h"
 
 namespace gaitd::cli {
@@ -24,8 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using daemon::Settings;
-
-constexpr const char* kMotions = "calibration";  // scenario
 
 // Beside the file that is measured: what gaitctl printed, the log while it is needed, and what
 // gaitd printed, which goes beside the log as .mcap.txt.
@@ -87,7 +87,7 @@ bool accept(const Calibration& calibration, int status, const fs::path& fresh) {
 void read_calibrate(daemon::MapReader* root, Campaign* campaign) {
   const daemon::NodePtr node = root->node("calibrate");
   if (node == nullptr) return;
-  std::string motions = kMotions;
+  std::string motions;
   if (node->kind == daemon::NodeKind::kMap) {
     daemon::MapReader map = root->map("calibrate");
     map.require({"motions"});
@@ -101,18 +101,29 @@ void read_calibrate(daemon::MapReader* root, Campaign* campaign) {
   } else if (!*wanted) {
     return;
   }
+  campaign->calibrate = true;
   campaign->motions = motions;
   const daemon::Paths paths = daemon::Paths::detect();
-  if (!paths.scenario(scenario_from(campaign->file, motions))) {
+  if (!motions.empty() && !paths.scenario(scenario_from(campaign->file, motions))) {
     root->fail("calibrate", "motions that are the name of a scenario or the path of its file",
                "'" + motions + "'", daemon::suggestion(motions, paths.scenarios()));
   }
+  for (const std::string& scenario : campaign->scenarios) {
+    const auto file = paths.scenario(scenario_from(campaign->file, scenario));
+    if (campaign->drawn.contains(scenario) || !file) continue;
+    Settings ignored;
+    daemon::Issues unreadable;  // its runs will say so
+    const auto read = daemon::load_scenario(file->string(), &ignored, &unreadable);
+    if (read && read->robot != daemon::DaemonConfig().robot) {
+      campaign->robots[scenario] = read->robot;
+    }
+  }
 }
 
-std::optional<Calibration> calibration_of(const Campaign& campaign,
+std::optional<Calibration> calibration_of(const Campaign& campaign, const CampaignRun& run,
                                           const std::vector<std::string>& settings,
                                           const fs::path& folder) {
-  if (campaign.motions.empty()) return std::nullopt;
+  if (!campaign.calibrate) return std::nullopt;
   Settings effective;
   daemon::Issues unreadable;  // gaitd will say so
   for (const std::string& setting : settings) effective.set_assignment(setting, &unreadable);
@@ -123,6 +134,11 @@ std::optional<Calibration> calibration_of(const Campaign& campaign,
   if (seed == nullptr || !daemon::as_integer(*seed)) return std::nullopt;  // likewise
   calibration.seed = seed->text;
   std::string all = campaign.motions;
+  if (const auto robot = campaign.robots.find(run.scenario);
+      robot != campaign.robots.end() && effective.peek("robot") == nullptr) {
+    calibration.settings.push_back("robot=" + robot->second);
+    all += "\n" + calibration.settings.back();
+  }
   for (const Settings::Entry& entry : effective.effective()) {
     if (!is_of_robot(entry.key)) continue;
     calibration.settings.push_back(entry.key + "=" + setting_text(*entry.value));
@@ -137,9 +153,11 @@ std::optional<Calibration> calibration_of(const Campaign& campaign,
 std::vector<std::string> calibrate_arguments(const Campaign& campaign,
                                              const Calibration& calibration,
                                              const fs::path& output) {
-  std::vector<std::string> arguments{"calibrate", "--simulate",
-                                     "--motions", scenario_from(campaign.file, campaign.motions),
-                                     "-o",        output.string()};
+  std::vector<std::string> arguments{"calibrate", "--simulate", "-o", output.string()};
+  if (!campaign.motions.empty()) {
+    arguments.insert(arguments.end(),
+                     {"--motions", scenario_from(campaign.file, campaign.motions)});
+  }
   for (const std::string& setting : calibration.settings) {
     arguments.insert(arguments.end(), {"--set", setting});
   }
@@ -156,7 +174,7 @@ PoolEnd make_calibrations(const Campaign& campaign, const std::vector<CampaignRu
   for (const CampaignRun& run : runs) {
     if (results.contains(run.number)) continue;
     const auto calibration =
-        calibration_of(campaign, settings_of(campaign, run, options), options.folder);
+        calibration_of(campaign, run, settings_of(campaign, run, options), options.folder);
     if (calibration && seen.insert(calibration->file).second) wanted.push_back(*calibration);
   }
   const std::size_t total = wanted.size();

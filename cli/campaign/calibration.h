@@ -27,9 +27,9 @@ struct Calibration {
 /// Reads `calibrate:`.
 void read_calibrate(daemon::MapReader* root, Campaign* campaign);
 
-/// Nothing if a run with these settings, KEY=VALUE, plays with the calibration that they name, or
-/// with none.
-std::optional<Calibration> calibration_of(const Campaign& campaign,
+/// Nothing if this run with these settings, KEY=VALUE, plays with the calibration that they name,
+/// or with none.
+std::optional<Calibration> calibration_of(const Campaign& campaign, const CampaignRun& run,
                                           const std::vector<std::string>& settings,
                                           const std::filesystem::path& folder);
 

@@ -93,8 +93,10 @@ struct Campaign {
   std::vector<CampaignTarget> targets;
   std::vector<std::vector<std::string>> groups;  ///< settings by which the summary counts
   int keep_logs = 10;                            ///< of the worst runs
-  /// Scenario whose motions measure the robot of each seed that plays with a calibration; "": none.
-  std::string motions;
+  bool calibrate = false;  ///< the robot of each seed that plays with a calibration is measured
+  std::string motions;     ///< scenario that it moves by then; empty: made for the robot
+  std::map<std::string, std::string>
+      robots;  ///< of the scenarios that name another than gaitd.yaml
 };
 
 /// One run of a campaign. Runs with the same cell differ in nothing but the seed.

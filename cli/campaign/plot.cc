@@ -196,7 +196,11 @@ std::string polar_plot(const Campaign& campaign, const std::vector<PlotPoint>& p
     Curve& curve = data[place(plot.panels, panels)][place(plot.curves, curves)];
     const auto [point, fresh] =
         curve.points.emplace(std::atof(result.values[angle].c_str()), radius);
-    if (!fresh && radius.length < point->second.length) point->second = radius;
+    // The worst: a search may go from large to small.
+    const bool down = campaign.search && campaign.search->to < campaign.search->from;
+    const bool worse =
+        down ? radius.length > point->second.length : radius.length < point->second.length;
+    if (!fresh && worse) point->second = radius;
     largest = std::max(largest, radius.high);
     beyond = beyond || radius.beyond;
   }

@@ -35,10 +35,10 @@ std::string replay_text(const Campaign& campaign, const CampaignRun& run,
   RunnerOptions there = options;
   there.folder = shown;
   const std::vector<std::string> settings = settings_of(campaign, run, options);
-  const auto measured = calibration_of(campaign, settings, options.folder);
+  const auto measured = calibration_of(campaign, run, settings, options.folder);
   std::error_code ignored;
   if (measured && !fs::exists(measured->file, ignored)) {
-    return calibrate_text(campaign, *calibration_of(campaign, settings, shown));
+    return calibrate_text(campaign, *calibration_of(campaign, run, settings, shown));
   }
   std::string text = "gaitctl run " + shell_word(scenario_of(campaign, run, shown));
   for (const std::string& setting : played_settings(campaign, run, there)) {

@@ -120,7 +120,10 @@ CampaignResult read_result(const Campaign& campaign, int number, const std::stri
   const json falls = figures.value("falls", json());
   result.fell = falls.is_number() && falls.get<double>() > 0.0;
   const bool judged = result.problem.empty() && falls.is_number();
-  result.success = judged && (campaign.only_falls ? !result.fell : report.value("pass", false));
+  // A robot that another fault has damped has not held either.
+  const bool ended = result.failed.find("played_to_the_end") != std::string::npos;
+  result.success =
+      judged && (campaign.only_falls ? !result.fell && !ended : report.value("pass", false));
   return result;
 }
 

@@ -125,7 +125,7 @@ const std::string* failure_of(const Campaign& campaign, const CampaignRun& run,
                               const RunnerOptions& options, const CalibrationFailures& failures) {
   if (failures.empty()) return nullptr;
   const auto calibration =
-      calibration_of(campaign, settings_of(campaign, run, options), options.folder);
+      calibration_of(campaign, run, settings_of(campaign, run, options), options.folder);
   const auto failure = calibration ? failures.find(calibration->file.string()) : failures.end();
   return failure == failures.end() ? nullptr : &failure->second;
 }
@@ -180,7 +180,7 @@ std::vector<std::string> settings_of(const Campaign& campaign, const CampaignRun
 std::vector<std::string> played_settings(const Campaign& campaign, const CampaignRun& run,
                                          const RunnerOptions& options) {
   std::vector<std::string> settings = settings_of(campaign, run, options);
-  if (const auto calibration = calibration_of(campaign, settings, options.folder)) {
+  if (const auto calibration = calibration_of(campaign, run, settings, options.folder)) {
     constexpr std::string_view kKey = "calibration=";
     std::erase_if(settings, [&](const std::string& s) { return s.starts_with(kKey); });
     settings.push_back(std::string(kKey) + calibration->file.string());

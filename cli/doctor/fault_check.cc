@@ -54,6 +54,19 @@ Findings check_faults(const LogCase& log) {
   if ((faults & daemon::kFaultEstop) != 0) {
     add("estop", "somebody stopped the robot (estop)", "`gaitctl reset`, then `gaitctl arm`");
   }
+  if ((faults & daemon::kFaultMotor) != 0) {
+    add("motor", "a motor reported an error or stopped answering (motor)",
+        "what gaitd printed names it: its temperature, its supply, its cable; `gaitctl status`");
+  }
+  if ((faults & daemon::kFaultBus) != 0) {
+    add("bus", "the link to the robot failed (bus)",
+        "what gaitd printed names it; plugs and termination of the bus, the network; "
+        "`gaitctl doctor` looks at the CAN interfaces");
+  }
+  if ((faults & daemon::kFaultHeartbeat) != 0) {
+    add("heartbeat", "the e-stop fell silent (heartbeat)",
+        "batteries and reach of its sender, the cable of its receiver");
+  }
   if ((faults & daemon::kFaultSensors) != 0) {
     const std::string which = bad_sensor(log, log.end());
     add("sensors",
@@ -74,7 +87,7 @@ Findings check_faults(const LogCase& log) {
         "what gaitd printed; `gaitctl doctor` looks at the CAN interfaces");
   }
   if ((faults & daemon::kFaultReadying) != 0) {
-    add("readying", "the robot did not come into its standing posture, or its feet carry no load",
+    add("readying", "the robot did not come into its standing posture, or a foot carries nothing",
         "safety.ready_stiffness, safety.ready_tolerance; the zeros of the "
         "joints");
   }

@@ -58,7 +58,7 @@ void RpcRelay::call(const std::string& method, const json& params, Done done) {
 }
 
 void RpcRelay::connect_ahead() {
-  if (role_ > Role::kObserve) connect();
+  if (stays_) connect();
 }
 
 void RpcRelay::connect() {
@@ -106,7 +106,7 @@ void RpcRelay::on_line(std::string_view line) {
   answer.erase("id");
   answer.erase("jsonrpc");
   done(std::move(answer));
-  if (role_ == Role::kObserve && asked_.empty() && link_) std::exchange(link_, nullptr)->close();
+  if (!stays_ && asked_.empty() && link_) std::exchange(link_, nullptr)->close();
 }
 
 void RpcRelay::fail_all(const std::string& reason) {

@@ -20,7 +20,12 @@ namespace gaitd::cli {
 /// has connections: theirs end with the answer.
 class RpcRelay : public std::enable_shared_from_this<RpcRelay> {
  public:
-  RpcRelay(daemon::Role role, GaitdConnector* connector) : role_(role), connector_(connector) {}
+  /// `stays`: connected between requests, and ahead of the first. Those of observers do not: there
+  /// may be many.
+  RpcRelay(daemon::Role role, GaitdConnector* connector, bool stays)
+      : role_(role), stays_(stays), connector_(connector) {}
+  RpcRelay(daemon::Role role, GaitdConnector* connector)
+      : RpcRelay(role, connector, role > daemon::Role::kObserve) {}
 
   daemon::Role role() const { return role_; }
   /// `done` gets an object with `result` or `error`, soon or late; it may be called at once. May be
@@ -39,6 +44,7 @@ class RpcRelay : public std::enable_shared_from_this<RpcRelay> {
   void fail_all(const std::string& reason);
 
   daemon::Role role_;
+  bool stays_;
   GaitdConnector* connector_;
   std::shared_ptr<GaitdLink> link_;
   bool connecting_ = false;

@@ -33,7 +33,7 @@ constexpr char kShownSignals[] =
     "time,com/?,com/height_target,truth/com/z,icp/*,cmp/desired/*,cop/*,pelvis/*,foot/*,footstep/*,"
     "external/force/?,external/pulled,payload/?/*,handhold/*,leg/*,joint/*/position,joint/*/"
     "torque_desired,step_adjust/*,tick/*_us,gait/phase,"
-    "toe_off/active";
+    "gait/step_index,toe_off/active";
 
 // Every n-th tick, so that neither bound is passed.
 std::size_t stride_of(const LogReader& log) {

@@ -53,8 +53,8 @@ std::string from_folder(const std::string& urdf, const fs::path& folder) {
   return linked || relative.empty() ? file.string() : relative.string();
 }
 
-std::string write(const fs::path& folder,
-                  const std::vector<std::pair<std::string, std::string>>& files) {
+std::string write_robot(const fs::path& folder,
+                        const std::vector<std::pair<std::string, std::string>>& files) {
   std::error_code error;
   fs::create_directories(folder, error);
   for (const auto& [name, text] : files) {
@@ -81,7 +81,7 @@ int init(const Context& context, const RobotArguments& arguments) {
                                              name, arguments.fix, &error);
   waiting.reset();
   if (files.empty()) return fail(context, kFailed, "robot init", error);
-  const std::string failed = write(folder, files);
+  const std::string failed = write_robot(folder, files);
   if (!failed.empty()) return fail(context, kFailed, "robot init", failed);
 
   const std::string robot = (folder / "robot.yaml").string();

@@ -101,7 +101,7 @@ TEST_F(CampaignCalibrationTest, MeasuresEachRobotOnceAndKeepsIt) {
   EXPECT_EQ(counts_.total, 2u);
   // One for each seed, of what makes the robot and nothing else.
   ASSERT_EQ(calls().size(), 2u);
-  EXPECT_HAS(calls()[0], "calibrate --simulate --motions calibration");
+  EXPECT_HAS(calls()[0], "calibrate --simulate -o");
   EXPECT_HAS(
       calls()[0],
       "--set actuators.model=hydraulic --set calibration=hydraulic --set sensors.imu.rate=500 "
@@ -146,7 +146,8 @@ TEST_F(CampaignCalibrationTest, RunsPlayWithTheFileThatWasMeasured) {
   EXPECT_EQ(measured, 2);
   // Without the key, and without a calibration to start from, they play with what they name.
   options_.settings = {"calibration=''"};
-  EXPECT_FALSE(calibration_of(campaign_, settings_of(campaign_, runs_[2], options_), folder));
+  EXPECT_FALSE(
+      calibration_of(campaign_, runs_[2], settings_of(campaign_, runs_[2], options_), folder));
   load(std::string("calibrate: false\n") + kDrives);
   options_.settings = {"calibration=mine.yaml"};
   EXPECT_EQ(played_settings(campaign_, runs_[0], options_).back(), "calibration=mine.yaml");

@@ -45,6 +45,10 @@ Score Objective::score(const std::vector<const CampaignResult*>& runs) const {
   score.failures = static_cast<int>(
       std::count_if(runs.begin(), runs.end(), [](const CampaignResult* r) { return !r->success; }));
   score.figures = means(runs);
+  // A run that did not fail but has no figure, such as a walk that was refused, is no good one.
+  for (const CampaignResult* run : runs) {
+    if (run->success && !run->fell && !std::isfinite(weighted(*run))) ++score.failures;
+  }
   double sum = 0.0;
   for (std::size_t i = 0; i < weights_.size(); ++i) {
     if (std::isfinite(score.figures[i])) sum += weights_[i] * score.figures[i] / units_[i];

@@ -55,7 +55,7 @@ void Application::read_configuration(Issues* all) {
 
   if (!options_.config.empty()) {
     load_config_file(options_.config, &settings_, &issues);
-  } else if (const auto file = paths_.config()) {
+  } else if (const auto file = paths_.config(); file && !options_.no_config) {
     load_config_file(file->string(), &settings_, &issues);
   }
   if (!options_.scenario.empty()) {
@@ -197,6 +197,11 @@ void Application::read_backend(Issues* issues) {
   backend_file_ = *path;
   backend_id_ = file->descriptor.id;
   simulation_ = (file->descriptor.capabilities & GAITD_CAPABILITY_SIMULATION) != 0;
+  if (!simulation_ && scenario_) {
+    issues->add_text(place_of("backend"), "backend",
+                     "a scenario plays in a simulation, and " + backend_id_ +
+                         " moves a real robot; choose another with --backend");
+  }
 }
 
 Profile Application::profile() const {

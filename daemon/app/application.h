@@ -37,6 +37,7 @@ struct Options {
   std::vector<std::string> set;
   bool require_rt = false;
   bool trust = false;  // files may name libraries
+  bool no_config = false;
   bool check_config = false;
   std::string check_file;          // with check_config: a configuration, robot.yaml or scenario
   bool config_is_checked = false;  // `config` is that file

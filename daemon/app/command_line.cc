@@ -12,6 +12,9 @@ void add_options(CLI::App* app, Options* options, usage::ValueSources* values) {
                         "Show the version and exit");
   app->add_option("--config", options->config, "Configuration file (default: gaitd.yaml found)")
       ->type_name("FILE");
+  app->add_flag("--no-config", options->no_config,
+                "Take no gaitd.yaml: what is not set here or in the scenario is by default")
+      ->excludes("--config");
   const auto* backend =
       app->add_option("--backend", options->backend,
                       "Simulation or robot: simbody, mujoco, socketcan, unitree_dds, "

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <string_view>
 #include <vector>
@@ -219,7 +220,7 @@ json StatusReport::health() const {
 
 json StatusReport::log() const {
   const Telemetry::LogStatus log = sources_.telemetry->log_status();
-  return {{"file", log.file},
+  return {{"file", log.file.empty() ? log.file : std::filesystem::absolute(log.file).string()},
           {"part", log.part},
           {"open", log.open},
           {"error", log.error},

@@ -18,6 +18,7 @@ struct JointCalibration {
   double torque_bias = 0.0;  // N m
   double coulomb = 0.0;      // N m, friction that does not grow with the rate
   double viscous = 0.0;      // N m s/rad, and what does
+  bool operator==(const JointCalibration&) const = default;
 };
 
 struct FootCalibration {

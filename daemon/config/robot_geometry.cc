@@ -110,6 +110,12 @@ void RobotGeometry::read_hands(MapReader* root) {
     }
     map.finish();
   }
+  const sdk::Chain left = sdk::arm_of(*model_, GAITD_LEFT),
+                   right = sdk::arm_of(*model_, GAITD_RIGHT);
+  if (left.count > 0 && right.count > 0 && left.joints[0] == right.joints[0]) {
+    hands.fail("left.link", "arms that share no joint", model_->joints[left.joints[0]].name,
+               "name the link that both hang on under chest:");
+  }
   hands.finish();
 }
 

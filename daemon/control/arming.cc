@@ -28,6 +28,7 @@ const char* Safety::arm() {
   state_ = SafetyState::kReadying;
   time_in_state_ = 0.0;
   time_settled_ = 0.0;
+  time_hanging_ = 0.0;
   time_unsolved_ = 0.0;
   start_taken_ = false;
   return nullptr;

@@ -96,6 +96,7 @@ LoopReport ControlLoop::run() {
     if (lockstep) telemetry_->wait_for_space(64, &stop_);
     pulse_.beat();
     take_estop();
+    if (swaps_ != nullptr) tell_swaps();  // the parameters that count are those of what runs
     take_commands();
     take_sights();
     take_plan();
@@ -107,6 +108,7 @@ LoopReport ControlLoop::run() {
       ++tick_;
       ++report_.ticks;
       time_unread_ = 0.0;
+      read_failed_ = false;
       if (std::exchange(write_failed_, false)) raise(kFaultBackend, "backend");
       if (scenario_ != nullptr) {
         const auto played = scenario_->update(options_.period, pipeline_->data(), goto_.active());
@@ -121,9 +123,10 @@ LoopReport ControlLoop::run() {
       }
     } else if (outcome == Outcome::kNotReady) {
       ++report_.late_backend;
+      go_without_readings();
     } else {
-      if (time_unread_ == 0.0) backend_failed("read failed");
-      time_unread_ += options_.period;
+      if (!std::exchange(read_failed_, true)) backend_failed("read failed");
+      go_without_readings();
       // A simulation that cannot be read will not mend; a robot may.
       if (lockstep || (scenario_ != nullptr && time_unread_ > kUnreadTime)) {
         end(RunEnd::kBackend, "the backend failed to read the sensors");
@@ -183,6 +186,29 @@ ControlLoop::Outcome ControlLoop::tick() {
   return Outcome::kTicked;
 }
 
+// A robot that tells nothing new is not controlled any more; what it was told last must not be its
+// last command. A simulation stands still meanwhile.
+void ControlLoop::go_without_readings() {
+  time_unread_ += options_.period;
+  if (pipeline_->layers().rules().simulation) return;
+  const Safety& safety = pipeline_->safety();
+  const bool used =
+      safety.state() != SafetyState::kDisarmed && safety.state() != SafetyState::kFault;
+  if (used && silent()) backend_failed("no new readings");
+  if (safety.state() != SafetyState::kFault) return;
+  // Apart from the commands of the ticks, which the next one begins from.
+  silence_.size = sizeof(silence_);
+  silence_.joint_count = model_.joint_count;
+  silence_.tick = tick_;
+  safety.damp(silence_);
+  const Inside backend(&inside_backend_);
+  if (backend_.vtable->write(backend_.self, &silence_) != GAITD_OK) write_failed_ = true;
+}
+
+bool ControlLoop::silent() const {
+  return time_unread_ > pipeline_->safety().parameters()[SafetyParameter::kSensorTimeout];
+}
+
 // Before everything else that is asked of the robot.
 void ControlLoop::take_estop() {
   if (!estop_->take(tick_) || (pipeline_->safety().faults() & kFaultEstop) != 0) return;
@@ -224,7 +250,10 @@ void ControlLoop::execute(const Command& command, bool from_client) {
                           command.type == CommandType::kSimLoad ||
                           command.type == CommandType::kSimReset;
   const bool clears = command.type == CommandType::kReset || command.type == CommandType::kSimReset;
-  const bool outdated = from_client && clears && command.estops < estop_->asked();
+  const bool switches_on =
+      command.type == CommandType::kArm || command.type == CommandType::kJointTest;
+  const bool outdated =
+      (from_client && clears && command.estops < estop_->asked()) || (switches_on && silent());
   CommandReply reply = outdated                             ? refuse_outdated(command)
                        : simulation                         ? simulate(command)
                        : command.type == CommandType::kSwap ? request_swap(command)
@@ -246,16 +275,21 @@ void ControlLoop::execute(const Command& command, bool from_client) {
                            command_text(command, reply, text, sizeof(text)));
   }
   if (reply.accepted) give_up_goto(command);
-  if (!outdated) telemetry_->push_input(tick_, time, command, owner, place);
+  // A replay knows neither the backend that refused a reset nor a plugin that is gone.
+  const bool unknown = !reply.accepted && (command.type == CommandType::kSimReset ||
+                                           command.type == CommandType::kSetParameter);
+  if (!outdated && !unknown) telemetry_->push_input(tick_, time, command, owner, place);
   if (from_client) bridge_->push(reply);
 }
 
 // A reset that was on its way when somebody stopped the robot does not know of that stop.
-CommandReply ControlLoop::refuse_outdated(const Command& command) {
+CommandReply ControlLoop::refuse_outdated(const Command& command) const {
   CommandReply reply;
   reply.request = command.request;
-  std::snprintf(reply.message.data(), reply.message.size(),
-                "an e-stop was asked for after this command; look why, then send it again");
+  std::snprintf(reply.message.data(), reply.message.size(), "%s",
+                silent() ? "the robot tells nothing new; look at its power and its buses"
+                         : "an e-stop was asked for after this command; look why, then send it "
+                           "again");
   return reply;
 }
 
@@ -326,73 +360,6 @@ void ControlLoop::record() {
   record_signals(model_, data, slot->values);
   *slot->sensors = data.readings;
   telemetry_->commit();
-}
-
-void ControlLoop::report_changes() {
-  const TickData& d = pipeline_->data();
-  char text[kMaxEventText];
-  const JointMask dropped = d.dropped & ~std::exchange(last_dropped_, d.dropped);
-  for (int i = 0; dropped >> i != 0 && i < model_.joint_count; ++i) {
-    if ((dropped >> i & 1u) == 0) continue;
-    telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
-                           dropped_text(pipeline_->monitor(), i, text, sizeof(text)));
-  }
-  report_feet();
-  report_hands();
-  report_surplus();
-  if (d.payload.concluded) {
-    telemetry_->push_event(
-        EventKind::kNote, d.time.tick, d.time.time,
-        payload_text(d.payload, model_.bodies[d.payload.found.body].name, text, sizeof(text)));
-  }
-  if (d.safety == last_state_ && d.faults == last_faults_) return;
-  last_state_ = d.safety;
-  last_faults_ = d.faults;
-  telemetry_->push_event(d.safety == SafetyState::kFault ? EventKind::kFault : EventKind::kState,
-                         d.time.tick, d.time.time, state_text(*pipeline_, text, sizeof(text)));
-}
-
-// The robot is not as heavy as it is known to be; told once as long as that lasts.
-void ControlLoop::report_surplus() {
-  const TickData& d = pipeline_->data();
-  const bool misjudged = d.external.misjudged;
-  if (std::exchange(misjudged_, misjudged) || !misjudged) return;
-  char text[kMaxEventText];
-  telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
-                         surplus_text(d.external.surplus / model_.gravity, text, sizeof(text)));
-}
-
-// A foothold turns out not to carry as a whole; told once of each.
-void ControlLoop::report_feet() {
-  const TickData& d = pipeline_->data();
-  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    const bool partial = d.bearing[side] < 1.0;
-    if (std::exchange(foot_partial_[side], partial) || !partial) continue;
-    char text[kMaxEventText];
-    telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
-                           bearing_text(side, d.bearing[side], text, sizeof(text)));
-  }
-}
-
-// A hand holds on or lets go; or a motion is over, and its hand is not where it should be.
-void ControlLoop::report_hands() {
-  constexpr double kFar = 0.01;     // m
-  constexpr double kTurned = 0.03;  // rad
-  const TickData& d = pipeline_->data();
-  for (int hand = 0; hand < GAITD_MAX_HANDS; ++hand) {
-    char text[kMaxEventText];
-    if (d.handhold_changes[hand] != walking::Handholds::Change::kNone) {
-      telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
-                             handhold_text(hand, d.handhold_changes[hand], text, sizeof(text)));
-    }
-    const GaitdHandReference& reference = d.references.hands[hand];
-    const bool moves = reference.active != 0 && reference.on_its_way != 0;
-    const bool moved = std::exchange(hand_moved_[hand], moves);
-    if (!moved || moves || reference.active == 0) continue;
-    if (reference.position_error < kFar && reference.turn_error < kTurned) continue;
-    telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
-                           hand_text(hand, reference, text, sizeof(text)));
-  }
 }
 
 void ControlLoop::tell_overrun() {

@@ -87,6 +87,8 @@ class ControlLoop {
   bool write();
   bool advance();
   void take_estop();
+  void go_without_readings();
+  bool silent() const;  // nothing new for safety.sensor_timeout
   std::uint32_t health() const;
   void take_commands();
   void take_swaps();
@@ -101,7 +103,7 @@ class ControlLoop {
   void note_goto(const char* text);
   void show_goal();
   CommandReply take_footsteps(const Command& command);
-  static CommandReply refuse_outdated(const Command& command);
+  CommandReply refuse_outdated(const Command& command) const;
   CommandReply simulate(const Command& command);
   CommandReply request_swap(const Command& command);
   void push_robot(const GaitdDisturbance& push);
@@ -144,7 +146,9 @@ class ControlLoop {
   Pace pace_;
   double next_told_ = 0.0;  // s, when an overrun is told again
   bool write_failed_ = false;
-  double time_unread_ = 0.0;  // s, for which the backend could not be read
+  double time_unread_ = 0.0;      // s, for which the backend told nothing new
+  bool read_failed_ = false;      // since then
+  GaitdJointCommands silence_{};  // of a robot that cannot be read
   SafetyState last_state_ = SafetyState::kDisarmed;
   std::uint32_t last_faults_ = 0;
   JointMask last_dropped_ = 0;

@@ -159,6 +159,15 @@ SwapRight Pipeline::swap_right() const {
 
 void Pipeline::begin_swap(const SwapOrder& order) {
   if (const char* why = swap_refusal(swap_right())) return layers_.refuse_swap(order, why);
+  // What was set while it was loaded.
+  if (order.candidate != nullptr) {
+    for (int i = 0; i < parameters_->size(); ++i) {
+      const LiveParameters::Row& row = parameters_->row(i);
+      if (row.table == order.table) {
+        order.candidate->set_parameter(row.index, parameters_->value(i));
+      }
+    }
+  }
   layers_.begin_swap(order, safety_.controlled());
 }
 

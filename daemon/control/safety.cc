@@ -80,7 +80,11 @@ bool Safety::update(double dt, const TickData& d, bool walking) {
     state_ = SafetyState::kStanding;
     return true;
   }
-  if (time_in_state_ > 2.0 * p_[P::kReadyDuration] + kReadySettle) raise(kFaultReadying);
+  // On a hoist it waits until it is lowered, however long that takes.
+  if (in_posture && left + right < kReadyLoad * weight) time_hanging_ += dt;
+  if (time_in_state_ - time_hanging_ > 2.0 * p_[P::kReadyDuration] + kReadySettle) {
+    raise(kFaultReadying);
+  }
   return false;
 }
 
@@ -175,20 +179,24 @@ void Safety::clamp(double dt, const TickData& d, GaitdJointCommands& commands) {
         std::min(limits_[Limit::kPositionMargin], 0.5 * (joint.position_max - joint.position_min));
     c.position = std::clamp(c.position, joint.position_min + margin, joint.position_max - margin);
     c.velocity = std::clamp(c.velocity, -fastest, fastest);
-    // What the drive adds around its reference counts as well.
-    const double feedback =
-        c.stiffness * (c.position - d.robot.joint_position[i]) + c.damping * (c.velocity - rate);
     double torque = std::clamp(c.torque, -limit, limit);
-    if (limits_[Limit::kTorqueRatio] < 1.0 && c.mode == GAITD_JOINT_MODE_TORQUE) {
-      torque = std::clamp(torque + feedback, -limit, limit) - feedback;
-    }
     if (controlled()) {
       const double step = p_[P::kTorqueRate] * joint.effort_limit * dt;
       torque = std::clamp(torque, last_torque_[i] - step, last_torque_[i] + step);
     }
-    const double reference = limits_[Limit::kTorqueRatio] < 1.0 ? -feedback : 0.0;
-    if (rate > fastest) torque = std::min(torque, std::max(reference, 0.0));
-    if (rate < -fastest) torque = std::max(torque, std::min(reference, 0.0));
+    if (rate > fastest) torque = std::min(torque, 0.0);
+    if (rate < -fastest) torque = std::max(torque, 0.0);
+    // What the drive adds around its reference counts as well, and is softer where that is too
+    // much: a torque against it would be more than the drive does if its gains are bounded, too.
+    if (limits_[Limit::kTorqueRatio] < 1.0 && c.mode == GAITD_JOINT_MODE_TORQUE) {
+      const double feedback =
+          c.stiffness * (c.position - d.robot.joint_position[i]) + c.damping * (c.velocity - rate);
+      const double room = std::max(0.0, limit - std::copysign(1.0, feedback) * torque);
+      if (std::abs(feedback) > room) {
+        c.stiffness *= room / std::abs(feedback);
+        c.damping *= room / std::abs(feedback);
+      }
+    }
     c.torque = torque;
     // While readying the drives make the torque: what they make now is where control takes over.
     last_torque_[i] = state_ == SafetyState::kReadying ? d.sensors.joints[i].torque : torque;

@@ -54,6 +54,8 @@ class Safety {
   bool update(double dt, const TickData& data, bool walking);
   // Writes data.commands from the controller's output or from what the state asks for, clamped.
   void write(double dt, bool control_ok, TickData& data);
+  // Every joint, whatever the state.
+  void damp(GaitdJointCommands& commands) const;
 
  private:
   static constexpr double kReadyLoad = 0.6;  // weights, on both feet together before standing
@@ -63,7 +65,6 @@ class Safety {
   void fall_back(double dt, TickData& data);
   void hold(GaitdJointCommands& commands) const;
   void damp(int joint, GaitdJointCommands& commands) const;
-  void damp(GaitdJointCommands& commands) const;
   void clamp(double dt, const TickData& data, GaitdJointCommands& commands);
   const char* refusal(Request request) const;
   Circumstances circumstances(const TickData& data, bool estimated) const;
@@ -78,6 +79,7 @@ class Safety {
   std::uint32_t faults_ = 0;
   double time_in_state_ = 0.0;
   double time_settled_ = 0.0;
+  double time_hanging_ = 0.0;  // s, in posture while readying, feet unloaded
   double time_unsolved_ = 0.0;
   bool start_taken_ = false;
   JointTest test_;

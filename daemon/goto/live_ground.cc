@@ -37,16 +37,25 @@ std::vector<Eigen::Vector3d> in_world(const GaitdFoothold& foothold) {
   return outline;
 }
 
-// `base` with what is known of `over` in its place.
+// Of a map that is searched; of more, what lies around the robot.
+constexpr double kMostCells = 16e6;
+
+// `base` with what is known of `over`, which is centred on the robot, in its place.
 std::shared_ptr<const HeightMap> overlaid(const HeightMap& base, const HeightMap& over) {
   terrain::Grid grid = base.grid();
   const double r = grid.resolution;
   const Eigen::Vector2d reach =
       over.grid().origin +
       over.grid().resolution * Eigen::Vector2d(over.grid().columns, over.grid().rows);
-  const Eigen::Vector2i low = grid.cell(over.grid().origin).cwiseMin(Eigen::Vector2i::Zero());
-  const Eigen::Vector2i high =
+  Eigen::Vector2i low = grid.cell(over.grid().origin).cwiseMin(Eigen::Vector2i::Zero());
+  Eigen::Vector2i high =
       grid.cell(reach).cwiseMax(Eigen::Vector2i(grid.columns - 1, grid.rows - 1));
+  if ((high - low).cast<double>().prod() > kMostCells) {
+    const Eigen::Vector2i here = grid.cell(0.5 * (over.grid().origin + reach));
+    const auto half = Eigen::Vector2i::Constant(static_cast<int>(0.5 * std::sqrt(kMostCells)));
+    low = low.cwiseMax(here - half);
+    high = high.cwiseMin(here + half);
+  }
   grid.origin += r * low.cast<double>();
   grid.columns = high.x() - low.x() + 1;
   grid.rows = high.y() - low.y() + 1;

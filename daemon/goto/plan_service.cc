@@ -80,7 +80,13 @@ void PlanService::answer_all(PlanPort* port) {
   while (!stopping_ && port->next_request(request)) {
     look_around();  // what was seen before it was asked
     bool unchanged = false;
-    auto plan = std::make_unique<footsteps::Plan>(answer(request, &unchanged));
+    auto plan = std::make_unique<footsteps::Plan>();
+    try {
+      *plan = answer(request, &unchanged);
+    } catch (const std::exception& problem) {
+      plan->refusal = std::string("the planner failed: ") + problem.what();
+      planner_.reset();
+    }
     if (port->answer({request.serial, plan.get(), unchanged})) static_cast<void>(plan.release());
   }
   for (const footsteps::Plan* plan = nullptr; port->next_retired(plan);) delete plan;

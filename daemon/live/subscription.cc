@@ -11,7 +11,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kGlobs = 256;  // of one request
+constexpr std::size_t kGlobs = 256;       // of one request
+constexpr std::size_t kGlobLength = 256;  // characters
 
 void add_error(std::string* errors, const std::string& text) {
   if (!errors->empty()) *errors += '\n';
@@ -31,6 +32,11 @@ void read_signals(const json& globs, const SignalTable& table, SubscriptionReque
                        "signals: expected globs, got " + glob.dump(-1, ' ', true).substr(0, 80));
     }
     const auto& pattern = glob.get_ref<const std::string&>();
+    if (pattern.size() > kGlobLength) {
+      return add_error(&request->error,
+                       "signals: expected globs of at most " + std::to_string(kGlobLength) +
+                           " characters, got one of " + std::to_string(pattern.size()));
+    }
     bool any = false;
     for (std::size_t i = 0; i < table.size(); ++i) {
       if (!glob_match(pattern, table[i].name)) continue;

@@ -10,7 +10,7 @@ bool glob_match(std::string_view pattern, std::string_view text) {
   std::size_t tried = 0;
   while (t < text.size()) {
     if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
+      while (p < pattern.size() && pattern[p] == '*') star = p++;
       tried = t;
     } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
       ++p;

@@ -36,6 +36,7 @@ std::string without_variant(std::string_view key, std::string* variant) {
   const std::size_t slash = key.find('/');
   const std::size_t dot = key.find('.', slash == std::string_view::npos ? 0 : slash);
   if (slash == std::string_view::npos || dot == std::string_view::npos) return std::string(key);
+  if (dot == slash + 1) return "";  // an empty variant names nothing
   *variant = key.substr(slash + 1, dot - slash - 1);
   return std::string(key.substr(0, slash)) + std::string(key.substr(dot));
 }
@@ -70,6 +71,7 @@ int LiveParameters::add(int owner, std::string_view scope, std::string_view vari
 
 int LiveParameters::find_table(int owner, std::string_view variant,
                                std::span<const GaitdParameter> table) const {
+  if (table.empty()) return -1;
   for (int i = 0; i + static_cast<int>(table.size()) <= size(); ++i) {
     if (rows_[i].owner != owner || rows_[i].index != 0 || rows_[i].variant != variant) continue;
     std::size_t same = 0;

@@ -91,6 +91,7 @@ class CommandServer::Impl {
     std::shared_ptr<SessionStream> stream;
     Door* door = nullptr;
     std::optional<Guest> guest;
+    std::uint64_t estops = 0;  // asked for when its oldest line that waits was read
   };
 
   void run();
@@ -101,7 +102,7 @@ class CommandServer::Impl {
   void watch_guest(const std::shared_ptr<Session>& session);
   std::string busy() const;
   void turn_away(Door& door);
-  bool handle(const std::shared_ptr<Session>& session, std::string_view line);
+  bool handle(const std::shared_ptr<Session>& session, std::string_view line, bool waited);
   bool handle_estop(const std::shared_ptr<Session>& session, std::string_view line);
   void finish_guest(const std::shared_ptr<Session>& session);
   void poll_estops();
@@ -190,7 +191,11 @@ void CommandServer::Impl::accept(Door& door) {
   door.acceptor.async_accept([this, &door](error_code error, Session::Socket socket) {
     if (stopping_) return;
     if (!error) {
-      welcome(door, std::move(socket));
+      try {
+        welcome(door, std::move(socket));
+      } catch (...) {
+        // Out of memory, say: this client is lost, the door stays open.
+      }
       return accept(door);
     }
     if (error == boost::system::errc::too_many_files_open ||
@@ -217,12 +222,14 @@ void CommandServer::Impl::welcome(Door& door, Session::Socket socket) {
   const auto session = std::make_shared<Session>(
       std::move(socket), caller,
       Session::Limits{options_.max_request, options_.max_unread_output, options_.max_line_time},
-      [this](const std::shared_ptr<Session>& s, std::string_view line) { return handle(s, line); },
+      [this](const std::shared_ptr<Session>& s, std::string_view line, bool waited) {
+        return handle(s, line, waited);
+      },
       [this](const std::shared_ptr<Session>& s, std::string_view line) {
         return handle_estop(s, line);
       },
       [this](const std::shared_ptr<Session>& s) { forget(s); });
-  Client client{session, std::make_shared<SessionStream>(&io_, session), &door, {}};
+  Client client{session, std::make_shared<SessionStream>(&io_, session), &door, {}, 0};
   if (door.clients >= options_.max_clients) {
     if (!make_room_for_guest()) {
       session->send(busy());
@@ -280,6 +287,8 @@ void CommandServer::Impl::forget(const std::shared_ptr<Session>& session) {
 
 // No descriptor is free: hears one client that waits, with the one kept for this.
 void CommandServer::Impl::turn_away(Door& door) {
+  // Another thread may have taken the number of the last one.
+  if (spare_fd_ < 0) spare_fd_ = open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (spare_fd_ < 0) return;
   close(spare_fd_);
   const int fd =
@@ -305,7 +314,8 @@ void CommandServer::Impl::turn_away(Door& door) {
   spare_fd_ = open("/dev/null", O_RDONLY | O_CLOEXEC);
 }
 
-bool CommandServer::Impl::handle(const std::shared_ptr<Session>& session, std::string_view line) {
+bool CommandServer::Impl::handle(const std::shared_ptr<Session>& session, std::string_view line,
+                                 bool waited) {
   // The last holder of the session may be an answer: it comes back to this thread to end.
   const std::shared_ptr<void> end(nullptr, [this, last = std::shared_ptr(session)](void*) mutable {
     asio::post(io_, [last = std::move(last)] {});
@@ -319,6 +329,10 @@ bool CommandServer::Impl::handle(const std::shared_ptr<Session>& session, std::s
   caller.estops = estop_->asked();
   if (const auto client = clients_.find(caller.connection); client != clients_.end()) {
     caller.stream = client->second.stream;
+    // A line that waited does not know of the e-stops since it was read.
+    std::uint64_t& known = client->second.estops;
+    known = waited ? std::min(known, caller.estops) : caller.estops;
+    caller.estops = known;
   }
   if (!worker_.has_room(caller.connection, line.size())) return false;
   if (line.size() <= bounds::kEstopBytes && is_batch_with_estop(line)) {

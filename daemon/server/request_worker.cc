@@ -85,7 +85,11 @@ void RequestWorker::run() {
       const std::scoped_lock lock(mutex_);
       if (stopping_) break;
     }
-    poll();
+    try {
+      poll();
+    } catch (...) {
+      // As in work().
+    }
   }
   estops_.abandon();
   if (bridge_ != nullptr) bridge_->abandon();

@@ -59,7 +59,7 @@ Role least_role(std::string_view method) {
 }
 
 bool is_guarded(std::string_view parameter) {
-  const std::string_view scope = parameter.substr(0, parameter.find('.'));
+  const std::string_view scope = parameter.substr(0, parameter.find_first_of("./"));
   return std::ranges::find(kGuardedScopes, scope) != kGuardedScopes.end();
 }
 

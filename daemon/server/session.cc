@@ -20,7 +20,8 @@ Session::Session(Socket socket, const Caller& caller, Limits limits, OnLine on_l
       on_line_(std::move(on_line)),
       on_urgent_(std::move(on_urgent)),
       on_end_(std::move(on_end)),
-      line_timer_(socket_.get_executor()) {}
+      line_timer_(socket_.get_executor()),
+      output_timer_(socket_.get_executor()) {}
 
 void Session::read() {
   under_way_ = true;
@@ -92,7 +93,7 @@ void Session::take_lines(std::size_t searched) {
     if (line.ends_with('\r')) line.remove_suffix(1);
     const bool looked = begin < looked_;
     const bool usable = line.size() <= limits_.max_line && !line.empty();
-    if (usable && (looked || !on_urgent_(self, line)) && !on_line_(self, line)) {
+    if (usable && (looked || !on_urgent_(self, line)) && !on_line_(self, line, looked)) {
       paused_ = true;
       line_timer_.cancel();
       looked_ = std::max(looked_, end + 1) - begin;
@@ -144,6 +145,20 @@ void Session::end_reading() {
   line_timer_.cancel();
   input_.clear();
   on_end_(shared_from_this());
+  watch_output();
+}
+
+// Who has said all and does not read the answers may not keep a descriptor for ever.
+void Session::watch_output() {
+  if (reading_ || output_.empty() || !socket_.is_open()) return;
+  output_timer_.expires_after(limits_.max_line_time);
+  output_timer_.async_wait([weak = weak_from_this()](error_code error) {
+    const auto self = weak.lock();
+    if (!error && self && !self->output_.empty() &&
+        self->output_timer_.expiry() <= std::chrono::steady_clock::now()) {
+      self->drop();
+    }
+  });
 }
 
 void Session::send(std::string line) {
@@ -166,6 +181,7 @@ void Session::queue(Output output) {
 }
 
 void Session::write() {
+  watch_output();
   boost::asio::async_write(socket_, boost::asio::buffer(output_.front().line),
                            [self = shared_from_this()](error_code error, std::size_t size) {
                              if (error) return self->drop();

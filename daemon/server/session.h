@@ -30,7 +30,9 @@ class Session : public std::enable_shared_from_this<Session> {
   };
   /// False: there is no room for this line now; it comes again after resume(). Until then only
   /// e-stops are looked for in what the client sends, as much of it as one line may have.
-  using OnLine = std::function<bool(const std::shared_ptr<Session>&, std::string_view line)>;
+  /// `waited`: it was read before the session went on, and others with it.
+  using OnLine =
+      std::function<bool(const std::shared_ptr<Session>&, std::string_view line, bool waited)>;
   /// Of each line before everything else, once, also of one that has to wait, and of what a client
   /// left without its end when it went: true if it was an e-stop, and is done with.
   using OnUrgent = std::function<bool(const std::shared_ptr<Session>&, std::string_view line)>;
@@ -67,6 +69,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void take_end();
   void watch_unfinished_line();
   void end_reading();
+  void watch_output();
   void queue(Output output);
   void write();
   void drop();
@@ -81,6 +84,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::string input_;       // the line that is not finished yet; paused: before it those that wait
   std::size_t looked_ = 0;  // paused: bytes of the input that hold no e-stop
   boost::asio::steady_timer line_timer_;
+  boost::asio::steady_timer output_timer_;
   std::deque<Output> output_;
   std::size_t output_bytes_ = 0;  // of the counted lines
   bool reading_ = true;

@@ -27,6 +27,11 @@ RpcError invalid(const std::string& method, const std::string& what) {
   return {rpc_code::kInvalidParams, method + ": " + what};
 }
 
+// What a plugin says of itself need not be UTF-8.
+std::string text_of(const json& event) {
+  return event.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 }  // namespace
 
 SwapService::SwapService(Parts parts) : parts_(std::move(parts)) {
@@ -91,6 +96,7 @@ void SwapService::add_methods(Methods* methods) {
           wanted.layer = *layer;
           wanted.to = to;
           wanted.tick = parts_.telemetry->newest_tick();
+          wanted.time = static_cast<double>(wanted.tick) * parts_.telemetry->period();
           if (auto error = admit(name, wanted)) return respond(std::move(*error));
           wanted.request = parts_.bridge->open(std::move(respond));
           {
@@ -267,7 +273,7 @@ void SwapService::refuse(const Wanted& wanted, const std::string& why) {
                       {"to", wanted.to},
                       {"accepted", false},
                       {"reason", why}};
-  parts_.telemetry->record_event(EventKind::kCommand, wanted.tick, wanted.time, event.dump());
+  parts_.telemetry->record_event(EventKind::kCommand, wanted.tick, wanted.time, text_of(event));
   answer(wanted, RpcError{rpc_code::kRefused, why, {{"tick", wanted.tick}}});
 }
 
@@ -289,15 +295,18 @@ void SwapService::follow(const SwapReport& report) {
   event["rollback"] = report.rollback;
   swap.steps.push_back(std::move(said));
   const double time = static_cast<double>(report.tick) * parts_.telemetry->period();
-  parts_.telemetry->record_event(EventKind::kSwap, report.tick, time, event.dump());
+  parts_.telemetry->record_event(EventKind::kSwap, report.tick, time, text_of(event));
 
   const bool back = report.step == SwapStep::kRolledBack;
   if (report.step == SwapStep::kSwitched || (back && !report.rolled_back_already)) {
     const std::scoped_lock lock(mutex_);
     Names& names = names_[report.layer];
-    if (back) {
+    if (back && report.rollback) {
       std::swap(names.in_use, names.before);
+    } else if (back) {
+      names.in_use = std::exchange(names.before, names.before_that);
     } else {
+      names.before_that = names.before;
       names.before = std::exchange(
           names.in_use, Library{swap.what.value("variant", ""), swap.what.value("file", "")});
     }

@@ -86,6 +86,7 @@ class SwapService {
   struct Names {
     Library in_use;
     Library before;
+    Library before_that;  // while the newest is on probation
   };
 
   std::optional<RpcError> admit(const std::string& method, const Wanted& wanted);

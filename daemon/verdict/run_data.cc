@@ -13,9 +13,10 @@ namespace {
 using Json = nlohmann::json;
 
 // All signals that any figure looks at, besides those that the checks of a scenario name.
-constexpr std::array<const char*, 18> kSignals = {
+constexpr std::array<const char*, 19> kSignals = {
     "time",
     "safety/faults",
+    "safety/state",
     "gait/*",
     "drive/step/*",
     "icp/*",
@@ -129,6 +130,17 @@ void RunData::read_phases() {
     for (std::size_t tick = 0; tick < there.size(); ++tick) {
       if (there[tick]) phase_[tick] = phase;
     }
+  }
+  controlled_.assign(ticks_, find("safety/state") == nullptr);
+  for (const char* word : {"standing", "walking", "stopping"}) {
+    const std::vector<bool> there = has_word("safety/state", word);
+    for (std::size_t tick = 0; tick < there.size(); ++tick) {
+      if (there[tick]) controlled_[tick] = true;
+    }
+  }
+  // A robot that is not controlled any more does not walk, whatever it was at.
+  for (std::size_t tick = 0; tick < ticks_; ++tick) {
+    if (!controlled_[tick]) phase_[tick] = Phase::kUnknown;
   }
   for (int side = 0; side < 2; ++side) {
     const std::vector<bool> there =

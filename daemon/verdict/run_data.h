@@ -52,6 +52,9 @@ class RunData {
   const Column* find_first(const std::vector<std::string>& names) const;
 
   const Column& time() const { return time_; }  // s; tick count if the log has no time
+  // Whether the controller had the joints, by tick. All of them, if the log does not tell.
+  const std::vector<bool>& controlled() const { return controlled_; }
+  // kUnknown without control.
   const std::vector<Phase>& phase() const { return phase_; }
   // Index into kSides, -1 in double support or if unknown.
   const std::vector<int>& support() const { return support_; }
@@ -70,6 +73,7 @@ class RunData {
   std::size_t ticks_ = 0;
   std::map<std::string, Column> columns_;
   Column time_;
+  std::vector<bool> controlled_;
   std::vector<Phase> phase_;
   std::vector<int> support_;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace gaitd::daemon {
 
@@ -10,6 +11,8 @@ namespace {
 
 constexpr double kFallenHeight = 0.6;  // of the height at the start
 constexpr double kFallenTilt = 1.0;    // rad
+
+constexpr double kAftermath = 2.0;  // s, after the control, in which a fall is one of the robot
 
 bool is_set(double value, int bit) {
   return value >= 0.0 && (static_cast<std::uint64_t>(value) >> bit & 1u) != 0;
@@ -41,6 +44,18 @@ Column pelvis_height(const RunData& run) {
   return height;
 }
 
+// Ticks with a robot under control, and what becomes of it soon after: one that is laid down later,
+// or has never stood, has not fallen.
+std::vector<bool> judged(const RunData& run) {
+  std::vector<bool> ticks = run.controlled();
+  double since = -std::numeric_limits<double>::infinity();  // s
+  for (std::size_t tick = 0; tick < ticks.size(); ++tick) {
+    if (ticks[tick]) since = run.time()[tick];
+    ticks[tick] = run.time()[tick] - since <= kAftermath;
+  }
+  return ticks;
+}
+
 // The first tick at which `fallen` holds, if that is before the fall found so far.
 template <class Predicate>
 void find_first_tick(const RunData& run, const char* reason, const Predicate& fallen,
@@ -57,13 +72,16 @@ void find_first_tick(const RunData& run, const char* reason, const Predicate& fa
 
 std::optional<Fall> find_fall(const RunData& run) {
   std::optional<Fall> fall;
+  const std::vector<bool> may_fall = judged(run);
+  const auto first = std::find(may_fall.begin(), may_fall.end(), true);
+  if (first == may_fall.end()) return fall;
   const Column height = pelvis_height(run);
   if (!height.empty()) {
     // Written so that what is not a number counts as fallen.
-    const double least = kFallenHeight * height.front();
+    const double least = kFallenHeight * height[static_cast<std::size_t>(first - may_fall.begin())];
     find_first_tick(
         run, "pelvis below 60 % of its height at the start",
-        [&](std::size_t tick) { return !(height[tick] >= least); }, &fall);
+        [&](std::size_t tick) { return may_fall[tick] && !(height[tick] >= least); }, &fall);
   }
   const Column* roll = run.find_first({"truth/pelvis/roll", "pelvis/roll"});
   const Column* pitch = run.find_first({"truth/pelvis/pitch", "pelvis/pitch"});
@@ -72,7 +90,7 @@ std::optional<Fall> find_fall(const RunData& run) {
     find_first_tick(
         run, "pelvis tilted by more than 1 rad",
         [&](std::size_t tick) {
-          return !(std::cos((*roll)[tick]) * std::cos((*pitch)[tick]) >= upright);
+          return may_fall[tick] && !(std::cos((*roll)[tick]) * std::cos((*pitch)[tick]) >= upright);
         },
         &fall);
   }
@@ -107,7 +125,8 @@ std::vector<Step> find_steps(const RunData& run, const std::optional<Fall>& fall
     Step& step = steps.back();
     step.end = tick + 1;
     step.closing = step.closing || (closing != nullptr && (*closing)[tick] == 1.0);
-    const bool touched_down = step.end < last && phase[step.end] != Phase::kSwing;
+    const bool touched_down =
+        step.end < last && phase[step.end] != Phase::kSwing && phase[step.end] != Phase::kUnknown;
     step.completed = step.completed || touched_down;
   }
   return steps;

@@ -208,7 +208,9 @@ std::vector<std::string> read_refusals(const LogReader& log) {
 
 // Whether the run of a scenario was broken off: by a fault, a signal or a backend that failed.
 std::optional<Judgement> judge_end(const LogReader& log) {
-  const std::string end = log.metadata_value("end").value_or("");
+  // A log without its end is one of a run that was cut off.
+  const std::string end =
+      log.finished() ? log.metadata_value("end").value_or("") : std::string("cut off");
   const bool whole = end.empty() || end == "settled" || end == "duration";
   if (whole || !log.metadata_value("scenario")) return std::nullopt;
   return Judgement{.name = "played_to_the_end",

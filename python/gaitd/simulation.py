@@ -66,7 +66,8 @@ class Simulation(Robot):
     ):
         self._folder = tempfile.TemporaryDirectory(prefix="gaitd-")
         path = os.path.join(self._folder.name, "gaitd.sock")
-        command = [find_program("gaitd"), "--socket", path, "--clock", clock]
+        # Without the gaitd.yaml of a robot's service: its backend is the robot.
+        command = [find_program("gaitd"), "--no-config", "--socket", path, "--clock", clock]
         command += ["--set", "log.enabled=false"] if log is None else ["--log", os.path.abspath(log)]
         command += [] if robot is None else ["--robot", robot]
         command += [] if backend is None else ["--backend", backend]

@@ -52,6 +52,7 @@ struct Sole {
   }
 
   bool rectangle() const {
+    if (foot.point_count != 4) return false;
     for (int i = 0; i < foot.point_count; ++i) {
       const Eigen::Vector2d p(foot.points[i]);
       for (int k = 0; k < 2; ++k) {
@@ -93,8 +94,9 @@ struct Sole {
 
 class Document {
  public:
-  Document(const GaitdModel& model, const Terrain& terrain, double time_step)
-      : model_(model), terrain_(terrain), time_step_(time_step) {}
+  Document(const GaitdModel& model, std::span<const BodySphere> spheres, const Terrain& terrain,
+           double time_step)
+      : model_(model), terrain_(terrain), time_step_(time_step), spheres_(spheres) {}
 
   std::string text() {
     add_options();
@@ -191,19 +193,20 @@ class Document {
   const GaitdModel& model_;
   const Terrain& terrain_;
   double time_step_;
-  std::vector<BodySphere> spheres_ = make_body_spheres(model_);
+  std::span<const BodySphere> spheres_;
   std::string text_;
 };
 
 }  // namespace
 
-std::string mujoco_document(const GaitdModel& model, const Terrain& terrain, double time_step) {
+std::string mujoco_document(const GaitdModel& model, std::span<const BodySphere> spheres,
+                            const Terrain& terrain, double time_step) {
   if (terrain.height_field() != nullptr) {
     throw std::invalid_argument(
         "terrain.height_map: this backend, mujoco, knows ground and boxes only; take --backend "
         "simbody");
   }
-  return Document(model, terrain, time_step).text();
+  return Document(model, spheres, terrain, time_step).text();
 }
 
 }  // namespace gaitd::sim

@@ -50,9 +50,10 @@ Eigen::Matrix3d matrix(const mjtNum* row_major) {
 
 MujocoPhysics::MujocoPhysics(const GaitdModel& model, const Terrain& terrain, double time_step)
     : model_(model),
+      spheres_(make_body_spheres(model)),
       terrain_(terrain),
       h_(time_step),
-      m_(load(mujoco_document(model, terrain, time_step))),
+      m_(load(mujoco_document(model, spheres_, terrain, time_step))),
       d_(mj_makeData(m_.get())),
       joints_(model),
       owner_(static_cast<size_t>(m_->nbody), -1),
@@ -100,7 +101,7 @@ void MujocoPhysics::place(const State& state) {
 // Of the same structure: the data of the simulation stay as they are.
 void MujocoPhysics::change_masses(const GaitdModel& model) {
   model_ = model;
-  m_.reset(load(mujoco_document(model, terrain_, h_)));
+  m_.reset(load(mujoco_document(model, spheres_, terrain_, h_)));
   update_positions();
 }
 

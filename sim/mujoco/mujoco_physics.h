@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "gaitd/sim/body_spheres.h"
 #include "gaitd/sim/joint_law.h"
 #include "gaitd/sim/physics.h"
 
@@ -50,6 +51,7 @@ class MujocoPhysics : public Physics {
   static constexpr int kMaxSolves = 5;
 
   GaitdModel model_;
+  std::vector<BodySphere> spheres_;  // of the model without loads
   const Terrain terrain_;
   double h_;  // s
   std::unique_ptr<mjModel, DeleteModel> m_;

@@ -55,8 +55,25 @@ Refusal GaitMachine::drive(const VelocityCommand& command) {
       return not_driving(why);
     }
   }
-  if (drive_.take(command)) drive_on(begun(), GAITD_BOTH);
+  if (drive_.take(command, step_under_way())) drive_on(begun(), GAITD_BOTH);
   return {};
+}
+
+VelocityWalk::Step GaitMachine::step_under_way() const {
+  if (begun() == 0) return {{}, model_.nominal_foot_separation};
+  const GaitdFootstep& step = queue_[0];
+  const GaitdPose& from = state_.footholds[step.side].pose;
+  const GaitdPose& beside = state_.footholds[other_side(step.side)].pose;
+  const Eigen::Quaterniond heading =
+      sdk::from_yaw(sdk::yaw_of(sdk::quaternion(step.pose.orientation)));
+  const auto seen = [&](const GaitdPose& pose) -> Eigen::Vector3d {
+    return heading.conjugate() * (sdk::view(step.pose.position) - sdk::view(pose.position));
+  };
+  // The middle of the feet moves by half of what the foot does.
+  const double rate = 0.5 / (step.swing_duration + step.transfer_duration);
+  const Eigen::Vector3d way = rate * seen(from);
+  const double turn = rate * sdk::yaw_of(sdk::quaternion(from.orientation).conjugate() * heading);
+  return {{way.x(), way.y(), turn}, std::abs(seen(beside).y())};
 }
 
 GaitdFootstep GaitMachine::drive_step(const GaitdPose& middle, int side,

@@ -15,6 +15,7 @@ constexpr double kShiftMargin = 0.03;  // m, of the ICP to the edge of the feet
 constexpr double kLowestPelvis = 0.1;  // of the nominal height of the centre of mass
 constexpr double kLargestTilt = 0.2;   // rad, roll and pitch
 constexpr double kLargestYaw = 0.3;    // rad
+constexpr double kFastestTurn = 1.2;   // rad/s, mean, from one way point to the next
 constexpr double kChestMiss = 0.02;    // rad, of a spine at its limits
 constexpr double kRateShare = 0.5;     // of the velocity limit of a joint, for a motion
 constexpr double kPeak = 1.875;        // speed of a minimum-jerk motion, over its mean
@@ -101,6 +102,36 @@ Refusal Motions::command(const MotionCommand& command, const GaitdRobotState& ro
   return {};
 }
 
+// From the way point before, as far as nothing can follow it: no CMP inside the feet stops a centre
+// of mass that starts so fast.
+Refusal Motions::check_segment(const GaitdMotion& motion, int i, const GaitdGaitState& gait) const {
+  if (i == 0) return {};
+  const GaitdMotionPoint& from = motion.points[i - 1];
+  const GaitdMotionPoint& to = motion.points[i];
+  const double time = to.time - from.time;
+  for (int axis = 3; axis < 6; ++axis) {
+    const double rate = std::abs(to.value[axis] - from.value[axis]) / time;
+    if (rate > kFastestTurn) {
+      return refuse("pose: way point %d turns at %.2f rad/s, at most %.1f expected; give it time",
+                    i + 1, rate, kFastestTurn);
+    }
+  }
+  const Eigen::Vector2d way(to.value[0] - from.value[0], to.value[1] - from.value[1]);
+  if (way.norm() == 0.0) return {};
+  // Full speed ahead for half of the time, then back.
+  const Eigen::Vector2d most = 4.0 / (time * time * gait.omega * gait.omega) * way;
+  const Eigen::Vector2d rest = middle(gait.footholds[GAITD_LEFT], gait.footholds[GAITD_RIGHT]);
+  const Eigen::Vector2d goal(to.value[0] + most.x(), to.value[1] + most.y());
+  const double shift[] = {goal.x(), goal.y()};
+  const double inside =
+      support_polygon(model_, gait).inside_distance(rest + turned(heading_of(gait), shift));
+  if (inside >= 0.0) return {};
+  return refuse(
+      "pose: way point %d is %.3f m from the one before in %.2f s, and the feet could not "
+      "stop there; give it time",
+      i + 1, way.norm(), time);
+}
+
 Refusal Motions::check_pelvis(const GaitdMotion& motion, const GaitdGaitState& gait) const {
   const bool stands = gait.phase == GAITD_PHASE_STAND && gait.footstep_count == 0;
   const double lowest = -kLowestPelvis * model_.nominal_com_height;
@@ -122,6 +153,8 @@ Refusal Motions::check_pelvis(const GaitdMotion& motion, const GaitdGaitState& g
                       -largest, largest);
       }
     }
+    const Refusal fast = check_segment(motion, i, gait);
+    if (fast.refused()) return fast;
     if (shift[0] == 0.0 && shift[1] == 0.0) continue;
     if (!stands) {
       return refuse(

@@ -177,7 +177,8 @@ void ObjectiveBuilder::add_toe(int side, const GaitdRobotState& robot, const Gai
   view(point.weight).setConstant(kToeWeight);
   // Roll and yaw of the sole are held; its pitch has no row at all, but for a foot that has to come
   // back because no step follows.
-  const bool stays = gait.phase == GAITD_PHASE_STAND || gait.transfer_final != 0;
+  const bool stays = gait.phase == GAITD_PHASE_STAND || gait.transfer_final != 0 ||
+                     (gait.phase == GAITD_PHASE_TRANSFER && gait.next_side != side);
   GaitdTask& turn = add_task(out, GAITD_TASK_FRAME, foot.body, stays ? kAngularRows : 0b000101);
   if (!rolls_foot(model_, side)) turn.row_mask &= ~kRollRow;
   view(turn.point) = in_body;

@@ -24,8 +24,8 @@ constexpr double kMostShift = 0.1;  // heights of the CoM, by which it may move 
 // Of an estimate, in weights times the height of the CoM: drives that stick and bend move the CoM
 // against the feet by 3 mm that nobody sees.
 constexpr double kMomentError = 0.003;
-constexpr double kPriorError = 0.3;  // m, of the place around the centre of mass of its body
-constexpr double kSameMass = 0.1;    // share by which two estimates of one load may differ
+constexpr double kPriorError = 0.255;  // heights of the CoM, of the place around that of its body
+constexpr double kSameMass = 0.1;      // share by which two estimates of one load may differ
 
 // kg m, about the CoM of the robot.
 Eigen::Vector3d moment_of(const GaitdLoads& loads, const dynamics::Kinematics& robot) {

@@ -41,10 +41,10 @@ Velocity VelocityWalk::bounded(const Velocity& asked) {
   return v;
 }
 
-bool VelocityWalk::take(const VelocityCommand& command) {
+bool VelocityWalk::take(const VelocityCommand& command, const Step& other) {
   const Velocity before = target_;
   const bool began = !active_;
-  if (began) step_ = {{}, separation_};
+  if (began) step_ = other;
   active_ = true;
   session_ = command.session;
   holds_ = command.holds;

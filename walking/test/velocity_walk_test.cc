@@ -25,7 +25,7 @@ GaitdPose middle(const SyntheticWalk& w) {
 
 TEST(VelocityWalk, ChangesNoFasterThanTheAcceleration) {
   VelocityWalk walk(atlas());
-  walk.take(held(0.6, -0.2, 0.4));
+  walk.take(held(0.6, -0.2, 0.4), {});
   const double change = 0.03 * 9.81 * 0.85;
   Velocity v;
   for (int i = 0; i < 5; ++i) {
@@ -42,7 +42,7 @@ TEST(VelocityWalk, ChangesNoFasterThanTheAcceleration) {
 
 TEST(VelocityWalk, SaysWhatLimitsIt) {
   VelocityWalk walk(atlas());
-  walk.take(held(2.0));
+  walk.take(held(2.0), {});
   Velocity v;
   for (int i = 0; i < 20; ++i) v = walk.next(v, 0.85);
   EXPECT_GE(v.forward, 0.6);
@@ -140,6 +140,17 @@ TEST(VelocityWalk, OtherFootstepsEndIt) {
   EXPECT_EQ(w.gait().footstep_count, 4);  // the one under way, two and one that closes
   ASSERT_TRUE(w.run_until_stand());
   EXPECT_EQ(w.gait().step_index, 6);
+}
+
+TEST(VelocityWalk, GoesOnFromTheWalkThatItTakesOver) {
+  SyntheticWalk w;
+  ASSERT_FALSE(w.machine.walk({.steps = 8, .length = 0.4}).refused());
+  ASSERT_TRUE(w.run_until_fraction(4, 0.5));
+  const double duration = 0.85;  // s, of a step
+  ASSERT_FALSE(w.machine.drive(held(0.4 / duration)).refused());
+  ASSERT_TRUE(w.run_until_fraction(5, 0.5));
+  EXPECT_NEAR(w.machine.velocity_walk().step().velocity.forward, 0.4 / duration, 0.02);
+  EXPECT_NEAR(w.machine.velocity_walk().step().width, atlas().nominal_foot_separation, 0.01);
 }
 
 TEST(VelocityWalk, IsRefusedInModeStandAndWhilePaused) {

@@ -29,7 +29,10 @@ class FailingBackend {
   FailingBackend() {
     vtable.size = sizeof(vtable);
     vtable.read = [](void* self, GaitdSensors* sensors) { return of(self).read(*sensors); };
-    vtable.write = [](void*, const GaitdJointCommands*) { return GaitdStatus{GAITD_OK}; };
+    vtable.write = [](void* self, const GaitdJointCommands* commands) {
+      of(self).last_mode = commands->joints[0].mode;
+      return GaitdStatus{GAITD_OK};
+    };
     vtable.advance = [](void* self) {
       return GaitdStatus{of(self).tick > of(self).advance_fails ? GAITD_ERROR : GAITD_OK};
     };
@@ -43,12 +46,21 @@ class FailingBackend {
   int read_fails = kNever;
   int advance_fails = kNever;
   int neck_fails = kNever;
+  int silent_from = kNever;
+  int silent_for = 0;  // reads that find nothing new
+  int mode_in_silence = -1;
+  int last_mode = -1;
   GaitdStatus disturbed = GAITD_OK;
 
  private:
   static FailingBackend& of(void* self) { return *static_cast<FailingBackend*>(self); }
   GaitdStatus read(GaitdSensors& sensors) {
     if (tick >= read_fails) return GAITD_ERROR;
+    if (tick >= silent_from && silent_for > 0) {
+      --silent_for;
+      mode_in_silence = last_mode;
+      return GAITD_NOT_READY;
+    }
     bench.read(tick, sensors);
     for (int i = 0; i < atlas().joint_count && tick >= neck_fails; ++i) {
       if (std::string_view(atlas().joints[i].name) == "neck_ay") sensors.joints[i].position = NAN;
@@ -194,6 +206,23 @@ TEST_F(ControlLoopTest, ABackendThatCannotBeReadIsAFaultAndTheRunFails) {
   EXPECT_NE(report.problem.find("read"), std::string::npos);
   EXPECT_EQ(backend.bench.pipeline->safety().faults(), kFaultBackend);
   EXPECT_TRUE(told(EventKind::kFault, R"({"fault":"backend","what":"read failed"})"));
+}
+
+TEST_F(ControlLoopTest, ARobotThatTellsNothingNewIsDamped) {
+  backend.silent_from = 3;
+  backend.silent_for = 500;
+  run(standing(0.1));
+  EXPECT_EQ(backend.silent_for, 0);
+  EXPECT_EQ(backend.bench.pipeline->safety().faults(), kFaultBackend);
+  EXPECT_EQ(backend.mode_in_silence, GAITD_JOINT_MODE_DAMPING);
+  EXPECT_TRUE(told(EventKind::kFault, R"({"fault":"backend","what":"no new readings"})"));
+}
+
+TEST_F(ControlLoopTest, AShortSilenceIsNoFault) {
+  backend.silent_from = 3;
+  backend.silent_for = 5;
+  run(standing(0.1));
+  EXPECT_EQ(backend.bench.pipeline->safety().faults(), 0u);
 }
 
 TEST_F(ControlLoopTest, ARobotThatCannotSayHowItIsCountsAsUnhealthy) {

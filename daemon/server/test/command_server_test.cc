@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
 #include "daemon/server/stream.h"
@@ -35,6 +36,7 @@ class Server : public ::testing::Test {
         if (answering_) estop_.take(tick);
         while (answering_ && bridge_->try_pop(*command)) {
           ++taken_;
+          estops_known_ = command->estops;
           bridge_->push({command->request, true, 42, {}});
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -80,6 +82,7 @@ class Server : public ::testing::Test {
   std::atomic<bool> answering_{true};
   std::atomic<bool> stop_{false};
   std::atomic<int> taken_{0};
+  std::atomic<std::uint64_t> estops_known_{0};  // by the last command
   std::thread control_;
   std::unique_ptr<CommandServer> server_;
 };
@@ -240,6 +243,38 @@ TEST_F(Server, AClientThatDoesNotReadIsDropped) {
   expect_alive();
 }
 
+int descriptors() {
+  int count = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    ++count;
+  }
+  return count;
+}
+
+// They have given their places back, and would keep descriptors and memory.
+TEST_F(Server, ClientsThatEndTheirSideAndDoNotReadAreDropped) {
+  options_.max_line_time = std::chrono::milliseconds(100);
+  start();
+  const int before = descriptors();
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (int i = 0; i < 5; ++i) {
+    clients.push_back(std::make_unique<RawClient>(directory_.file()));
+    for (int k = 0; k < 8; ++k) {
+      clients.back()->send(R"({"jsonrpc":"2.0","id":1,"method":"large"})"
+                           "\n");
+    }
+    clients.back()->end_sending();
+  }
+  const int own = static_cast<int>(clients.size());
+  bool gone = false;
+  for (int i = 0; i < 300 && !gone; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    gone = i > 20 && descriptors() <= before + own;
+  }
+  EXPECT_TRUE(gone);
+  expect_alive();
+}
+
 TEST_F(Server, ClientsThatVanishLeaveNothingBehind) {
   answering_ = false;
   start();
@@ -355,6 +390,24 @@ TEST_F(Server, AnEstopPassesWhatItsOwnClientHasWaiting) {
   hanging_ = false;
   for (int i = 0; i < lines; ++i) EXPECT_EQ(client.answer()["result"], "done");
   EXPECT_TRUE(client.answer().is_array());
+}
+
+// A reset that waited is older than an e-stop that passed it.
+TEST_F(Server, WhatWaitedDoesNotKnowOfTheEstopsSince) {
+  hanging_ = true;
+  start();
+  RawClient client(directory_.file());
+  const int lines = static_cast<int>(bounds::kLinesWaiting) + 20;
+  for (int i = 0; i < lines; ++i) client.send(std::string(kSlow) + "\n");
+  wait_for_hang();
+  client.send(std::string(kArm) + "\n" + kEstop + "\n");
+  EXPECT_EQ(client.answer()["id"], 9);
+  hanging_ = false;
+  for (int i = 0; i < lines; ++i) EXPECT_EQ(client.answer()["result"], "done");
+  EXPECT_EQ(client.answer()["result"]["tick"], 42);
+  EXPECT_EQ(estops_known_, 0u);
+  EXPECT_EQ(client.ask(kArm)["result"]["tick"], 42);
+  EXPECT_EQ(estops_known_, 1u);
 }
 
 TEST_F(Server, AnEstopInABatchIsRaisedWhenItIsRead) {

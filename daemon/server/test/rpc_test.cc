@@ -273,6 +273,7 @@ TEST(Rights, GuardWhatProtectsTheRobot) {
   EXPECT_TRUE(is_guarded("safety.tilt_limit"));
   EXPECT_TRUE(is_guarded("swap.on_hardware"));
   EXPECT_TRUE(is_guarded("limits.torque_ratio"));
+  EXPECT_TRUE(is_guarded("limits/.torque_ratio"));
   EXPECT_FALSE(is_guarded("gait.swing_duration"));
   EXPECT_FALSE(is_guarded("swapped.on_hardware"));
 }

@@ -180,6 +180,35 @@ TEST_F(Swaps, AreRefusedAtOnceWhileTheSameLayerIsUnderWay) {
   EXPECT_EQ(error(third).code, rpc_code::kRefused);
 }
 
+// After a swap that went well and one that had to go again, a rollback leads to the first.
+TEST_F(Swaps, KnowWhatRunsAfterOneThatFailed) {
+  start(true);
+  service_->port().publish(SwapRight::kAllowed);
+  const auto report = [this](const SwapOrder& order, SwapStep step, LoadedLayer* retired) {
+    service_->port().report({.request = order.request,
+                             .layer = GAITD_LAYER_TOE_OFF,
+                             .step = step,
+                             .why = "as the test wants it",
+                             .rollback = order.candidate == nullptr,
+                             .retired = retired});
+  };
+  const auto play = [&](const Answer& answer, std::initializer_list<SwapStep> steps) {
+    const SwapOrder order = next_order();
+    for (const SwapStep step : steps) {
+      report(order, step, step == SwapStep::kSwitched ? nullptr : order.candidate);
+    }
+    error(answer);
+    return service_->variant(GAITD_LAYER_TOE_OFF);
+  };
+  const std::string first = service_->variant(GAITD_LAYER_TOE_OFF);
+  const std::string good = play(swap("good"), {SwapStep::kSwitched, SwapStep::kDone});
+  EXPECT_NE(good, first);
+  EXPECT_EQ(play(swap("newer"), {SwapStep::kSwitched, SwapStep::kRolledBack}), good);
+  const auto rollback = [this] { return call("plugin.rollback", {{"layer", "toe_off"}}); };
+  EXPECT_EQ(play(rollback(), {SwapStep::kRolledBack}), first);
+  EXPECT_EQ(play(rollback(), {SwapStep::kRolledBack}), good);
+}
+
 TEST_F(Swaps, HaveRoomForSoManyAtATime) {
   start(true);
   service_->port().publish(SwapRight::kAllowed);

@@ -30,6 +30,7 @@ ArmSwing::ArmSwing(const GaitdModel& model)
   for (int hand = 0; hand < GAITD_MAX_HANDS; ++hand) {
     const walking::JointChain arm = walking::JointChain::arm(model, hand);
     for (int i = 0; i < arm.size(); ++i) {
+      if (model.joints[arm.joint(i)].type == GAITD_JOINT_PRISMATIC) continue;  // no arm swings so
       Swing& s = swings_[count_++];
       s.joint = arm.joint(i);
       s.part = hand == GAITD_LEFT ? GAITD_PART_LEFT_ARM : GAITD_PART_RIGHT_ARM;

@@ -24,7 +24,8 @@ constexpr double kHoldTime = 0.002;  // s: longer than one tick's noise
 // Part of a swing after which its stance foot may roll, and the step (leg lengths) that needs it.
 constexpr double kSwingStart = 0.7;
 constexpr double kSwingReach = 0.75;
-constexpr double kFlat = 0.03;  // rad, pitch of a foot that is back on the ground
+constexpr double kHeelCarries = 0.25;  // foot lengths from the toe to the CoP of a foot that lies
+constexpr double kFlat = 0.03;         // rad, pitch of a foot that is back on the ground
 
 double distance(const ConvexPolygon& polygon, const Eigen::Vector2d& p) {
   return (polygon.closest_point(p) - p).norm();
@@ -133,9 +134,16 @@ double IcpCriteria::heel_cost(const GaitdToeOffInput& in, const ConvexPolygon& s
 bool IcpCriteria::rolling_on(const GaitdRobotState& robot, const GaitdGaitState& gait) const {
   const GaitdFoothold& foothold = gait.footholds[state_.side];
   if (foothold.contact == GAITD_CONTACT_NONE) return false;
-  if (gait.phase == GAITD_PHASE_SWING) return true;
+  // One that is left over from a step that did not follow must not carry the robot alone.
+  if (gait.phase == GAITD_PHASE_SWING) {
+    return gait.time_in_phase >= kSwingStart * gait.phase_duration;
+  }
   if (gait.phase == GAITD_PHASE_TRANSFER && gait.next_side == state_.side) return true;
-  // No step follows after all: the foot comes back to the ground first.
+  // No step follows after all: the foot comes back to the ground first. Where that is not as it was
+  // told to be, the heel that carries says so.
+  const GaitdFootState& foot = robot.feet[state_.side];
+  const double toe = walking::toe_of(foothold, model_.feet[state_.side].toe_point).x();
+  if (foot.cop_valid != 0 && foot.cop[0] < toe - kHeelCarries * foot_length_) return false;
   const Eigen::Quaterniond turned = sdk::quaternion(foothold.pose.orientation).conjugate() *
                                     sdk::quaternion(robot.feet[state_.side].orientation);
   return std::abs(sdk::log_so3(turned).y()) > kFlat;

@@ -69,7 +69,9 @@ void InverseDynamicsQp::reset() {
 void InverseDynamicsQp::get_state(GaitdWholeBodyControllerState& state) const { state = state_; }
 void InverseDynamicsQp::set_state(const GaitdWholeBodyControllerState& state) {
   state_ = state;
-  references_valid_ = state.contact_count > 0;
+  // Another variant may count otherwise.
+  state_.contact_count = std::clamp<int32_t>(state.contact_count, 0, GAITD_MAX_CONTACTS);
+  references_valid_ = state_.contact_count > 0;
   last_torque_known_ = false;
   solver_.reset_warm_start();
 }

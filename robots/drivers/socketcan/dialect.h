@@ -123,6 +123,9 @@ struct Dialect {
   Frame (*register_answer)(const MotorId& motor, const RegisterValue& value);
   std::optional<RegisterValue> (*read_register_answer)(const Frame& frame, const MotorId& motor);
 
+  bool fd = false;            // knows CAN FD; one that does not answers it with error frames
+  bool tells_ranges = false;  // by registers: wrong ones are found
+
   // Whether its identifiers have 29 bits.
   bool extended() const { return route == ReplyRoute::kMaster; }
   // Whether the frame goes to this motor.

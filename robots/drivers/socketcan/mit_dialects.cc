@@ -238,6 +238,7 @@ constexpr Dialect without_registers(const char* name, ReplyRoute route, uint32_t
 constexpr Dialect damiao() {
   Dialect dialect = without_registers("damiao", ReplyRoute::kOwnId, kLastId, 8, damiao_reply,
                                       decode_damiao_reply);
+  dialect.fd = dialect.tells_ranges = true;
   dialect.registers = kDamiaoRegisters;
   dialect.register_request = damiao_request;
   dialect.read_register_request = decode_damiao_request;

@@ -56,6 +56,8 @@ void read_id(JsonReader* map, const char* key, uint32_t last, uint32_t* id, uint
   }
 }
 
+constexpr const char* kRanges[] = {"position", "velocity", "torque", "stiffness", "damping"};
+
 // The keys that motors share and that one of them may say otherwise.
 void read_motor_defaults(JsonReader* map, Motor* motor, Errors* errors) {
   std::string name = motor->dialect->name;
@@ -68,13 +70,13 @@ void read_motor_defaults(JsonReader* map, Motor* motor, Errors* errors) {
   map->number("gear", {0, 1000, true}, &motor->gear);
   if (!map->has("ranges")) return;
   JsonReader ranges(map->at("ranges"), map->path("ranges"), errors);
-  ranges.allow({"position", "velocity", "torque", "stiffness", "damping"});
-  const Range range{0, 1e5, true};
-  ranges.number("position", range, &motor->ranges.position);
-  ranges.number("velocity", range, &motor->ranges.velocity);
-  ranges.number("torque", range, &motor->ranges.torque);
-  ranges.number("stiffness", range, &motor->ranges.stiffness);
-  ranges.number("damping", range, &motor->ranges.damping);
+  ranges.allow({kRanges[0], kRanges[1], kRanges[2], kRanges[3], kRanges[4]});
+  double* const values[] = {&motor->ranges.position, &motor->ranges.velocity, &motor->ranges.torque,
+                            &motor->ranges.stiffness, &motor->ranges.damping};
+  for (std::size_t i = 0; i < std::size(kRanges); ++i) {
+    ranges.number(kRanges[i], {0, 1e5, true}, values[i]);
+    if (ranges.has(kRanges[i])) motor->ranges_told |= 1u << i;
+  }
 }
 
 class WiringReader {
@@ -196,16 +198,16 @@ class WiringReader {
     read_id(map, "id", dialect.last_id, &motor->id);
     const bool extended = dialect.extended();
     claim(motor->bus, motor->id | (extended ? kExtended : 0), map->path("id"));
+    const auto bus = static_cast<size_t>(motor->bus);  // there may be none at all
+    if (!dialect.fd && bus < wiring_.buses.size() && wiring_.buses[bus].fd()) {
+      map->error(map->path("bus"),
+                 "a bus without data_bitrate, as " + std::string(dialect.name) +
+                     " motors do not know CAN FD and disturb it",
+                 wiring_.buses[bus].name);
+    }
     if (extended) {
       motor->reply_id = kLastMaster;
       read_id(map, "reply_id", kLastMaster, &motor->reply_id, kFirstMaster);
-      const auto bus = static_cast<size_t>(motor->bus);  // there may be none at all
-      if (bus < wiring_.buses.size() && wiring_.buses[bus].fd()) {
-        map->error(map->path("bus"),
-                   "a bus without data_bitrate, as " + std::string(dialect.name) +
-                       " motors do not know CAN FD and disturb it",
-                   wiring_.buses[bus].name);
-      }
       return;
     }
     if (dialect.route == ReplyRoute::kSharedZero) return;
@@ -235,6 +237,12 @@ class WiringReader {
 
   // A code that is clamped would be a wrong reading, and a wrong command.
   void check_ranges(const Motor& motor, const std::string& path) {
+    // Gains that mean ten times as much move the robot ten times as hard.
+    for (std::size_t i = 0; i < std::size(kRanges) && !motor.dialect->tells_ranges; ++i) {
+      if ((motor.ranges_told >> i & 1u) != 0) continue;
+      errors_->push_back(path + ".ranges." + kRanges[i] + ": expected that of the motor, as " +
+                         motor.dialect->name + " motors do not tell it, got none");
+    }
     const auto check = [&](const char* what, double needed, double range, const char* unit) {
       if (needed <= range) return;
       char text[200];

@@ -32,6 +32,7 @@ struct Motor {
   uint32_t reply_id = 0;
   const Dialect* dialect = &kDamiao;
   Ranges ranges;
+  unsigned ranges_told = 0;  // bit i: the wiring says the i-th of them
   double sign = 1;
   double gear = 1;    // turns of the motor's output per turn of the joint
   double offset = 0;  // rad, of the joint where the motor shows zero

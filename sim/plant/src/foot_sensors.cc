@@ -11,8 +11,9 @@
 namespace gaitd::sim {
 namespace {
 
-constexpr double kUnloaded = 5;         // N
-constexpr double kStruck = 50;          // N
+// Of the weight: 5 and 50 N of Atlas.
+constexpr double kUnloaded = 0.00291;
+constexpr double kStruck = 0.0291;
 constexpr double kDriftTime = 300;      // s, in which the drift reaches its figure
 constexpr double kCrosstalkArm = 0.05;  // m, of the moments that count as much as a force
 
@@ -98,7 +99,8 @@ void FootSensors::reset(Bodies bodies, const FootWrench (&contact)[GAITD_MAX_FEE
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     draw_errors(side);
     own_wrench(side, bodies);
-    feet_[side].unloaded = contact[side].force.norm() < kUnloaded;
+    feet_[side].unloaded =
+        contact[side].force.norm() < kUnloaded * model_.total_mass * model_.gravity;
   }
 }
 
@@ -128,14 +130,15 @@ FootWrench FootSensors::own_wrench(int side, Bodies bodies) {
 void FootSensors::update_strike(int side, Bodies bodies, double force) {
   Foot& foot = feet_[side];
   foot.strike = 0;
-  if (force < kUnloaded) {
+  const double weight = model_.total_mass * model_.gravity;
+  if (force < kUnloaded * weight) {
     const GaitdFrame& sole = model_.feet[side].sole;
     const BodyMotion& motion = bodies[sole.body];
     const Eigen::Vector3d normal = motion.R_WB * rotation(sole).col(2);
     const Eigen::Vector3d velocity = motion.velocity(motion.point(Eigen::Vector3d(sole.origin)));
     foot.approach = std::max(0.0, -velocity.dot(normal));
     foot.unloaded = true;
-  } else if (foot.unloaded && force > kStruck) {
+  } else if (foot.unloaded && force > kStruck * weight) {
     foot.unloaded = false;
     foot.strike = foot.approach;
     RandomStream& stream = jumps_[static_cast<size_t>(side)];

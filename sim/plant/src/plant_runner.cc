@@ -136,7 +136,15 @@ void PlantRunner::run_one_period() {
   while (pushes_.pop(&push)) plant_->disturb(push);
   GaitdLoad load;
   while (loads_.pop(&load)) plant_->carry(load);
-  if (plant_->advance(command_)) {
+  bool advanced = false;
+  try {
+    advanced = plant_->advance(command_);
+  } catch (const std::exception& problem) {
+    if (host_ != nullptr && host_->log != nullptr) {
+      host_->log(host_->context, GAITD_LOG_ERROR, problem.what());
+    }
+  }
+  if (advanced) {
     publish();
     return;
   }

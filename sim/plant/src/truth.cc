@@ -8,7 +8,7 @@
 namespace gaitd::sim {
 namespace {
 
-constexpr double kLoaded = 50;       // N
+constexpr double kLoaded = 0.0291;   // of the weight: 50 N of Atlas
 constexpr double kSideNormal = 0.7;  // vertical part of a normal, below which its face is a side
 
 void store(const Eigen::Quaterniond& q, double* xyzw) {
@@ -43,7 +43,7 @@ void Truth::update(std::span<const Touch> touches) {
       weight += normal_force;
       slipped += normal_force * touch.slip.head<2>();
     }
-    const bool loaded = foot.force.z() > kLoaded;
+    const bool loaded = foot.force.z() > kLoaded * model_.total_mass * model_.gravity;
     if (loaded && !foot.loaded) foot.slip = 0;
     if (loaded) foot.slip += slipped.norm() / weight;
     foot.loaded = loaded;

@@ -105,7 +105,7 @@ function limitMap(a, b) {
   const body = a.labels.map((_, i) => make('tr', {}, make('th', {textContent: label(a, i)}),
       ...b.labels.map((_, k) => {
         const [least] = data.summary.cells.filter((one) => one.finished && value(one) !== null &&
-            at(a, one) === a.labels[i] && at(b, one) === b.labels[k]).sort((one, two) => value(one) - value(two));
+            at(a, one) === a.labels[i] && at(b, one) === b.labels[k]).sort((one, two) => (to < from ? -1 : 1) * (value(one) - value(two)));
         if (!least) return make('td', {className: 'empty'});
         const words = intervalWords(least);
         const cell = make('td', {title: `${label(a, i)}, ${label(b, k)}: ${limitWords(least)} (${words})`},

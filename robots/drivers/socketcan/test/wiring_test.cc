@@ -178,6 +178,10 @@ TEST(Wiring, RobStrideMotorsHaveIdentifiersOfTheirOwnAndNoCanFd) {
   text["buses"]["feet"] = {{"interface", "can1"}};
   text["feet"]["left"]["bus"] = text["feet"]["right"]["bus"] = "feet";
   text["defaults"]["dialect"] = "robstride";
+  EXPECT_NE(std::string::npos,
+            errors_of(text, 2, 0.004).find("j0.ranges.stiffness: expected that of the motor"));
+  text["defaults"]["ranges"] = {
+      {"position", 20}, {"velocity", 100}, {"torque", 60}, {"stiffness", 5000}, {"damping", 100}};
   text["joints"]["j0"].erase("reply_id");
   text["joints"]["j1"]["reply_id"] = "0xFC";
   text["estop"] = {{"bus", "one"}, {"id", 1}};  // 11 bits: not that of j0

@@ -52,7 +52,9 @@ int main(int argc, char** argv) {
   const bool lockstep = std::strcmp(argv[1], "lockstep") == 0;
   const bool rescue = argc > 3 && std::strcmp(argv[3], "rescue") == 0;
   // A terminal's and a session's end are gaitd's business, which then tells.
+  // And so is a watchdog that takes gaitd for hung: then this has to damp.
   signal(SIGINT, SIG_IGN);
+  signal(SIGABRT, SIG_IGN);
   signal(SIGHUP, SIG_IGN);
   signal(SIGPIPE, SIG_IGN);
   signal(SIGTERM, stop);

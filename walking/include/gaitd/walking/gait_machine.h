@@ -136,6 +136,8 @@ class GaitMachine {
   void drive_on(int kept, int landed, const Eigen::Vector3d& missed = Eigen::Vector3d::Zero());
   // Standing without footsteps: those of the velocity, or the end of a drive that nobody renews.
   void rest_or_drive_on();
+  // The step under way as one of a drive; at rest without one.
+  VelocityWalk::Step step_under_way() const;
   GaitdFootstep drive_step(const GaitdPose& middle, int side, const VelocityWalk::Step& step,
                            double duration) const;
   // First footstep in the queue that has not begun.

@@ -28,6 +28,7 @@ class Motions {
   const GaitdMotions& state() const { return motions_; }
 
  private:
+  Refusal check_segment(const GaitdMotion& motion, int i, const GaitdGaitState& gait) const;
   Refusal check_pelvis(const GaitdMotion& motion, const GaitdGaitState& gait) const;
   Refusal check_chest(const GaitdMotion& motion, const GaitdTaskReferences& references) const;
   Refusal check_arm(const JointChain& arm, const GaitdMotion& motion,

@@ -16,9 +16,15 @@ class VelocityWalk {
   explicit VelocityWalk(const GaitdModel& model);
   void set_parameter(int index, double value) { parameters_.set(index, value); }
 
-  // Whoever began last drives. The velocity goes on from that of the step under way. False if
-  // nothing changes for the footsteps.
-  bool take(const VelocityCommand& command);
+  // The step that was begun last.
+  struct Step {
+    Velocity velocity;
+    double width = 0.0;  // m, of the soles, sideways
+  };
+
+  // Whoever began last drives. The velocity goes on from that of the step under way; `other` is
+  // that of a walk that it takes over. False if nothing changes for the footsteps.
+  bool take(const VelocityCommand& command, const Step& other);
   // Another producer of footsteps or a fault ends it, or nobody has renewed it.
   void end(RefusalReason why = RefusalReason::kEnded);
   // Its driver lets go: as if the time to renew had run out.
@@ -41,11 +47,6 @@ class VelocityWalk {
   Velocity next(const Velocity& before, double duration) const;
   bool at_rest(const Velocity& velocity) const;
 
-  // The step that was begun last.
-  struct Step {
-    Velocity velocity;
-    double width = 0.0;  // m, of the soles, sideways
-  };
   const Step& step() const { return step_; }
   void begin(const Step& step) { step_ = step; }
   // m, between the soles: a lateral walk is widened so that the feet never come too close.
