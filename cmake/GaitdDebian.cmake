@@ -23,6 +23,8 @@ install(FILES ${gaitd_etc}/systemd/gaitd.rules DESTINATION /usr/lib/udev/rules.d
 install(DIRECTORY ${gaitd_etc}/network DESTINATION /usr/share/doc/gaitd/examples COMPONENT system
         EXCLUDE_FROM_ALL)
 gaitd_system_files(/usr/share/doc/gaitd ${PROJECT_SOURCE_DIR}/cmake/package/copyright)
+install(FILES ${gaitd_etc}/systemd/gaitd.limits.conf DESTINATION /etc/security/limits.d
+        RENAME gaitd.conf COMPONENT system EXCLUDE_FROM_ALL)
 # The pages that programs and files refer to.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION /usr/share/doc/gaitd COMPONENT system EXCLUDE_FROM_ALL
         FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "examples" EXCLUDE)

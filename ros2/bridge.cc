@@ -154,6 +154,7 @@ void Bridge::on_estop() {
   drive_.hold("the robot was stopped by /e_stop");
   if (estop_until_ && Clock::now() < *estop_until_) return;
   estop_until_ = Clock::now() + kEstopPatience;
+  estop_told_ = false;
   spdlog::warn("e-stop: asked for on {}/e_stop", options_.name_space);
   ask_estop();
 }
@@ -161,10 +162,11 @@ void Bridge::on_estop() {
 // Until gaitd has taken it: whoever publishes once does not ask again.
 void Bridge::ask_estop() {
   estop_relay_->call("estop", nullptr, [this](const json& answer) {
-    const bool told = !estop_error_.empty();
     estop_error_ = member(answer.value("error", json()), "message");
     if (!estop_error_.empty()) {
-      if (!told) spdlog::critical("e-stop: the robot may not have stopped: {}", estop_error_);
+      if (!std::exchange(estop_told_, true)) {
+        spdlog::critical("e-stop: the robot may not have stopped: {}", estop_error_);
+      }
       return;
     }
     spdlog::warn("e-stop: gaitd has taken it");

@@ -76,6 +76,7 @@ class Bridge {
   std::string trouble_;  // of the velocity, last told
   std::optional<std::chrono::steady_clock::time_point> trouble_at_;
   std::optional<std::chrono::steady_clock::time_point> estop_until_;  // it is asked for
+  bool estop_told_ = false;                                           // that it did not arrive
   std::string estop_error_;
 };
 

@@ -290,7 +290,8 @@ void add_calibrate_command(CLI::App* app, Context* context) {
           "--write-motions", arguments->write_motions,
           "Write the motions made for a robot as a scenario, for --motions, and do nothing "
           "else")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->excludes("--simulate");
   command
       ->add_option("-o,--output", arguments->output,
                    "Where to write; by default calibration/measured.yaml beside robot.yaml")

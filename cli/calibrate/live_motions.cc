@@ -83,11 +83,14 @@ void note_log(const json& status, std::vector<std::string>* logs) {
 }
 
 bool wait_for(RpcClient* client, const std::string& state, std::string* got) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  const std::chrono::duration<double> patience(kPatience);
+  auto deadline = std::chrono::steady_clock::now() + patience;
   do {
     std::this_thread::sleep_for(kPoll);
     *got = status(client).value("state", "");
     if (*got == state) return true;
+    // On its hoist it waits until somebody lowers it.
+    if (*got == "readying") deadline = std::chrono::steady_clock::now() + patience;
   } while (*got != "fault" && std::chrono::steady_clock::now() < deadline);
   return false;
 }

@@ -19,7 +19,7 @@ using doctor::format;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kComHeight = 1.1772;  // m, of Atlas, which the lengths and times below are for
+constexpr double kComHeight = 1.1772;  // m, of Atlas, which the lengths below are for
 constexpr double kHeightAbove = 0.1;   // m, of the hanging feet over the ground
 // Swings of a joint, there and back.
 constexpr double kBend = 0.3;     // rad, of a knee
@@ -81,13 +81,14 @@ class Swings {
       add(leg.knee_bend_sign * kBend);
     } else if (joint == leg.hip_pitch) {
       add(leg.hip_pitch_bend_sign * kSwing);
+      if (swings.empty()) add(-leg.hip_pitch_bend_sign * kSwing);
     } else if (joint == leg.ankle_pitch || joint == leg.ankle_roll) {
       add(kSwing);
       add(-kSwing);
     } else {
       add(outwards(side, joint));
+      if (swings.empty()) add(-outwards(side, joint));
     }
-    if (swings.empty() && joint != leg.knee) add(-outwards(side, joint));
     return swings;
   }
 

@@ -153,11 +153,12 @@ std::optional<Calibration> calibration_of(const Campaign& campaign, const Campai
 std::vector<std::string> calibrate_arguments(const Campaign& campaign,
                                              const Calibration& calibration,
                                              const fs::path& output) {
-  std::vector<std::string> arguments{"calibrate", "--simulate", "-o", output.string()};
+  std::vector<std::string> arguments{"calibrate", "--simulate"};
   if (!campaign.motions.empty()) {
     arguments.insert(arguments.end(),
                      {"--motions", scenario_from(campaign.file, campaign.motions)});
   }
+  arguments.insert(arguments.end(), {"-o", output.string()});
   for (const std::string& setting : calibration.settings) {
     arguments.insert(arguments.end(), {"--set", setting});
   }

@@ -25,7 +25,8 @@ std::optional<double> pairs_for_shares(std::int64_t only_first, std::int64_t onl
 
 struct MeanInterval {
   double mean = 0.0;
-  double low = 0.0, high = 0.0;  ///< 95 %, by percentiles of bootstrap means
+  double low = 0.0,
+         high = 0.0;  ///< 95 %, by percentiles of bootstrap means; of 2 to 10 values Student's
 };
 /// At least one value. The draws come from `name` alone: the same values give the same interval.
 MeanInterval bootstrap_mean(const std::vector<double>& values, std::string_view name);

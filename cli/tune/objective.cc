@@ -45,9 +45,9 @@ Score Objective::score(const std::vector<const CampaignResult*>& runs) const {
   score.failures = static_cast<int>(
       std::count_if(runs.begin(), runs.end(), [](const CampaignResult* r) { return !r->success; }));
   score.figures = means(runs);
-  // A run that did not fail but has no figure, such as a walk that was refused, is no good one.
+  // A robot that refuses to walk has fine figures of standing.
   for (const CampaignResult* run : runs) {
-    if (run->success && !run->fell && !std::isfinite(weighted(*run))) ++score.failures;
+    if (run->success && run->refused) ++score.failures;
   }
   double sum = 0.0;
   for (std::size_t i = 0; i < weights_.size(); ++i) {

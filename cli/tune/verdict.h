@@ -11,7 +11,7 @@
 namespace gaitd::cli {
 
 /// The winner against the defaults on pairs of runs: failures by McNemar's test, the weighted
-/// figures by the mean of the differences with a bootstrap interval, of pairs in which neither
+/// figures by the mean of the differences with its interval, of pairs in which neither
 /// fell. {pairs, both_fail, only_default_fails, only_winner_fails, p, objective: {mean, low, high,
 /// pairs}, verdict, by}. `verdict`: "better", "worse" or "undecided"; `by`: "failures" or
 /// "figures". It is better if it fails less often, or does not fail more often and its figures are

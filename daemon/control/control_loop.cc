@@ -206,7 +206,8 @@ void ControlLoop::go_without_readings() {
 }
 
 bool ControlLoop::silent() const {
-  return time_unread_ > pipeline_->safety().parameters()[SafetyParameter::kSensorTimeout];
+  return !pipeline_->layers().rules().simulation &&
+         time_unread_ > pipeline_->safety().parameters()[SafetyParameter::kSensorTimeout];
 }
 
 // Before everything else that is asked of the robot.
@@ -252,9 +253,13 @@ void ControlLoop::execute(const Command& command, bool from_client) {
   const bool clears = command.type == CommandType::kReset || command.type == CommandType::kSimReset;
   const bool switches_on =
       command.type == CommandType::kArm || command.type == CommandType::kJointTest;
-  const bool outdated =
-      (from_client && clears && command.estops < estop_->asked()) || (switches_on && silent());
-  CommandReply reply = outdated                             ? refuse_outdated(command)
+  const char* untimely = nullptr;
+  if (from_client && clears && command.estops < estop_->asked()) {
+    untimely = "an e-stop was asked for after this command; look why, then send it again";
+  } else if (switches_on && silent()) {
+    untimely = "the robot tells nothing new; look at its power and its buses";
+  }
+  CommandReply reply = untimely != nullptr                  ? refuse_untimely(command, untimely)
                        : simulation                         ? simulate(command)
                        : command.type == CommandType::kSwap ? request_swap(command)
                                                             : pipeline_->execute(command);
@@ -278,18 +283,16 @@ void ControlLoop::execute(const Command& command, bool from_client) {
   // A replay knows neither the backend that refused a reset nor a plugin that is gone.
   const bool unknown = !reply.accepted && (command.type == CommandType::kSimReset ||
                                            command.type == CommandType::kSetParameter);
-  if (!outdated && !unknown) telemetry_->push_input(tick_, time, command, owner, place);
+  if (untimely == nullptr && !unknown) telemetry_->push_input(tick_, time, command, owner, place);
   if (from_client) bridge_->push(reply);
 }
 
-// A reset that was on its way when somebody stopped the robot does not know of that stop.
-CommandReply ControlLoop::refuse_outdated(const Command& command) const {
+// One that does not know what has happened since, such as a reset that was on its way when somebody
+// stopped the robot.
+CommandReply ControlLoop::refuse_untimely(const Command& command, const char* why) {
   CommandReply reply;
   reply.request = command.request;
-  std::snprintf(reply.message.data(), reply.message.size(), "%s",
-                silent() ? "the robot tells nothing new; look at its power and its buses"
-                         : "an e-stop was asked for after this command; look why, then send it "
-                           "again");
+  std::snprintf(reply.message.data(), reply.message.size(), "%s", why);
   return reply;
 }
 

@@ -103,7 +103,7 @@ class ControlLoop {
   void note_goto(const char* text);
   void show_goal();
   CommandReply take_footsteps(const Command& command);
-  CommandReply refuse_outdated(const Command& command) const;
+  static CommandReply refuse_untimely(const Command& command, const char* why);
   CommandReply simulate(const Command& command);
   CommandReply request_swap(const Command& command);
   void push_robot(const GaitdDisturbance& push);

@@ -209,6 +209,7 @@ TEST_F(ControlLoopTest, ABackendThatCannotBeReadIsAFaultAndTheRunFails) {
 }
 
 TEST_F(ControlLoopTest, ARobotThatTellsNothingNewIsDamped) {
+  backend.bench.pipeline->layers().rules().simulation = false;
   backend.silent_from = 3;
   backend.silent_for = 500;
   run(standing(0.1));
@@ -219,6 +220,7 @@ TEST_F(ControlLoopTest, ARobotThatTellsNothingNewIsDamped) {
 }
 
 TEST_F(ControlLoopTest, AShortSilenceIsNoFault) {
+  backend.bench.pipeline->layers().rules().simulation = false;
   backend.silent_from = 3;
   backend.silent_for = 5;
   run(standing(0.1));

@@ -78,7 +78,10 @@ TEST(Safety, ReadyingLeadsTheJointsFromWhereTheyAreToThePosture) {
 TEST(Safety, ReadyingGivesUpIntoDampingWhenItDoesNotGetThere) {
   const std::function<void(TickData&)> obstacles[] = {
       [](TickData& d) { d.robot.joint_position[4] += 0.3; },
-      [](TickData& d) { d.robot.feet[0].normal_force = 0.0; },
+      [](TickData& d) {
+        d.robot.feet[1].normal_force += d.robot.feet[0].normal_force;
+        d.robot.feet[0].normal_force = 0.0;
+      },
   };
   for (const auto& obstacle : obstacles) {
     Bench b;

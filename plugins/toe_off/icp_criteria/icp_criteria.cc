@@ -24,6 +24,9 @@ constexpr double kHoldTime = 0.002;  // s: longer than one tick's noise
 // Part of a swing after which its stance foot may roll, and the step (leg lengths) that needs it.
 constexpr double kSwingStart = 0.7;
 constexpr double kSwingReach = 0.75;
+// Part of a swing in which a stance foot that rolls has done so since before: less, since a swing
+// that is rolled in may become longer.
+constexpr double kSwingLeft = 0.5;
 constexpr double kHeelCarries = 0.25;  // foot lengths from the toe to the CoP of a foot that lies
 constexpr double kFlat = 0.03;         // rad, pitch of a foot that is back on the ground
 
@@ -136,7 +139,7 @@ bool IcpCriteria::rolling_on(const GaitdRobotState& robot, const GaitdGaitState&
   if (foothold.contact == GAITD_CONTACT_NONE) return false;
   // One that is left over from a step that did not follow must not carry the robot alone.
   if (gait.phase == GAITD_PHASE_SWING) {
-    return gait.time_in_phase >= kSwingStart * gait.phase_duration;
+    return gait.time_in_phase >= kSwingLeft * gait.phase_duration;
   }
   if (gait.phase == GAITD_PHASE_TRANSFER && gait.next_side == state_.side) return true;
   // No step follows after all: the foot comes back to the ground first. Where that is not as it was

@@ -56,7 +56,7 @@ export function comparisons() {
   return [make('p', {className: 'quiet', textContent:
             'Each pair is two runs that differ in this setting alone: scenario, seed, draws and all else are the same. ' +
             'p is the exact chance of so uneven a split where both fare alike. Means are of pairs in which neither ' +
-            'fell, with intervals by bootstrap. What is not decided at 5 % says how many more pairs would decide it, ' +
+            'fell, with intervals by bootstrap, of at most ten pairs by Student. What is not decided at 5 % says how many more pairs would decide it, ' +
             'with a power of 80 %, if the difference is what was seen. ' +
             `Of ${tests} comparisons ${Math.max(1, Math.round(0.05 * tests))} would seem decided by chance.`}),
           ...[...byKey].flatMap(([key, those]) => those.length <= kShown ? those.map(comparison) :
