@@ -75,6 +75,7 @@ robot 1 'inertia' -e '0,/ixx="[^"]*"/s//ixx="9.9"/'
 robot 0 'in size (radius of gyration)' -e 's/<mass value="9.509"/<mass value="0.05"/'
 robot 0 'is the mass of the whole robot' -e 's/<mass value="9.509"/<mass value="900"/'
 robot 0 'placeholder' -e '0,/effort="[^"]*"/s//effort="1e6"/'
+robot 0 'and 29 other joints: 1e+06 N m' -e 's/effort="[^"]*"/effort="1e6"/g; s/velocity="[^"]*"/velocity="12"/g'
 robot 1 '% of its limit' -e 's/effort="890"/effort="60"/'
 cp "$GAITD_SOURCE"/robots/atlas/robot.yaml flipped.yaml
 sed 's/name: pelvis_imu, link: pelvis, xyz: \[0, 0, 0\], rpy: \[0, 0, 0\]/name: pelvis_imu, link: pelvis, xyz: [0, 0, 0], rpy: [3.1416, 0, 0]/' \

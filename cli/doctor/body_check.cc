@@ -2,6 +2,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/doctor/robot_doctor.h"
 
@@ -55,14 +60,19 @@ void check_body(const GaitdModel& model, const GaitdBody& body, Findings* findin
 Findings check_bodies(const GaitdModel& model) {
   Findings findings;
   for (int i = 0; i < model.body_count; ++i) check_body(model, model.bodies[i], &findings);
-  for (int i = 0; i < model.joint_count; ++i) {
-    const GaitdJoint& joint = model.joints[i];
-    if (joint.effort_limit > kStrong || joint.velocity_limit > kFast) {
-      findings.push_back({"limits", Severity::kWarning,
-                          format("%s: %.4g N m and %.4g rad/s", joint.name, joint.effort_limit,
-                                 joint.velocity_limit),
-                          "looks like a placeholder: give effort and velocity of the drive"});
-    }
+  // Joints with the same figures are one finding: a URDF that has them has them everywhere.
+  std::map<std::pair<double, double>, std::vector<const char*>> placeholders;
+  for (const GaitdJoint& joint : std::span(model.joints).first(model.joint_count)) {
+    if (joint.effort_limit <= kStrong && joint.velocity_limit <= kFast) continue;
+    placeholders[{joint.effort_limit, joint.velocity_limit}].push_back(joint.name);
+  }
+  for (const auto& [limits, joints] : placeholders) {
+    const std::string others =
+        joints.size() > 1 ? format(" and %zu other joints", joints.size() - 1) : std::string();
+    findings.push_back({"limits", Severity::kWarning,
+                        format("%s%s: %.4g N m and %.4g rad/s", joints.front(), others.c_str(),
+                               limits.first, limits.second),
+                        "looks like a placeholder: give effort and velocity of the drive"});
   }
   if (findings.empty()) {
     findings.push_back({"masses", Severity::kOk,

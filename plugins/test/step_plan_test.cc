@@ -359,28 +359,6 @@ TEST(StepQp, AFootholdThatIsHeldStaysAndTheTimeMakesUpForIt) {
   EXPECT_LT(time, 0.34);
 }
 
-TEST(StepQp, AFootholdMovesNoFurtherThanTheFootCanStop) {
-  StepProblem p = example();
-  p.icp = {0.2, 0.12};
-  const StepWeights weights{
-      .cmp = 0.1, .change = 0.1, .time = 0.04, .time_change = 0.004, .missed = 80.0};
-  StepQp qp;
-  Vector2d free = Vector2d::Zero();
-  double time = 0.12;
-  p.foot = p.commanded - Vector2d(0.01, 0.0);
-  ASSERT_TRUE(qp.solve(p, weights, free, time));
-  ASSERT_GT(free.norm(), 0.06);
-  p.stop = p.commanded;
-  p.stop_reach = 0.02;
-  Vector2d shift = Vector2d::Zero();
-  for (int i = 0; i < 20; ++i) {  // nor bit by bit
-    time = 0.12;
-    ASSERT_TRUE(qp.solve(p, weights, shift, time));
-    EXPECT_LE(shift.norm(), 0.02 / std::cos(M_PI / 8.0) + 1e-9);
-  }
-  EXPECT_GT(shift.norm(), 0.015);
-}
-
 TEST(StepQp, TheTransferAfterTouchdownBringsBackWhatItsFeedbackAndItsFeetCan) {
   StepProblem p = example();
   p.cmp_region = hull({{0.0, 0.0}});  // nothing before touchdown

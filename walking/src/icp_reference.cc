@@ -2,6 +2,8 @@
 #include "gaitd/walking/icp_reference.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/views.h"
@@ -24,8 +26,8 @@ using sdk::view;
 void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGaitState& gait,
                           const CmpOffsets& offsets, GaitdIcpPlan& plan) {
   const bool first = state_.plan_revision == kNotStarted;
-  const bool changed = first || resumed_ || state_.plan_revision != gait.plan_revision;
-  resumed_ = false;
+  const bool resumed = std::exchange(resumed_, false);
+  const bool changed = first || resumed || state_.plan_revision != gait.plan_revision;
   auto icp = view(state_.icp);
   auto delta = view(state_.offset);
   auto start = view(state_.start_ecmp);
@@ -68,11 +70,17 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
   }
   if (changed) {
     // state_.icp already holds the prediction for this tick.
+    const Eigen::Vector2d before = delta;
     delta = (first ? at_rest : Eigen::Vector2d(icp)) - s.icp;
+    if (resumed && !first) otherwise_ = delta - before;
   } else if (gait.phase != GAITD_PHASE_STAND) {
     // Who stands has no reason to shift the weight.
     delta *= std::max(0.0, 1.0 - kDecay * dt);
   }
+
+  const bool swings = gait.phase == GAITD_PHASE_SWING;
+  if (!swings || state_.phase != gait.phase) otherwise_.setZero();
+  otherwise_ *= std::max(0.0, 1.0 - kDecay * dt);
 
   plan.size = sizeof(plan);
   view(plan.icp) = s.icp + delta;
@@ -83,6 +91,7 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
   const int landed = gait.phase == GAITD_PHASE_TRANSFER ? 2 : 1;  // piece that begins then
   const bool steps = gait.footstep_count > 0;
   view(plan.icp_touchdown) = steps ? trajectory_.icp_at_start(landed) : s.icp_end;
+  view(plan.icp_touchdown) += std::exp(-kDecay * std::max(gait.time_remaining, 0.0)) * otherwise_;
   view(plan.icp_transferred) = steps ? trajectory_.icp_at_start(landed + 1) : s.icp_end;
   view(plan.offset) = delta;
   plan.kappa =

@@ -250,6 +250,42 @@ TEST(IcpReference, AnotherInstanceContinuesFromItsState) {
   EXPECT_LT(difference, 1e-5);
 }
 
+// Late in a swing, another plan of the foot is no reason to put it elsewhere.
+TEST(IcpReference, AnotherPlanExpectsAtTouchdownWhatIsOnItsWay) {
+  SyntheticWalk w;
+  IcpReference a(atlas());
+  IcpReference b(atlas());
+  CmpOffsets middle(atlas().nominal_com_height);
+  middle.entry_x = middle.exit_x = 0.0;
+  GaitdIcpPlan before{}, after{};
+  w.planner = [&](const GaitdRobotState& r, const GaitdGaitState& g, GaitdIcpPlan& p) {
+    a.update(w.dt, r, g, CmpOffsets(atlas().nominal_com_height), p);
+    before = p;
+    if (after.size != 0) b.update(w.dt, r, g, middle, after);
+  };
+  ASSERT_FALSE(w.machine.walk({.steps = 6, .length = 0.4}).refused());
+  ASSERT_TRUE(w.run_until_fraction(3, 0.9));
+  const Eigen::Vector2d own = sdk::view(before.icp_touchdown);
+  GaitdIcpPlannerState state{};
+  a.get_state(state);
+  b.set_state(state);
+  after.size = sizeof(after);
+  w.run_for(2 * w.dt);
+  const double moved = (Eigen::Vector2d(sdk::view(after.icp_touchdown)) - own).norm();
+  const double planned = (Eigen::Vector2d(sdk::view(after.offset))).norm();
+  EXPECT_GT(planned, 0.03);  // another plan
+  EXPECT_LT(moved, 0.5 * planned);
+  ASSERT_TRUE(w.run_until_fraction(4, 0.5));
+  // In the next step it has its own way.
+  IcpReference c(atlas());
+  GaitdIcpPlan alone{};
+  c.update(w.dt, w.robot, w.gait(), middle, alone);
+  EXPECT_LT((Eigen::Vector2d(sdk::view(after.icp_touchdown)) -
+             Eigen::Vector2d(sdk::view(alone.icp_touchdown)))
+                .norm(),
+            1e-9);
+}
+
 TEST(IcpReference, ReportsGammaForTheFootstepsAheadOnly) {
   SyntheticWalk w;
   ASSERT_FALSE(w.machine.walk({.steps = 3, .length = 0.4}).refused());

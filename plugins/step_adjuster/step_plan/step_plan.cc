@@ -19,7 +19,6 @@ constexpr double kClearance = 0.02;  // m, between soles that pass each other
 // sqrt(h/g), before touchdown: no leg follows a change any more.
 constexpr double kHold = 0.09;
 constexpr double kLeastLeft = 1.3 * kHold;
-constexpr double kFootAcceleration = 4.0;  // g, of a foot whose foothold is moved
 // sqrt(h/g), after touchdown: the landing and not the feedback decides where the CMP is.
 constexpr double kSettling = 0.3;
 // sqrt(h/g), for which an ICP that moves without a CMP that moves it has to last: a shock does not.
@@ -268,12 +267,6 @@ void StepPlan::add_limits(const GaitdStepAdjusterInput& in, StepProblem& c) cons
     c.longest = p_[P::kLongestSwing] * duration - gait.time_in_phase;
   }
   c.foot_speed = p_[P::kFootSpeed] * length_ / time_;
-  // With full acceleration one way, then the other: a foot that is to go further lands sliding.
-  if (!transfer) {
-    const double left = gait.time_remaining;
-    c.stop = c.foot + 0.5 * left * view(in.robot->feet[gait.next_side].twist).segment<2>(3);
-    c.stop_reach = 0.25 * kFootAcceleration * model_.gravity * square(left);
-  }
 }
 
 void StepPlan::adjust(const GaitdStepAdjusterInput& in) {

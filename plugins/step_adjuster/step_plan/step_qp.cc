@@ -167,14 +167,6 @@ void StepQp::fill(const StepProblem& p, const StepWeights& w, const Eigen::Vecto
       add(row, n.dot(p.commanded - p.foot) - way);
     }
   }
-  const double most = std::max(p.stop_reach, (p.commanded + shift - p.stop).norm());
-  for (int i = 0; i < kSpeedDirections && p.stop_reach > 0.0; ++i) {
-    const double angle = 2.0 * M_PI * i / kSpeedDirections;
-    const Eigen::Vector2d n(std::cos(angle), std::sin(angle));
-    row.setZero();
-    row.segment<2>(kShift) = -n.transpose();
-    add(row, n.dot(p.commanded - p.stop) - most);
-  }
   lower_.setConstant(-kInfinity);
   upper_.setConstant(kInfinity);
   if (p.held) lower_.segment<2>(kShift) = upper_.segment<2>(kShift) = shift;

@@ -57,10 +57,6 @@ struct StepProblem {
   double shortest = 0.0;  // that may be left
   double longest = 0.0;
   double foot_speed = 0.0;  // m/s, mean, of the way that is left
-  // m, where a foot in the air could come to rest in the time that is left: within `stop_reach` of
-  // it.
-  Eigen::Vector2d stop = Eigen::Vector2d::Zero();
-  double stop_reach = 0.0;  // 0: anywhere
   double swing = 0.0;       // s, after this phase
   bool held = false;        // the foothold stays where it was decided to be
 
@@ -103,7 +99,7 @@ class StepQp {
   static constexpr int kSpeedDirections = 8;
   static constexpr int kTangents = 4;
   static constexpr int kRows = 5 * walking::ConvexPolygon::kCapacity + CaptureSet::kDirections +
-                               (kTangents + 1) * kSpeedDirections + 1;
+                               kTangents * kSpeedDirections + 1;
   using Row = Eigen::Matrix<double, 1, kUnknowns>;
 
   void add(const Row& row, double least);  // row . x >= least

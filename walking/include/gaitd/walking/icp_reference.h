@@ -12,6 +12,8 @@ namespace gaitd::walking {
 // The first transfer out of standing is fitted to the reference so far; at every later change
 // (early or late touchdown, moved, added or re-timed steps) the difference is kept and decays:
 //   xi_ref = xi_plan + delta,  delta' = -k delta,  r_ref = r_plan + (1 + k/w) delta
+// What another variant had planned otherwise is also left of delta at touchdown, and expected
+// there: nothing has happened to the robot that a foothold had to move for.
 class IcpReference {
  public:
   explicit IcpReference(const GaitdModel& model) : model_(model) { reset(); }
@@ -20,6 +22,7 @@ class IcpReference {
     state_ = {};
     state_.size = sizeof(state_);
     state_.plan_revision = kNotStarted;
+    otherwise_.setZero();
   }
   void get_state(GaitdIcpPlannerState& state) const { state = state_; }
   // Goes on from the reference of another instance, which may have had another plan.
@@ -38,6 +41,7 @@ class IcpReference {
   static constexpr int kNotStarted = -1;  // plan_revision before the first tick
   GaitdIcpPlannerState state_{};
   bool resumed_ = false;
+  Eigen::Vector2d otherwise_ = Eigen::Vector2d::Zero();  // m, of delta
 };
 
 }  // namespace gaitd::walking
