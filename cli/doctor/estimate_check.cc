@@ -98,7 +98,9 @@ Disagreement compare_imu(const LogCase& log, const GaitdModel& model) {
       qd[static_cast<std::size_t>(j)] = sensors.joints[j].velocity;
     }
     const sdk::ImuPlace place = sdk::imu_place(model, 0, q.data(), qd.data());
-    const bool standing = log.run().phase()[i] == daemon::Phase::kStand;
+    // Also before the controller has the joints.
+    const daemon::Phase phase = log.run().phase()[i];
+    const bool standing = phase == daemon::Phase::kStand || phase == daemon::Phase::kUnknown;
     const GaitdImuSensor& measured = sensors.imus[0];
     const int side = (*force[0])[i] > (*force[1])[i] ? 0 : 1;
     if ((*force[side])[i] > kLoad * weight && (*toe)[i] == 0.0) {

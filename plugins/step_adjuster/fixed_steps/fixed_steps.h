@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "gaitd/sdk/layer.h"
+#include "gaitd/sdk/views.h"
 #include "gaitd/walking/icp_feedback.h"
 
 namespace gaitd::plugins {
@@ -18,9 +19,25 @@ class FixedSteps {
   explicit FixedSteps(const GaitdModel& model) : feedback_(model) {}
   void set_parameter(int index, double value) { feedback_.set_parameter(index, value); }
   GaitdStatus process(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out);
-  void reset();
-  void get_state(GaitdStepAdjusterState& s) const;
-  void set_state(const GaitdStepAdjusterState& s);
+  void reset() {
+    feedback_.reset();
+    phase_ = kUnknownPhase;
+    kept_shift_.setZero();
+    kept_time_shift_ = 0.0;
+  }
+  void get_state(GaitdStepAdjusterState& s) const {
+    feedback_.get_state(s);
+    s.step_index = step_;
+    sdk::view(s.shift) = kept_shift_;
+    s.time_shift = kept_time_shift_;
+  }
+  void set_state(const GaitdStepAdjusterState& s) {
+    feedback_.set_state(s);
+    phase_ = kUnknownPhase;
+    step_ = s.step_index;
+    kept_shift_ = sdk::view(s.shift);
+    kept_time_shift_ = s.time_shift;
+  }
 
  private:
   static constexpr int kUnknownPhase = -1;
@@ -28,8 +45,8 @@ class FixedSteps {
   walking::IcpFeedback feedback_;
   int phase_ = kUnknownPhase;  // in which it took over, of the step
   int32_t step_ = -1;
-  Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();  // m, taken over
-  double time_shift_ = 0.0;                          // s, likewise
+  Eigen::Vector3d kept_shift_ = Eigen::Vector3d::Zero();  // m, taken over
+  double kept_time_shift_ = 0.0;                          // s, likewise
 };
 
 }  // namespace gaitd::plugins
