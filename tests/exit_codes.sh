@@ -136,7 +136,7 @@ expect 0 gaitd --scenario stand --clock lockstep --set duration=0.2 --log "$scra
 mkdir -p "$scratch/service/etc"
 printf 'schema: gaitd.config/1\nbackend: socketcan\n' >"$scratch/service/etc/gaitd.yaml"
 GAITD_PATH=$scratch/service expect 0 gaitctl run stand --set duration=0.2 --log "$scratch/x.mcap"
-GAITD_PATH=$scratch/service expect 1 gaitd --scenario stand --clock lockstep 2>"$scratch/err"
+GAITD_PATH=$scratch/service expect 1 gaitd --scenario stand --clock lockstep >"$scratch/err" 2>&1
 says "a scenario plays in a simulation"
 expect 2 gaitd --no-config --config etc/gaitd.yaml
 expect 2 gaitd --clock sundial
