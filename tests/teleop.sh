@@ -22,17 +22,21 @@ has_text() { [[ -s $1 ]]; }
 pelvis_x() { gaitctl --json status | tr -d '\n ' | sed -E 's/.*"pelvis":\{"x":([-0-9.e]+).*/\1/'; }
 is_beyond() { awk -v x="$(pelvis_x)" -v least="$1" 'BEGIN { exit !(x > least) }'; }
 is_in_state() { [[ $(field state) == "$1" ]]; }
-# hold KEY COMMAND...: as a keyboard that repeats, until the command comes true.
+# hold KEY COMMAND...: as a keyboard that repeats, until the command comes true, and while it looks.
 hold() {
-  local key=$1 deadline=$((SECONDS + 60))
+  local key=$1 deadline=$((SECONDS + 60)) presser
   shift
+  while keys "$key"; do sleep 0.05; done &
+  presser=$!
   until "$@"; do
-    ((SECONDS < deadline)) || fail "holding $key does not lead to '$*': $(shown)"
-    for _ in {1..5}; do
-      keys "$key"
-      sleep 0.05
-    done
+    ((SECONDS < deadline)) || {
+      kill "$presser"
+      fail "holding $key does not lead to '$*': $(shown)"
+    }
+    sleep 0.1
   done
+  kill "$presser"
+  wait "$presser" 2>/dev/null || true
 }
 # start ARGUMENTS...: teleop in a shell of its own; `ends CODE` waits for it and compares the terminal.
 start() {
@@ -72,8 +76,8 @@ before=$(pelvis_x)
 hold w is_in_state walking
 hold w is_beyond "$(awk -v x="$before" 'BEGIN { print x + 0.3 }')"
 [[ $(field mode) == walk-straight* ]] || fail "mode: $(gaitctl status)"
-see '^asked +\+0.30 m/s'
-see '^real +\+0\.[0-9]+ m/s'
+hold w shows '^asked +\+0.30 m/s'
+hold w shows '^real +\+0\.[0-9]+ m/s'
 # Nothing is wider than the window, or has lost its place.
 [[ $(shown | head -n 1) == 'gaitctl teleop '*'speed 100 %' ]] || fail "the first line: $(shown)"
 (($(shown | LC_ALL=C.UTF-8 wc -L) <= 80)) || fail "a line is wider than the window: $(shown)"
@@ -84,9 +88,14 @@ see 'hold a key to walk'
 
 # Somebody else takes the robot over, and keeps it.
 hold Up is_in_state walking
-gaitctl drive --forward 0.1 --for 3 >"$scratch/drive" 2>&1 &
-other=$!
-taken() { shows 'taken the robot over'; }
+other=
+taken() {
+  [[ -n $other ]] || {
+    gaitctl drive --forward 0.1 --for 3 >"$scratch/drive" 2>&1 &
+    other=$!
+  }
+  shows 'taken the robot over'
+}
 hold Up taken
 wait "$other" || fail "the other one was disturbed: $(cat "$scratch/drive")"
 wait_for state standing 30
