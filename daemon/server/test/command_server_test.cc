@@ -16,6 +16,7 @@ namespace {
 
 using nlohmann::json;
 
+constexpr const char* kSlow = R"({"jsonrpc":"2.0","id":8,"method":"plugin.list"})";
 constexpr const char* kStatus = R"({"jsonrpc":"2.0","id":1,"method":"status"})";
 constexpr const char* kArm = R"({"jsonrpc":"2.0","id":2,"method":"arm"})";
 
@@ -70,6 +71,14 @@ class Server : public ::testing::Test {
   // Until the thread of the requests is busy with a request that takes as long as hanging_.
   void wait_for_hang() {
     while (!begun_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+
+  // Sends more slow requests than may wait; how many.
+  int keep_busy(RawClient* client) {
+    const int lines = static_cast<int>(bounds::kLinesWaiting) + 20;
+    for (int i = 0; i < lines; ++i) client->send(std::string(kSlow) + "\n");
+    wait_for_hang();
+    return lines;
   }
 
   SocketDirectory directory_;
@@ -357,7 +366,6 @@ TEST_F(Server, ASecondServerOnTheSameSocketIsRefused) {
 }
 
 constexpr const char* kEstop = R"({"jsonrpc":"2.0","id":9,"method":"estop"})";
-constexpr const char* kSlow = R"({"jsonrpc":"2.0","id":8,"method":"plugin.list"})";
 
 TEST_F(Server, AnEstopWaitsForNoOtherRequest) {
   hanging_ = true;
@@ -381,9 +389,7 @@ TEST_F(Server, AnEstopPassesWhatItsOwnClientHasWaiting) {
   hanging_ = true;
   start();
   RawClient client(directory_.file());
-  const int lines = static_cast<int>(bounds::kLinesWaiting) + 20;
-  for (int i = 0; i < lines; ++i) client.send(std::string(kSlow) + "\n");
-  wait_for_hang();
+  const int lines = keep_busy(&client);
   client.send(std::string(kEstop) + "\n");
   EXPECT_EQ(client.answer()["id"], 9);
   client.send("[" + std::string(kStatus) + "]\n");
@@ -397,9 +403,7 @@ TEST_F(Server, WhatWaitedDoesNotKnowOfTheEstopsSince) {
   hanging_ = true;
   start();
   RawClient client(directory_.file());
-  const int lines = static_cast<int>(bounds::kLinesWaiting) + 20;
-  for (int i = 0; i < lines; ++i) client.send(std::string(kSlow) + "\n");
-  wait_for_hang();
+  const int lines = keep_busy(&client);
   client.send(std::string(kArm) + "\n" + kEstop + "\n");
   EXPECT_EQ(client.answer()["id"], 9);
   hanging_ = false;
