@@ -3,17 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <optional>
 #include <queue>
-#include <unordered_set>
+#include <string>
 #include <utility>
 
 #include "angle.h"
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
 #include "goal_place.h"
+#include "sole_table.h"
 #include "step_costs.h"
+#include "tally.h"
 
 namespace gaitd::footsteps {
 namespace {
@@ -54,7 +57,7 @@ Lattice::Lattice(std::shared_ptr<StepMaker> steps, const PlannerOptions& options
   }
 }
 
-// One problem.
+// One problem. Millions of steps are put into the queue, so it holds little of each.
 class Lattice::Search {
  public:
   Search(const Lattice& lattice, const Start& start, const Goal& goal,
@@ -74,7 +77,6 @@ class Lattice::Search {
   Plan run() {
     Plan plan;
     if (!find_goal(&plan.refusal)) return plan;
-    if (lattice_.way_) lattice_.way_->lead_to({goal_.x, goal_.y});
     int budget = lattice_.options_.expansions;
     for (const double inflation : kInflations) {
       if (!search(inflation, budget)) break;
@@ -91,61 +93,47 @@ class Lattice::Search {
   }
 
  private:
-  Place goal_place(int side) const { return sole_beside(goal_, side, steps_.model()); }
-
-  Foothold look(int side, const Place& place) const {
-    return steps_.footholds().at(side, place, walking::kMaxStepTilt);
-  }
+  // A step onto a sole.
+  struct Node {
+    Sole* sole;
+    double cost;           // steps, up to here
+    int parent;            // the foot that it steps from; -1: where the plan begins
+    bool goal;             // a sole of the goal, exactly
+    bool weighed = false;  // the cost of its swing is in it
+    bool beyond = false;   // no sole: the way goes on from its parent where nothing is known
+  };
+  struct Queued {
+    double rank;
+    std::uint32_t order;  // of equals the first
+    Node node;
+    bool operator<(const Queued& other) const {  // it comes later
+      return rank != other.rank ? rank > other.rank : order > other.order;
+    }
+  };
 
   // False: there is no place for the feet at the goal, or near it.
   bool find_goal(std::string* refusal) {
     const Place wanted = goal_;
     const GoalPlace found = find_goal_place(steps_, wanted, cell_);
     goal_ = found.middle;
-    goal_footholds_ = found.footholds;
     // What is not known cannot be good yet: on the way there more of it will be seen.
     goal_known_ = found.found;
     const bool later = found.problem == FootholdState::kUnknown && lattice_.options_.explore;
-    if (!found.found && !later) *refusal = no_goal_place(wanted, found.problem);
-    return found.found || later;
+    if (!found.found && !later) {
+      *refusal = no_goal_place(wanted, found.problem);
+      return false;
+    }
+    if (lattice_.way_) lattice_.way_->lead_to({goal_.x, goal_.y});
+    soles_.emplace(steps_, lattice_.way_.get(), lattice_.per_metre_, cell_, start_, found);
+    return true;
   }
 
-  double estimate(const Node& node) const {
-    const Place& p = node.place;
-    const Place end = goal_place(node.side);
-    const double distance = std::hypot(end.x - p.x, end.y - p.y);
-    const double turn = std::abs(wrapped(end.yaw - p.yaw));
-    // Each step takes one foot on, past the other one; the turn goes on meanwhile.
-    return std::max(
-        {lattice_.per_metre_ * distance, way_from(node.side, p), turn / (1.5 * kHeading)});
-  }
-
-  // Of the middle of the feet, if the other one stood beside that one.
-  double way_from(int side, const Place& sole) const {
-    if (!lattice_.way_) return 0.0;
-    const Place middle = sole_beside(sole, other_side(side), steps_.model());
-    return lattice_.way_->from({middle.x, middle.y});
-  }
-
-  std::uint64_t key_of(int side, int i, int j, int heading) const {
-    return (static_cast<std::uint64_t>(i + (1 << 24)) << 32) ^
-           (static_cast<std::uint64_t>(j + (1 << 24)) << 6) ^
-           static_cast<std::uint64_t>(heading << 1 | side);
-  }
-
-  const Foothold& foothold(std::uint64_t key, int side, const Place& place) {
-    const auto [entry, fresh] = footholds_.try_emplace(key);
-    if (fresh) entry->second = look(side, place);
-    return entry->second;
-  }
-
-  void push(Node node, double inflation) {
-    const double rank = node.cost + inflation * estimate(node);
-    queue_.push({rank, order_++, std::move(node)});
+  void push(const Node& node, double inflation) {
+    queue_.push({node.cost + inflation * node.sole->estimate, order_++, node});
   }
 
   GaitdPose pose_of(int node) const {
-    return Footholds::pose_of(nodes_[node].place, nodes_[node].foothold);
+    return Footholds::pose_of(nodes_[node].sole->place, nodes_[node].sole->foothold);
   }
   // Where the foot of `side` stands when `node`, of the other foot, is the last footstep.
   GaitdPose stands(int node, int side) const {
@@ -154,35 +142,31 @@ class Lattice::Search {
   }
   bool is_start(int node) const { return nodes_[node].parent < 0; }
   GaitdPose stance_of(int node) const {
-    return is_start(node) ? start_.feet[nodes_[node].side] : pose_of(node);
+    return is_start(node) ? start_.feet[nodes_[node].sole->side] : pose_of(node);
   }
 
   // Whether the queued step can be taken; its footstep.
   StepState step_to(const Node& node, GaitdFootstep* step) const {
-    return steps_.make(node.side, Footholds::pose_of(node.place, node.foothold),
-                       stance_of(node.parent), stands(node.parent, node.side), parameters_, step);
+    const Sole& sole = *node.sole;
+    return steps_.make(sole.side, Footholds::pose_of(sole.place, sole.foothold),
+                       stance_of(node.parent), stands(node.parent, sole.side), parameters_, step);
   }
 
   void begin(double inflation) {
     queue_ = {};
     nodes_.clear();
-    closed_.clear();
+    ++search_;
     order_ = 0;
     frontier_.reset();
     for (int stance = 0; stance < GAITD_MAX_FEET; ++stance) {
       if (start_.first_side == stance) continue;  // it has to step, not to stand
-      const GaitdPose& foot = start_.feet[stance];
-      Node node{
-          stance,
-          {foot.position[0], foot.position[1], sdk::yaw_of(sdk::quaternion(foot.orientation))},
-          ~std::uint64_t{0} - static_cast<std::uint64_t>(stance),
-          {},
-          -1,
-          0.0,
-          false};
-      node.foothold.z = foot.position[2];
-      push(node, inflation);
+      push({&soles_->start(stance), 0.0, -1, false}, inflation);
     }
+  }
+
+  // The soles of the goal may be reached in many ways; `beyond` is at the place of its parent.
+  bool is_closed(const Node& node) const {
+    return !node.goal && !node.beyond && node.sole->closed_in == search_;
   }
 
   // False: no way with a cost below that of the best so far.
@@ -192,7 +176,7 @@ class Lattice::Search {
     while (!queue_.empty() && expansions_ < budget) {
       const Node node = queue_.top().node;
       queue_.pop();
-      if (closed_.contains(node.key) || node.cost >= best_cost_) continue;
+      if (is_closed(node) || node.cost >= best_cost_) continue;
       if (node.beyond) {
         best_cost_ = node.cost;
         take(node.parent);
@@ -204,18 +188,19 @@ class Lattice::Search {
         const StepState state = step_to(node, &step);
         tally_.count(state);
         if (state != StepState::kGood) continue;
-        if (const double more = node.weighed ? 0.0
-                                             : swing_cost(step, stands(node.parent, node.side),
-                                                          steps_.unit(), parameters_);
+        if (const double more = node.weighed
+                                    ? 0.0
+                                    : swing_cost(step, stands(node.parent, node.sole->side),
+                                                 steps_.unit(), parameters_);
             more > 0.0) {
           Node weighed = node;
           weighed.weighed = true;
           weighed.cost += more;
-          push(std::move(weighed), inflation);
+          push(weighed, inflation);
           continue;
         }
       }
-      closed_.insert(node.key);
+      node.sole->closed_in = search_;
       nodes_.push_back(node);
       const int at = static_cast<int>(nodes_.size()) - 1;
       if (node.goal && nodes_[node.parent].goal) {
@@ -230,7 +215,8 @@ class Lattice::Search {
     // Out of expansions: as far as the best of what was reached.
     if (!found && best_.empty() && frontier_) {
       take(frontier_->second);
-      best_cost_ = nodes_[frontier_->second].cost + kBeyond * estimate(nodes_[frontier_->second]);
+      const Node& last = nodes_[frontier_->second];
+      best_cost_ = last.cost + kBeyond * last.sole->estimate;
       partial_ = true;
     }
     return found;
@@ -238,47 +224,37 @@ class Lattice::Search {
 
   void expand(int at, double inflation) {
     ++expansions_;
-    const Node node = nodes_[at];
-    const double distance = std::hypot(goal_.x - node.place.x, goal_.y - node.place.y);
+    const Sole& from = *nodes_[at].sole;
+    const double distance = std::hypot(goal_.x - from.place.x, goal_.y - from.place.y);
     if (distance < nearest_) {
       nearest_ = distance;
-      nearest_place_ = node.place;
+      nearest_place_ = from.place;
       tally_ = {};
     }
-    const int side = other_side(node.side);
+    const int side = other_side(from.side);
     if (goal_known_) add_goal(at, side, inflation);
-    if (node.goal) return;
+    if (nodes_[at].goal) return;
     const bool explore = lattice_.options_.explore && !is_start(at);
     std::optional<Place> onwards;  // over ground that is not known
     double least = 0.0;            // of the ways on there
     if (explore) {
-      least = way_from(node.side, node.place) - kLeadsOn * steps_.unit() * lattice_.per_metre_;
+      least = from.way - kLeadsOn * steps_.unit() * lattice_.per_metre_;
     }
     const double outwards = side_sign(side);
-    const double c = std::cos(node.place.yaw), s = std::sin(node.place.yaw);
+    const double c = std::cos(from.place.yaw), s = std::sin(from.place.yaw);
     for (const Stride& stride : lattice_.strides_) {
       const double y = outwards * stride.outwards;
-      const double x = node.place.x + c * stride.ahead - s * y - goal_.x;
-      const double v = node.place.y + s * stride.ahead + c * y - goal_.y;
-      const double yaw = node.place.yaw + outwards * stride.turn * kHeading - goal_.yaw;
-      const int i = static_cast<int>(std::lround(x / cell_));
-      const int j = static_cast<int>(std::lround(v / cell_));
-      int heading = static_cast<int>(std::lround(yaw / kHeading)) % kHeadings;
-      if (heading < 0) heading += kHeadings;
-      const std::uint64_t key = key_of(side, i, j, heading);
-      if (closed_.contains(key)) continue;
-      const Place place{goal_.x + cell_ * i, goal_.y + cell_ * j,
-                        wrapped(goal_.yaw + heading * kHeading)};
-      const Foothold& found = foothold(key, side, place);
-      tally_.count(found.state);
-      if (found.state == FootholdState::kGood) {
-        add({side, place, key, found, at, stride.cost, false}, inflation);
+      Sole& sole = soles_->nearest(
+          side, {from.place.x + c * stride.ahead - s * y, from.place.y + s * stride.ahead + c * y,
+                 from.place.yaw + outwards * stride.turn * kHeading});
+      if (sole.closed_in == search_) continue;
+      tally_.count(sole.foothold.state);
+      if (sole.foothold.state == FootholdState::kGood) {
+        add({&sole, stride.cost, at, false}, inflation);
       }
-      if (found.state == FootholdState::kUnknown && explore) {
-        if (const double way = way_from(side, place); way < least) {
-          least = way;
-          onwards = place;
-        }
+      if (sole.foothold.state == FootholdState::kUnknown && explore && sole.way < least) {
+        least = sole.way;
+        onwards = sole.place;
       }
     }
     if (onwards) add_beyond(at, *onwards, inflation);
@@ -288,52 +264,49 @@ class Lattice::Search {
   // there: with its back to it the robot would see no more of it.
   void add_beyond(int at, const Place& onwards, double inflation) {
     const Node& node = nodes_[at];
+    const Place& place = node.sole->place;
     const bool known = std::any_of(exhausted_.begin(), exhausted_.end(), [&](const auto& p) {
-      return std::hypot(p.x() - node.place.x, p.y() - node.place.y) < kSameEnd * steps_.unit();
+      return std::hypot(p.x() - place.x, p.y() - place.y) < kSameEnd * steps_.unit();
     });
     if (known) return;
-    const double towards =
-        std::atan2(onwards.y - node.place.y, onwards.x - node.place.x) - node.place.yaw;
-    const double there = estimate(node) + std::abs(wrapped(towards)) / kHeading;
+    const double towards = std::atan2(onwards.y - place.y, onwards.x - place.x) - place.yaw;
+    const double there = node.sole->estimate + std::abs(wrapped(towards)) / kHeading;
     Node beyond = node;
-    beyond.key = (std::uint64_t{1} << 62) + static_cast<std::uint64_t>(at);
     beyond.parent = at;
     beyond.cost = node.cost + kBeyond * there;
     beyond.beyond = true;
     const double rank = beyond.cost + (inflation - 1.0) * there;
     if (!frontier_ || rank < frontier_->first) frontier_ = {rank, at};
-    queue_.push({rank, order_++, std::move(beyond)});
+    queue_.push({rank, order_++, beyond});
   }
 
   // The last footstep but one, or the last one. How the first of the two is reached decides whether
   // the second can be taken, so that there may be many of it.
   void add_goal(int at, int side, double inflation) {
-    const Node& node = nodes_[at];
-    const Place place = goal_place(side);
+    const Place& from = nodes_[at].sole->place;
+    Sole& goal = soles_->goal(side);
+    const Place& place = goal.place;
     const double unit = steps_.unit();
-    const double c = std::cos(node.place.yaw), s = std::sin(node.place.yaw);
-    const double dx = place.x - node.place.x, dy = place.y - node.place.y;
+    const double c = std::cos(from.yaw), s = std::sin(from.yaw);
+    const double dx = place.x - from.x, dy = place.y - from.y;
     const double ahead = (c * dx + s * dy) / unit;
     const double outwards =
         (side_sign(side) * (c * dy - s * dx) - steps_.model().nominal_foot_separation) / unit;
-    const double turn = side_sign(side) * wrapped(place.yaw - node.place.yaw) / kHeading;
+    const double turn = side_sign(side) * wrapped(place.yaw - from.yaw) / kHeading;
     if (!is_goal_stride(ahead, outwards, turn)) return;
-    const std::uint64_t key = node.goal ? ~std::uint64_t{0} - 2
-                                        : (std::uint64_t{1} << 63) + static_cast<std::uint64_t>(at);
-    add({side, place, key, goal_footholds_[static_cast<std::size_t>(side)], at,
-         stride_cost(ahead, outwards, std::abs(turn)), true},
-        inflation);
+    add({&goal, stride_cost(ahead, outwards, std::abs(turn)), at, true}, inflation);
   }
 
   void add(Node node, double inflation) {
     const Node& from = nodes_[node.parent];
-    const double height = node.foothold.z - from.foothold.z;
+    const Foothold& foothold = node.sole->foothold;
+    const double height = foothold.z - from.sole->foothold.z;
     if (std::abs(height) > steps_.highest_step()) {
       tally_.count(StepState::kReach);
       return;
     }
-    node.cost += from.cost + node.foothold.cost + height_cost(height / steps_.unit());
-    if (node.cost < best_cost_) push(std::move(node), inflation);
+    node.cost += from.cost + foothold.cost + height_cost(height / steps_.unit());
+    if (node.cost < best_cost_) push(node, inflation);
   }
 
   void take(int last) {
@@ -364,7 +337,6 @@ class Lattice::Search {
   const std::span<const Eigen::Vector2d> exhausted_;
   const double cell_;  // m
   Place goal_;
-  std::array<Foothold, GAITD_MAX_FEET> goal_footholds_;
   bool goal_known_ = true;
   bool partial_ = false;                            // best_ ends where the map does
   std::optional<std::pair<double, int>> frontier_;  // rank and node, where the map ends
@@ -372,8 +344,8 @@ class Lattice::Search {
   std::priority_queue<Queued> queue_;
   std::uint32_t order_ = 0;
   std::vector<Node> nodes_;  // that were expanded
-  std::unordered_set<std::uint64_t> closed_;
-  std::unordered_map<std::uint64_t, Foothold> footholds_;
+  std::optional<SoleTable> soles_;
+  int search_ = 0;  // 1: the first
   int expansions_ = 0;
   double best_cost_ = std::numeric_limits<double>::infinity();
   std::vector<GaitdFootstep> best_;

@@ -2,16 +2,11 @@
 #ifndef GAITD_FOOTSTEPS_LATTICE_H_
 #define GAITD_FOOTSTEPS_LATTICE_H_
 
-#include <array>
-#include <cstdint>
 #include <memory>
-#include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "map_planner.h"
 #include "strides.h"
-#include "tally.h"
 #include "way_estimate.h"
 
 namespace gaitd::footsteps {
@@ -28,26 +23,6 @@ class Lattice : public MapPlanner {
             const walking::GaitParameters& parameters) override;
 
  private:
-  // Where a sole is. Index `kExact`: not on the lattice but at the start or at the goal.
-  struct Node {
-    int side;
-    Place place;
-    std::uint64_t key;
-    Foothold foothold;
-    int parent;            // the foot that it steps from; -1: where the plan begins
-    double cost;           // steps, up to here
-    bool goal;             // a sole of the goal, exactly
-    bool weighed = false;  // the cost of its swing is in it
-    bool beyond = false;   // no sole: the way goes on from its parent where nothing is known
-  };
-  struct Queued {
-    double rank;
-    std::uint32_t order;  // of equals the first
-    Node node;
-    bool operator<(const Queued& other) const {  // it comes later
-      return rank != other.rank ? rank > other.rank : order > other.order;
-    }
-  };
   class Search;
 
   const std::vector<Stride> strides_;

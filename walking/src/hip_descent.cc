@@ -61,7 +61,9 @@ double highest_hip(const TrailingLeg& leg) {
   const Eigen::Vector2d velocity =
       leg.lever * (leg.omega * std::sinh(growth)) + leg.velocity * std::cosh(growth);
   const double lead = kLead / leg.omega;
-  const Eigen::Vector2d hip = leg.hip.head<2>() + way + velocity * std::max(leg.transfer, lead);
+  Eigen::Vector2d hip = leg.hip.head<2>() + way + velocity * std::max(leg.transfer, lead);
+  const double ahead = (hip - leg.ankle.head<2>()).dot(leg.heading);
+  hip -= std::max(ahead - leg.flat, 0.0) * leg.heading;
   // A leg that lands straight cannot lower the hip: it is down by then.
   const double early = std::max(leg.swing - lead, 0.0);
   return height_over(leg.ankle, hip, leg.longest) + 0.5 * kBraking * leg.gravity * early * early;

@@ -25,7 +25,7 @@ constexpr double kDescentRate = 5.4;
 constexpr double kLevelRate = 1.0;    // 1/s, with which a walk levels the pelvis
 constexpr double kLandingKnee = 0.5;  // of the knee of walk-bent
 constexpr double kShortestLeg = 0.3;  // of its length
-constexpr double kShortStep = 0.2;    // leg lengths: a longer one ahead has toe-off
+constexpr double kShortStep = 0.2;    // leg lengths: a leg reaches so far with its sole flat
 // Of the tasks: the height and the pelvis come to rest without an overshoot.
 constexpr double kHeightDamping = 1.0;
 constexpr double kTrunkDamping = 0.8;
@@ -307,12 +307,15 @@ double ObjectiveBuilder::highest_hip_of_transfer(const GaitdRobotState& robot,
   // The heel of a leg that is left behind comes up, and a short way every leg reaches.
   const double sideways = std::max(std::abs(step.y()) - model_.nominal_foot_separation, 0.0);
   const double shortest = kShortStep * leg_length_;
-  if (step.x() > shortest || std::hypot(std::min(step.x(), 0.0), sideways) < shortest) {
+  if (std::hypot(std::min(step.x(), 0.0), sideways) < shortest) {
     return std::numeric_limits<double>::max();
   }
+  const double yaw = sdk::yaw_of(sdk::quaternion(from.orientation));
   return highest_hip(TrailingLeg{
       .hip = hip(trailing),
       .ankle = ankle(trailing),
+      .heading = {std::cos(yaw), std::sin(yaw)},
+      .flat = shortest,
       .longest = legs_[trailing].geometry().length(leg_parameters_[Legs::kStraightKnee]),
       .lever = Eigen::Vector3d(view(robot.com) - view(from.position)).head<2>(),
       .velocity = Eigen::Vector3d(view(robot.com_velocity)).head<2>(),
@@ -326,8 +329,9 @@ void ObjectiveBuilder::update_lowering(double dt, const GaitdRobotState& robot,
                                        const GaitdGaitState& gait) {
   const double straight = leg_parameters_[Legs::kStraightKnee];
   const bool swing = gait.phase == GAITD_PHASE_SWING;
+  // From a stand, too: with its feet apart, the leg that leaves has as far to reach.
   const bool transfer = gait.phase == GAITD_PHASE_TRANSFER && gait.transfer_final == 0 &&
-                        gait.trailing_side == gait.next_side;
+                        (gait.trailing_side == gait.next_side || gait.trailing_side == GAITD_BOTH);
   const int standing = swing ? gait.support : transfer ? other_side(gait.next_side) : GAITD_BOTH;
   if (standing == GAITD_BOTH) {
     lowering_.reset(straight);

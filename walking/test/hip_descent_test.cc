@@ -92,6 +92,8 @@ TEST_F(HipDescent, FootholdsOutOfReachGiveNumbers) {
 TrailingLeg trailing() {
   return {.hip = Eigen::Vector3d(0.0, 0.2, 0.85),
           .ankle = Eigen::Vector3d(0.0, 0.0, 0.08),
+          .heading = Eigen::Vector2d::UnitX(),
+          .flat = 0.15,
           .longest = 0.8,
           .lever = Eigen::Vector2d::Zero(),
           .velocity = Eigen::Vector2d::Zero(),
@@ -110,6 +112,19 @@ TEST(TrailingLeg, IsAsLongAsItMayBeWhereTheHipIsAtLiftOff) {
   leg.transfer = 0.0;
   const double away = 0.2 + 0.5 * 0.4 / leg.omega;
   EXPECT_NEAR(highest_hip(leg), 0.08 + std::sqrt(0.8 * 0.8 - away * away), 1e-9);
+}
+
+TEST(TrailingLeg, AHeelThatComesUpMakesUpForWhatIsAheadAndNotForWhatIsAside) {
+  TrailingLeg leg = trailing();
+  leg.hip.x() = 0.15;
+  const double flat = highest_hip(leg);
+  EXPECT_NEAR(flat, 0.08 + std::sqrt(0.8 * 0.8 - 0.2 * 0.2 - 0.15 * 0.15), 1e-9);
+  leg.hip.x() = 0.4;
+  EXPECT_NEAR(highest_hip(leg), flat, 1e-9);
+  leg.hip.x() = -0.4;
+  EXPECT_LT(highest_hip(leg), flat - 0.05);
+  leg.hip = Eigen::Vector3d(0.15, 0.4, 0.85);
+  EXPECT_LT(highest_hip(leg), flat - 0.05);
 }
 
 TEST(TrailingLeg, TheHipComesDownGentlyAndIsDownAtTouchdown) {

@@ -26,10 +26,12 @@ struct SwingLeg {
 // follows this height lets the leg reach its foothold, also one that is late or lower than planned.
 double highest_hip(const SwingTrajectory& swing, double now, double duration, const SwingLeg& leg);
 
-// The leg that trails in a transfer, with its sole flat.
+// The leg that trails in a transfer.
 struct TrailingLeg {
   Eigen::Vector3d hip;       // m, W, now
   Eigen::Vector3d ankle;     // m, W
+  Eigen::Vector2d heading;   // W, of its foot
+  double flat;               // m, of the hip ahead of the ankle: the heel comes up for what is more
   double longest;            // m, hip to ankle
   Eigen::Vector2d lever;     // m, W: CoM from the foot that stands alone until the transfer begins
   Eigen::Vector2d velocity;  // m/s, W, of the CoM
