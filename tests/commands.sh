@@ -1,5 +1,5 @@
 # What is accepted does not fall: some of the commands that the campaigns draw, those that once fell
-# among them. All of them: gaitctl campaign sim/campaigns/walks.yaml, footsteps.yaml.
+# among them. All of them: gaitctl campaign sim/campaigns/walks.yaml, footsteps.yaml, footsteps-apart.yaml.
 source "$(dirname "$0")/common.sh"
 cd "$scratch"
 
@@ -11,8 +11,9 @@ some() {
 }
 some walks '6, 10'
 some footsteps '1, 3, 7, 31'  # 21 falls with bent knees: docs/decisions/step-plan.md
+some footsteps-apart '7, 9'
 # Not because everything is refused.
-for name in walks footsteps; do
+for name in walks footsteps footsteps-apart; do
   accepted=$(awk -F'"' '/"runs":/ { r += substr($3, 3) } /"refusals":/ { r -= substr($3, 3) }
                         END { print r }' <(sed -n '/"cells"/,/\]/p' "$name.json"))
   ((accepted > 0)) || fail "$name: everything was refused"

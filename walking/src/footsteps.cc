@@ -47,6 +47,7 @@ GaitdPose moved(const GaitdPose& pose, double x, double y, double yaw) {
 
 StepLimits::StepLimits(const GaitdModel& model, const GaitParameters& p)
     : least_separation(kNearestFeet * model.nominal_foot_separation),
+      nominal_separation(model.nominal_foot_separation),
       largest_separation(p[Gait::kWidestStep] * model.nominal_com_height),
       forward(p[Gait::kLongestStep] * model.nominal_com_height),
       backward(kBackward * forward),
@@ -137,6 +138,18 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const
         "footstep %d (%s): %.3f m ahead of the other foot, %.3f to %.3f expected "
         "(gait.longest_step); take more steps",
         number, side, d.x(), -limits.backward, limits.forward);
+  }
+  const double ahead = std::max(std::abs(d.x()) - kEstimateError, 0.0);
+  const double aside = std::max(outwards - limits.nominal_separation - kEstimateError, 0.0);
+  const double widest = limits.largest_separation - limits.nominal_separation;
+  const double reach = std::hypot(ahead / (d.x() > 0.0 ? limits.forward : limits.backward),
+                                  aside / std::max(widest, kEstimateError));
+  if (reach > 1.0) {
+    return refuse(
+        "footstep %d (%s): %.3f m ahead of the other foot and %.3f m beside it; a leg reaches the "
+        "one "
+        "or the other, both at once are %.2f of its reach; take more steps",
+        number, side, d.x(), outwards, reach);
   }
   const double travel = way_between(from, step.pose);
   if (travel > limits.travel + kEstimateError) {

@@ -223,6 +223,26 @@ TEST(Stride, AFootIsAsFastAsBalanceAllows) {
   EXPECT_FALSE(refused(0.9, 0.0, 0.4)) << "out of standing a foot has half the way to go";
 }
 
+// The same fraction of the reach ahead and aside: 0.7 of both is in reach, 0.72 is not.
+TEST(Reach, ALegThatReachesAheadOrAsideDoesNotReachBothAtOnce) {
+  const StepLimits& most = limits();
+  const double aside = most.largest_separation - most.nominal_separation;
+  const auto refused = [&](double ahead, double share) {
+    GaitdFootstep step{};
+    step.side = GAITD_LEFT;
+    step.pose = pose(ahead, most.nominal_separation + share * aside, 0.0);
+    const GaitdPose from = pose(0.0, most.nominal_separation, 0.0);
+    return check_footstep(step, pose(0.0, 0.0, 0.0), from, 1, most).refused();
+  };
+  for (const double reach : {most.forward, -most.backward}) {
+    EXPECT_FALSE(refused(reach, 0.0)) << reach;
+    EXPECT_FALSE(refused(0.7 * reach, 0.7)) << reach;
+    EXPECT_TRUE(refused(0.72 * reach, 0.72)) << reach;
+    EXPECT_TRUE(refused(reach, 1.0)) << reach;
+  }
+  EXPECT_FALSE(refused(0.0, 1.0));
+}
+
 TEST(MiddlePose, LiesHalfWayAndTurnsTheShortWayRound) {
   GaitdPose a = pose(1.0, 2.0, 3.0);
   GaitdPose b = pose(3.0, 0.0, -3.0);

@@ -21,6 +21,7 @@ inline constexpr double kFinalTransfer = 0.8;  // s, of the transfer into standi
 struct StepLimits {
   StepLimits(const GaitdModel& model, const GaitParameters& parameters);
   double least_separation;  // sideways: closer the legs get in each other's way
+  double nominal_separation;
   double largest_separation;
   double forward;
   double backward;
