@@ -91,7 +91,8 @@ git add -A && { git diff --cached --quiet || git -c user.name=x -c user.email=x 
 launcher=()
 if command -v ccache >/dev/null; then
   export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$(dirname "$copy")} CCACHE_NOHASHDIR=1
-  launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  # It keeps nothing that was compiled with a precompiled header.
+  launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON)
 fi
 cmake --preset release -DGAITD_BUILD_BENCHMARKS=OFF "${launcher[@]}" >/dev/null
 

@@ -5,13 +5,14 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <queue>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "angle.h"
-#include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
 #include "goal_place.h"
 #include "sole_table.h"
@@ -80,8 +81,7 @@ class Lattice::Search {
     int budget = lattice_.options_.expansions;
     for (const double inflation : kInflations) {
       if (!search(inflation, budget)) break;
-      budget = std::min(lattice_.options_.expansions,
-                        std::max(kImprove * expansions_, expansions_ + kLeastImprove));
+      budget = enough();
       if (expansions_ >= budget) break;
     }
     plan.expansions = expansions_;
@@ -95,7 +95,7 @@ class Lattice::Search {
  private:
   // A step onto a sole.
   struct Node {
-    Sole* sole;
+    SolePlace* sole;
     double cost;           // steps, up to here
     int parent;            // the foot that it steps from; -1: where the plan begins
     bool goal;             // a sole of the goal, exactly
@@ -110,6 +110,12 @@ class Lattice::Search {
       return rank != other.rank ? rank > other.rank : order > other.order;
     }
   };
+
+  // Expansions to end at, now that there is a way.
+  int enough() const {
+    return std::min(lattice_.options_.expansions,
+                    std::max(kImprove * expansions_, expansions_ + kLeastImprove));
+  }
 
   // False: there is no place for the feet at the goal, or near it.
   bool find_goal(std::string* refusal) {
@@ -147,7 +153,7 @@ class Lattice::Search {
 
   // Whether the queued step can be taken; its footstep.
   StepState step_to(const Node& node, GaitdFootstep* step) const {
-    const Sole& sole = *node.sole;
+    const SolePlace& sole = *node.sole;
     return steps_.make(sole.side, Footholds::pose_of(sole.place, sole.foothold),
                        stance_of(node.parent), stands(node.parent, sole.side), parameters_, step);
   }
@@ -173,7 +179,8 @@ class Lattice::Search {
   bool search(double inflation, int budget) {
     begin(inflation);
     bool found = false;
-    while (!queue_.empty() && expansions_ < budget) {
+    enough_ = budget_ = budget;
+    while (!queue_.empty() && expansions_ < enough_) {
       const Node node = queue_.top().node;
       queue_.pop();
       if (is_closed(node) || node.cost >= best_cost_) continue;
@@ -224,7 +231,7 @@ class Lattice::Search {
 
   void expand(int at, double inflation) {
     ++expansions_;
-    const Sole& from = *nodes_[at].sole;
+    const SolePlace& from = *nodes_[at].sole;
     const double distance = std::hypot(goal_.x - from.place.x, goal_.y - from.place.y);
     if (distance < nearest_) {
       nearest_ = distance;
@@ -244,7 +251,7 @@ class Lattice::Search {
     const double c = std::cos(from.place.yaw), s = std::sin(from.place.yaw);
     for (const Stride& stride : lattice_.strides_) {
       const double y = outwards * stride.outwards;
-      Sole& sole = soles_->nearest(
+      SolePlace& sole = soles_->nearest(
           side, {from.place.x + c * stride.ahead - s * y, from.place.y + s * stride.ahead + c * y,
                  from.place.yaw + outwards * stride.turn * kHeading});
       if (sole.closed_in == search_) continue;
@@ -276,7 +283,10 @@ class Lattice::Search {
     beyond.cost = node.cost + kBeyond * there;
     beyond.beyond = true;
     const double rank = beyond.cost + (inflation - 1.0) * there;
-    if (!frontier_ || rank < frontier_->first) frontier_ = {rank, at};
+    if (!frontier_ || rank < frontier_->first) {
+      frontier_ = {rank, at};
+      enough_ = std::min(budget_, enough());
+    }
     queue_.push({rank, order_++, beyond});
   }
 
@@ -284,7 +294,7 @@ class Lattice::Search {
   // the second can be taken, so that there may be many of it.
   void add_goal(int at, int side, double inflation) {
     const Place& from = nodes_[at].sole->place;
-    Sole& goal = soles_->goal(side);
+    SolePlace& goal = soles_->goal(side);
     const Place& place = goal.place;
     const double unit = steps_.unit();
     const double c = std::cos(from.yaw), s = std::sin(from.yaw);
@@ -346,6 +356,8 @@ class Lattice::Search {
   std::vector<Node> nodes_;  // that were expanded
   std::optional<SoleTable> soles_;
   int search_ = 0;  // 1: the first
+  // Expansions that this search may take, and those once it knows a way to where the map ends.
+  int budget_ = 0, enough_ = 0;
   int expansions_ = 0;
   double best_cost_ = std::numeric_limits<double>::infinity();
   std::vector<GaitdFootstep> best_;

@@ -37,13 +37,13 @@ SoleTable::SoleTable(const StepMaker& steps, const WayEstimate* way, double per_
   }
 }
 
-Sole& SoleTable::nearest(int side, const Place& place) {
+SolePlace& SoleTable::nearest(int side, const Place& place) {
   const int i = static_cast<int>(std::lround((place.x - middle_.x) / cell_));
   const int j = static_cast<int>(std::lround((place.y - middle_.y) / cell_));
   int heading = static_cast<int>(std::lround((place.yaw - middle_.yaw) / kHeading)) % kHeadings;
   if (heading < 0) heading += kHeadings;
   const auto [entry, fresh] = lattice_.try_emplace(key_of(side, i, j, heading));
-  Sole& sole = entry->second;
+  SolePlace& sole = entry->second;
   if (fresh) {
     sole.side = side;
     sole.place = {middle_.x + cell_ * i, middle_.y + cell_ * j,
@@ -55,7 +55,7 @@ Sole& SoleTable::nearest(int side, const Place& place) {
   return sole;
 }
 
-void SoleTable::weigh(Sole* sole) const {
+void SoleTable::weigh(SolePlace* sole) const {
   const Place& p = sole->place;
   if (way_) {
     const Place middle = sole_beside(p, walking::other_side(sole->side), steps_.model());

@@ -15,7 +15,7 @@
 
 namespace gaitd::footsteps {
 
-struct Sole {
+struct SolePlace {
   int side = 0;
   Place place;
   Foothold foothold;
@@ -31,22 +31,22 @@ class SoleTable {
   SoleTable(const StepMaker& steps, const WayEstimate* way, double per_metre, double cell,
             const Start& start, const GoalPlace& goal);
 
-  Sole& start(int side) { return start_[static_cast<std::size_t>(side)]; }
-  Sole& goal(int side) { return goal_[static_cast<std::size_t>(side)]; }
+  SolePlace& start(int side) { return start_[static_cast<std::size_t>(side)]; }
+  SolePlace& goal(int side) { return goal_[static_cast<std::size_t>(side)]; }
   // The one of the lattice that is nearest to `place`.
-  Sole& nearest(int side, const Place& place);
+  SolePlace& nearest(int side, const Place& place);
 
  private:
-  void weigh(Sole* sole) const;
+  void weigh(SolePlace* sole) const;
 
   const StepMaker& steps_;
   const WayEstimate* const way_;
   const double per_metre_;  // steps
   const double cell_;       // m
   const Place middle_;      // of the feet at the goal
-  std::array<Sole, GAITD_MAX_FEET> start_, goal_;
+  std::array<SolePlace, GAITD_MAX_FEET> start_, goal_;
   std::pmr::monotonic_buffer_resource memory_;
-  std::pmr::unordered_map<std::uint64_t, Sole> lattice_{&memory_};
+  std::pmr::unordered_map<std::uint64_t, SolePlace> lattice_{&memory_};
 };
 
 }  // namespace gaitd::footsteps

@@ -146,9 +146,9 @@ Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const
                                   aside / std::max(widest, kEstimateError));
   if (reach > 1.0) {
     return refuse(
-        "footstep %d (%s): %.3f m ahead of the other foot and %.3f m beside it; a leg reaches the "
-        "one "
-        "or the other, both at once are %.2f of its reach; take more steps",
+        "footstep %d (%s): %.3f m ahead of the other foot and %.3f m beside it, together %.3f of "
+        "what a leg reaches, at most 1 expected (gait.longest_step, gait.widest_step); take more "
+        "steps",
         number, side, d.x(), outwards, reach);
   }
   const double travel = way_between(from, step.pose);
