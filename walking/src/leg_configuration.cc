@@ -99,14 +99,17 @@ const LegConfiguration::Reference& LegConfiguration::update(
   reference_.state = next_state(straightened, lowered, side, gait);
 
   if (gait.mode != GAITD_MODE_WALK_STRAIGHT) {
-    // The commanded height bends a leg that carries the robot; only the others need to be told.
+    // The commanded height bends a leg that carries the robot; only the others need to be told. And
+    // one that is straight: it is as long as it can be, and no task knows that it may bend.
     const bool leaving =
         gait.phase != GAITD_PHASE_STAND && gait.transfer_final == 0 && gait.next_side == side;
+    const double landing = kLandingKnee * p[Legs::kBentKnee], bend = std::max(knee, 0.0);
+    const double stretched = bend < landing ? 1.0 - bend / landing : 0.0;
     reference_ = {reference_.state,
                   p[Legs::kBentKnee],
                   kBentGains.stiffness,
                   kBentGains.damping,
-                  leaving ? kBentGains.weight : 0.0,
+                  (leaving ? 1.0 : stretched) * kBentGains.weight,
                   0.0,
                   0.0};
     return reference_;

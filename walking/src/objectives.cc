@@ -23,7 +23,6 @@ using sdk::view;
 constexpr double kHeightRate = 2.3;
 constexpr double kDescentRate = 5.4;
 constexpr double kLevelRate = 1.0;    // 1/s, with which a walk levels the pelvis
-constexpr double kLandingKnee = 0.5;  // of the knee of walk-bent
 constexpr double kShortestLeg = 0.3;  // of its length
 constexpr double kShortStep = 0.2;    // leg lengths: a leg reaches so far with its sole flat
 // Of the tasks: the height and the pelvis come to rest without an overshoot.
@@ -169,8 +168,8 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
   const bool straight = gait.mode == GAITD_MODE_WALK_STRAIGHT;
   bool descends = false;
   if (gait.phase == GAITD_PHASE_SWING && !straight) {
-    const double landing =
-        legs_[gait.next_side].geometry().length(kLandingKnee * leg_parameters_[Legs::kBentKnee]);
+    const double landing = legs_[gait.next_side].geometry().length(
+        LegConfiguration::kLandingKnee * leg_parameters_[Legs::kBentKnee]);
     const double hip = highest_hip_of_swing(robot, gait, landing, reach.longest);
     const double above = standing - leg_length_ - ankle_in_sole_[gait.next_side].z();
     descends = hip + above < out.height_target;

@@ -296,6 +296,23 @@ TEST(LegConfiguration, EveryStateOfABentWalkHasTheBentKneeAndOnlyASwingLegIsTold
   ASSERT_TRUE(w.run_until_stand());
 }
 
+TEST(LegConfiguration, ALegOfABentWalkThatStandsStraightIsTold) {
+  GaitdGaitState g{};
+  g.mode = GAITD_MODE_WALK_BENT;
+  g.phase = GAITD_PHASE_STAND;
+  LegConfiguration leg;
+  leg.set_leg(gaitd::testing::atlas(), GAITD_LEFT, 0.0);
+  const double landing = LegConfiguration::kLandingKnee * parameters()[Legs::kBentKnee];
+  const auto weight = [&](double knee) {
+    return leg.update(0.001, GAITD_LEFT, knee, 0.0, ReferenceFilter(), 3.0, g, parameters()).weight;
+  };
+  EXPECT_EQ(weight(0.0), LegConfiguration::kBentGains.weight);
+  EXPECT_EQ(weight(-0.01), LegConfiguration::kBentGains.weight);
+  EXPECT_NEAR(weight(0.5 * landing), 0.5 * LegConfiguration::kBentGains.weight, 1e-12);
+  EXPECT_EQ(weight(landing), 0.0);
+  EXPECT_EQ(weight(1.0), 0.0);
+}
+
 TEST(LegConfiguration, StraightLegsAreHeldWithTheStraightGains) {
   LegsOfAWalk w(GAITD_MODE_WALK_STRAIGHT);
   ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3}).refused());

@@ -46,6 +46,8 @@ class LegConfiguration {
   static constexpr double kRise = 0.07;
   // rad: no reference runs further ahead of a knee that something holds.
   static constexpr double kMaxLead = 0.2;
+  // Of the knee of walk-bent: as straight as a leg may be there, when it lands.
+  static constexpr double kLandingKnee = 0.5;
   // Parts of a swing after which its leg reaches out, and the one that stands gives way.
   static constexpr double kExtendFraction = 0.5;
   static constexpr double kCollapseFraction = 0.65;
