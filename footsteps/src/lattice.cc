@@ -81,7 +81,7 @@ class Lattice::Search {
     int budget = lattice_.options_.expansions;
     for (const double inflation : kInflations) {
       if (!search(inflation, budget)) break;
-      budget = enough();
+      budget = enough(expansions_);
       if (expansions_ >= budget) break;
     }
     plan.expansions = expansions_;
@@ -111,10 +111,20 @@ class Lattice::Search {
     }
   };
 
-  // Expansions to end at, now that there is a way.
-  int enough() const {
+  // Where the map ends.
+  struct Frontier {
+    double rank;
+    int node;
+    int expansions;  // after which it was found
+  };
+
+  // Expansions to end at, if a way was found after so many.
+  int enough(int expansions) const {
     return std::min(lattice_.options_.expansions,
-                    std::max(kImprove * expansions_, expansions_ + kLeastImprove));
+                    std::max(kImprove * expansions, expansions + kLeastImprove));
+  }
+  bool spent(int budget) const {
+    return expansions_ >= budget || (frontier_ && expansions_ >= enough(frontier_->expansions));
   }
 
   // False: there is no place for the feet at the goal, or near it.
@@ -179,8 +189,7 @@ class Lattice::Search {
   bool search(double inflation, int budget) {
     begin(inflation);
     bool found = false;
-    enough_ = budget_ = budget;
-    while (!queue_.empty() && expansions_ < enough_) {
+    while (!queue_.empty() && !spent(budget)) {
       const Node node = queue_.top().node;
       queue_.pop();
       if (is_closed(node) || node.cost >= best_cost_) continue;
@@ -221,8 +230,8 @@ class Lattice::Search {
     }
     // Out of expansions: as far as the best of what was reached.
     if (!found && best_.empty() && frontier_) {
-      take(frontier_->second);
-      const Node& last = nodes_[frontier_->second];
+      take(frontier_->node);
+      const Node& last = nodes_[frontier_->node];
       best_cost_ = last.cost + kBeyond * last.sole->estimate;
       partial_ = true;
     }
@@ -283,10 +292,7 @@ class Lattice::Search {
     beyond.cost = node.cost + kBeyond * there;
     beyond.beyond = true;
     const double rank = beyond.cost + (inflation - 1.0) * there;
-    if (!frontier_ || rank < frontier_->first) {
-      frontier_ = {rank, at};
-      enough_ = std::min(budget_, enough());
-    }
+    if (!frontier_ || rank < frontier_->rank) frontier_ = {rank, at, expansions_};
     queue_.push({rank, order_++, beyond});
   }
 
@@ -348,16 +354,14 @@ class Lattice::Search {
   const double cell_;  // m
   Place goal_;
   bool goal_known_ = true;
-  bool partial_ = false;                            // best_ ends where the map does
-  std::optional<std::pair<double, int>> frontier_;  // rank and node, where the map ends
+  bool partial_ = false;  // best_ ends where the map does
+  std::optional<Frontier> frontier_;
 
   std::priority_queue<Queued> queue_;
   std::uint32_t order_ = 0;
   std::vector<Node> nodes_;  // that were expanded
   std::optional<SoleTable> soles_;
   int search_ = 0;  // 1: the first
-  // Expansions that this search may take, and those once it knows a way to where the map ends.
-  int budget_ = 0, enough_ = 0;
   int expansions_ = 0;
   double best_cost_ = std::numeric_limits<double>::infinity();
   std::vector<GaitdFootstep> best_;
