@@ -97,6 +97,7 @@ const LegConfiguration::Reference& LegConfiguration::update(
   const bool straightened = stance_.value() <= straight + kStraightened;
   const bool lowered = lowering.value() > p[Legs::kCollapsedKnee];
   reference_.state = next_state(straightened, lowered, side, gait);
+  const double pace = gait.phase == GAITD_PHASE_STAND ? kSettleRate : kStanceRate;
 
   if (gait.mode != GAITD_MODE_WALK_STRAIGHT) {
     // The commanded height bends a leg that carries the robot; only the others need to be told. And
@@ -109,9 +110,14 @@ const LegConfiguration::Reference& LegConfiguration::update(
                   p[Legs::kBentKnee],
                   kBentGains.stiffness,
                   kBentGains.damping,
-                  (leaving ? 1.0 : stretched) * kBentGains.weight,
+                  kBentGains.weight,
                   0.0,
                   0.0};
+    if (leaving || stretched <= 0.0) stance_.reset(knee, rate);
+    if (!leaving) {
+      reference_.weight *= stretched;
+      follow(dt, p[Legs::kBentKnee], pace, knee);
+    }
     return reference_;
   }
   const Gains& gains = LegConfiguration::gains(reference_.state);
@@ -121,7 +127,7 @@ const LegConfiguration::Reference& LegConfiguration::update(
   switch (reference_.state) {
     case LegState::kStraighten:
     case LegState::kStraight:
-      follow(dt, straight, gait.phase == GAITD_PHASE_STAND ? kSettleRate : kStanceRate, knee);
+      follow(dt, straight, pace, knee);
       break;
     case LegState::kCollapsed:
       if (gait.phase == GAITD_PHASE_SWING) {
