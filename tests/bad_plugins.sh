@@ -69,11 +69,7 @@ realtime: {overrun: stop, overrun_run: 0.01}
 CONFIG
 start_daemon --config "$scratch/slow.yaml" --clock realtime --log "$scratch/slow.mcap" \
   --set "toe_off.variant=$layers/toe_off.so" --set toe_off.fault=5 --set toe_off.fault_time=1.0
-for _ in {1..100}; do
-  [[ $(field faults) == *overrun* ]] && break
-  sleep 0.1
-done
-[[ $(field faults) == *overrun* ]] || fail "too slow in real time: faults are '$(field faults)'"
+wait_until has_fault overrun || fail "too slow in real time: faults are '$(field faults)'"
 kill -0 "$daemon" || fail "too slow in real time ended gaitd"
 stop_daemon
 echo "too slow in real time ends in the fault overrun"

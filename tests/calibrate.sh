@@ -81,10 +81,8 @@ YAML
 } >short.yaml
 gaitd --scenario hanging.yaml --clock realtime --log "$PWD/live.mcap" >"$scratch/gaitd.txt" 2>&1 &
 daemon=$!
-for _ in $(seq 200); do
-  gaitctl status >status.txt 2>&1 && grep -q '^state *disarmed' status.txt && break || sleep 0.1
-done
-grep -q '^state *disarmed' status.txt || { cat status.txt; fail "a robot on its hoist comes up disarmed"; }
+is_disarmed() { gaitctl status >status.txt 2>&1 && grep -q '^state *disarmed' status.txt; }
+wait_until is_disarmed || { cat status.txt; fail "a robot on its hoist comes up disarmed"; }
 gaitctl calibrate --motions "$PWD/short.yaml" -o live.yaml </dev/null || fail "the calibration of a running robot"
 grep -q 'l_leg_aky.*coulomb' live.yaml || { cat live.yaml; fail "no friction of the joint that was swung"; }
 gaitctl calibrate --motions "$PWD/short.yaml" -o again.yaml 2>refused.txt && fail "an armed robot was calibrated"

@@ -45,17 +45,24 @@ expect: {no_fall: true}
 SCENARIO
 }
 
+# wait_until COMMAND...: until it succeeds; false after 1200 attempts, longer than any busy machine takes.
+wait_until() {
+  local attempt
+  for ((attempt = 0; attempt < 1200; ++attempt)); do
+    "$@" && return
+    sleep 0.05
+  done
+  return 1
+}
+
 # start_daemon ARGUMENTS...: gaitd in the background, ready when it answers.
 start_daemon() {
   printf '$ gaitd %s &\n' "$*"
   gaitd "$@" >"$scratch/gaitd.txt" 2>&1 &
   daemon=$!
-  for _ in {1..100}; do
-    "${client[@]}" status >/dev/null 2>&1 && return
-    kill -0 "$daemon" 2>/dev/null || fail "gaitd ended while starting"
-    sleep 0.1
-  done
-  fail "gaitd does not answer after 10 s"
+  answers_or_ended() { "${client[@]}" status >/dev/null 2>&1 || ! kill -0 "$daemon" 2>/dev/null; }
+  wait_until answers_or_ended || fail "gaitd does not answer"
+  kill -0 "$daemon" 2>/dev/null || fail "gaitd ended while starting"
 }
 
 # stop_process NAME PID [CODE]: on SIGTERM; CODE is the exit code expected.
@@ -81,6 +88,9 @@ field() { "${client[@]}" status | awk -v name="$1" '$1 == name { $1 = ""; print 
 
 # commands_of PAGE: the lines of its ```sh blocks.
 commands_of() { awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' "$GAITD_SOURCE/$1"; }
+
+# has_fault NAME: whether the status says so.
+has_fault() { [[ $(field faults) == *"$1"* ]]; }
 
 # wait_for NAME VALUE SECONDS: until the status says so. A fault ends it at once.
 wait_for() {

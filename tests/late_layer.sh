@@ -12,11 +12,8 @@ value() { gaitctl --json status | node -e '
   console.log(typeof value === "object" ? JSON.stringify(value) : value)' "$1"; }
 # wait_late NAME: until the status blames it.
 wait_late() {
-  for _ in {1..200}; do
-    [[ $(value late/what) == "$1" ]] && return
-    sleep 0.1
-  done
-  fail "late is $(value late), expected $1"
+  is_late() { [[ $(value late/what) == "$1" ]]; }
+  wait_until is_late "$1" || fail "late is $(value late), expected $1"
 }
 
 # In lockstep it is told, and that is all.
@@ -34,11 +31,8 @@ stop_daemon
 # In real time it makes overruns; the robot goes on with both policies.
 for policy in skip catch_up; do
   start_daemon --clock realtime --set "realtime.overrun=$policy" "${slow[@]}"
-  for _ in {1..200}; do
-    (($(value overruns) > 20)) && break
-    sleep 0.1
-  done
-  (($(value overruns) > 20)) || fail "$policy: $(value overruns) overruns"
+  overran() { (($(value overruns) > 20)); }
+  wait_until overran || fail "$policy: $(value overruns) overruns"
   wait_late toe_off
   [[ $(field faults) == none ]] || fail "$policy: faults: $(field faults)"
   stop_daemon

@@ -30,7 +30,7 @@ trap clean_up_bridge EXIT
 fail_with() { fail "$1: $(cat ros2.txt)"; }
 start_daemon --set clock=realtime --set log.enabled=false
 ticks() { awk '{ print $14 + $15 }' "/proc/$bridge/stat"; }
-for _ in {1..100}; do grep -q 'connected to gaitd' ros2.txt && break || sleep 0.1; done
+wait_until grep -q 'connected to gaitd' ros2.txt || fail_with "not connected"
 begin=$(ticks) began=$EPOCHREALTIME
 "$look" "$ROS_DOMAIN_ID" /robots/one || fail_with "the client on Fast DDS"
 awk -v ticks=$(($(ticks) - begin)) -v hertz="$(getconf CLK_TCK)" -v began="$began" -v now="$EPOCHREALTIME" \
@@ -42,11 +42,10 @@ grep -q 'e-stop: gaitd has taken it' ros2.txt || fail_with "the e-stop was not t
 # gaitd goes and comes back.
 kill -KILL "$daemon"
 wait "$daemon" 2>/dev/null || true
-for _ in {1..50}; do grep -q 'not connected' ros2.txt && break || sleep 0.1; done
-grep -q 'not connected' ros2.txt || fail_with "it does not say that gaitd has gone"
+wait_until grep -q 'not connected' ros2.txt || fail_with "it does not say that gaitd has gone"
 start_daemon --set clock=realtime --set log.enabled=false
-for _ in {1..100}; do (($(grep -c 'connected to gaitd' ros2.txt) == 2)) && break || sleep 0.1; done
-(($(grep -c 'connected to gaitd' ros2.txt) == 2)) || fail_with "it does not come back"
+is_back() { (($(grep -c 'connected to gaitd' ros2.txt) == 2)); }
+wait_until is_back || fail_with "it does not come back"
 code=0
 kill -TERM "$bridge"
 wait "$bridge" || code=$?

@@ -7,9 +7,6 @@ wait_for state standing 60
 kill -STOP "$daemon"
 sleep 0.8
 kill -CONT "$daemon"
-for _ in {1..100}; do
-  [[ $(field state) == fault ]] && break
-  sleep 0.1
-done
+wait_until has_fault overrun || true
 [[ $(field faults) == overrun ]] || fail "faults: $(field faults), expected overrun"
 stop_daemon

@@ -19,8 +19,7 @@ start_robot() {
   shift
   gaitd-fake-g1 --lockstep --patience 20 --domain "$domain" --report "$name.json" "$@" >robot.txt 2>&1 &
   robot=$!
-  for _ in {1..200}; do grep -q ready robot.txt && return || sleep 0.05; done
-  fail "the fake robot does not start: $(cat robot.txt)"
+  wait_until grep -q ready robot.txt || fail "the fake robot does not start: $(cat robot.txt)"
 }
 
 stop_robot() {
@@ -85,7 +84,7 @@ condition() {
   start_robot "condition$number" "$@"
   start_gaitd --set safety.ready_duration=60 --set unitree_dds.lockstep_timeout="${patience:-20}"
   arm
-  for _ in {1..200}; do [[ $(field state) == fault ]] && break || sleep 0.05; done
+  wait_until has_fault "$fault" || true
   [[ $(field faults) == "$fault" ]] || fail "$*: expected the fault $fault, got '$(field faults)', $(field health)"
   [[ $(gaitctl status) == *"$text"* ]] || fail "$*: expected '$text': $(gaitctl status)"
   stop_daemon
@@ -130,8 +129,8 @@ link=$(pgrep -f "gaitd-unitree-link lockstep .*\"domain\":$domain," || true)
 kill -KILL "$daemon"
 wait "$daemon" 2>/dev/null || true
 daemon=
-for _ in {1..100}; do kill -0 "$link" 2>/dev/null || break; sleep 0.05; done
-! kill -0 "$link" 2>/dev/null || fail "the link does not end"
+has_ended() { ! kill -0 "$1" 2>/dev/null; }
+wait_until has_ended "$link" || fail "the link does not end"
 stop_robot
 expect_report killed "r['motors'] == {'driven': 0, 'damped': 29}" "r['cycles'] - r['last_driven_cycle'] > 20"
 echo "killed: damped for $(python3 -c "import json; r = json.load(open('killed.json')); print(r['cycles'] - r['last_driven_cycle'])") periods"

@@ -17,8 +17,7 @@ trap '[[ -z $view ]] || kill "$view" 2>/dev/null; clean_up' EXIT
 start_view() {
   gaitctl --json view "$@" >pages.json 2>view.txt &
   view=$!
-  for _ in {1..600}; do grep -q '}' pages.json && return || sleep 0.1; done
-  fail "view prints no address: $(cat view.txt)"
+  wait_until grep -q '}' pages.json || fail "view prints no address: $(cat view.txt)"
 }
 
 end_view() {
@@ -48,7 +47,7 @@ for command in "${commands[@]}"; do
   printf '$ %s\n' "${words[*]}"
   "${words[@]}" >shown.txt 2>view.txt &
   view=$!
-  for _ in {1..600}; do grep -q '#token=' shown.txt && break || sleep 0.1; done
+  wait_until grep -q '#token=' shown.txt || true
   grep -qE 'https?://[^ ]+/#token=[0-9a-f]{32}' shown.txt || fail "no address: $(cat shown.txt view.txt)"
   if [[ $command == *--watch-only* && $(grep -c '#token=' shown.txt) != 1 ]]; then fail "not only to watch: $(cat shown.txt)"; fi
   end_view

@@ -18,7 +18,7 @@ wait_for state standing 60
 gaitctl --json view --listen 127.0.0.1:0 >pages.json 2>view.txt &
 view=$!
 trap 'kill "$view" 2>/dev/null; clean_up' EXIT
-for _ in {1..100}; do grep -q '}' pages.json && break || sleep 0.1; done
+wait_until grep -q '}' pages.json || fail "view prints no address: $(cat view.txt)"
 # token ROLE, and the address for Foxglove with it.
 foxglove() { sed -n "s|.*\"$1\": \"http\(://[^#]*\)#\(token=[0-9a-f]*\)\".*|ws\1?\2|p" pages.json; }
 

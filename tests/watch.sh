@@ -30,18 +30,11 @@ start_watch() {
       exec gaitctl watch --interval 0.02 $*" "$scratch/$name" </dev/null >/dev/null || code=$?
     echo "$code" >"$scratch/$name.code"
   } &
-  for _ in {1..200}; do
-    grep -qF "ICP error" "$scratch/$name" 2>/dev/null && return
-    sleep 0.05
-  done
-  fail "watch shows nothing on a terminal: $(cat "$scratch/$name" 2>/dev/null)"
+  wait_until grep -qsF "ICP error" "$scratch/$name" || fail "watch shows nothing on a terminal: $(cat "$scratch/$name" 2>/dev/null)"
 }
 # ends NAME CODE: the program has ended so, and left the terminal.
 ends() {
-  for _ in {1..200}; do
-    [[ -s $scratch/$1.code ]] && break
-    sleep 0.05
-  done
+  wait_until test -s "$scratch/$1.code" || fail "$1 does not end"
   [[ $(cat "$scratch/$1.code") == "$2" ]] ||
     fail "$1: exit code $(cat "$scratch/$1.code"), expected $2"
   grep -qF "$enter" "$scratch/$1" || fail "$1: no alternate screen"
@@ -69,11 +62,7 @@ wait_for state walking 5
 wait_for state standing 30
 expect 0 gaitctl estop
 wait_for_text() {
-  for _ in {1..100}; do
-    grep -qaE "$2" "$scratch/$1" && return
-    sleep 0.05
-  done
-  fail "watch does not show '$2': $(sed 's/\x1b\[[0-9;?]*[a-zA-Z]/\n/g' "$scratch/$1" | tail -n 40)"
+  wait_until grep -qaE "$2" "$scratch/$1" || fail "watch does not show '$2': $(sed 's/\x1b\[[0-9;?]*[a-zA-Z]/\n/g' "$scratch/$1" | tail -n 40)"
 }
 for text in 'state +walking' 'state +standing' 'state +fault' 'faults +none' 'faults +estop' \
   'gait +walk-[a-z]+, swing, support (left|right)' 'step +2, ' 'ICP error +[0-9.]+ mm' \
@@ -97,17 +86,11 @@ reconnecting=$(cat "$scratch/pid")
 stop_daemon
 ends gone 3
 grep -q 'gaitd has ended' "$scratch/gone" || fail "it does not say that gaitd has ended"
-for _ in {1..100}; do
-  grep -q 'waiting for gaitd' "$scratch/reconnect" && break
-  sleep 0.05
-done
+wait_until grep -q 'waiting for gaitd' "$scratch/reconnect" || fail "it does not say that it waits"
 shown=$(wc -c <"$scratch/reconnect")
 start_daemon --log "$scratch/log.mcap"
-for _ in {1..200}; do
-  tail -c +"$shown" "$scratch/reconnect" | grep -q 'ICP error' && break
-  sleep 0.05
-done
-tail -c +"$shown" "$scratch/reconnect" | grep -q 'ICP error' || fail "it does not connect again"
+shows_again() { tail -c +"$shown" "$scratch/reconnect" | grep -q 'ICP error'; }
+wait_until shows_again || fail "it does not connect again"
 kill -INT "$reconnecting"
 ends reconnect 0
 stop_daemon
