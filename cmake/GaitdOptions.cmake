@@ -57,15 +57,16 @@ function(gaitd_in_plugins target)
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
 endfunction()
 
-# Reading the headers of GoogleTest, Eigen and the standard library takes half of the time of a test's file: they are
+# Reading the headers of GoogleTest, Eigen, JSON and the standard library takes half of the time of a test's file: they are
 # read once for all. An executable, since the headers of a library are compiled for other addresses.
 if(GAITD_BUILD_TESTS)
   file(WRITE ${CMAKE_BINARY_DIR}/test_headers.cc "int main() {}\n")
   add_executable(gaitd_test_headers EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/test_headers.cc)
-  target_link_libraries(gaitd_test_headers PRIVATE Eigen3::Eigen GTest::gtest)
+  find_package(nlohmann_json 3.11 REQUIRED)
+  target_link_libraries(gaitd_test_headers PRIVATE Eigen3::Eigen GTest::gtest nlohmann_json::nlohmann_json)
   gaitd_never_hot(gaitd_test_headers)
   target_precompile_headers(gaitd_test_headers PRIVATE
-    <gtest/gtest.h> <Eigen/Dense> <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <limits> <map>
+    <gtest/gtest.h> <Eigen/Dense> <nlohmann/json.hpp> <algorithm> <array> <chrono> <cmath> <deque> <filesystem> <fstream> <functional> <limits> <map>
     <memory> <optional> <random> <set> <sstream> <string> <thread> <unordered_map> <vector>)
 endif()
 

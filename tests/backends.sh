@@ -9,6 +9,7 @@ export PATH="$(dirname "${CMAKE:-/usr/bin/cmake}"):$PATH"
 for line in "${lines[@]}"; do
   printf '$ %s\n' "$line"
   eval "$line" >out.txt 2>&1 || fail "'$line' ended with exit code $?: $(tail -n 20 out.txt)"
+  if [[ $line == *--build* ]] && grep -i warning out.txt; then fail "warnings while building"; fi
 done
 
 cp -r "$GAITD_SOURCE/docs/examples/backend" example

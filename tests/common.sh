@@ -92,6 +92,16 @@ commands_of() { awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' "$GAITD_SO
 # has_fault NAME: whether the status says so.
 has_fault() { [[ $(field faults) == *"$1"* ]]; }
 
+# interrupt_first_run COMMAND...: a campaign, until it plays or measures something.
+interrupt_first_run() {
+  "$@" &
+  local campaign=$!
+  plays_or_ended() { pgrep -P "$1" -x gaitctl >/dev/null || ! kill -0 "$1" 2>/dev/null; }
+  wait_until plays_or_ended "$campaign" || true
+  kill -INT "$campaign" 2>/dev/null || true
+  wait "$campaign" || true
+}
+
 # wait_for NAME VALUE SECONDS: until the status says so. A fault ends it at once.
 wait_for() {
   local value deadline=$((SECONDS + $3))

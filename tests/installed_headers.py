@@ -6,6 +6,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 prefix = pathlib.Path(sys.argv[1])
 libraries = sorted((prefix / "lib").glob("libgaitd_*.a"))
@@ -14,14 +15,38 @@ symbols = subprocess.run(["nm", "-C", "--defined-only", *map(str, libraries)], c
 defined = {line.split(" ", 2)[2] for line in symbols.splitlines() if re.match(r"^[0-9a-f]+ [TWVR] ", line)}
 names = {re.split(r"[(\[]", text)[0] for text in defined}
 
+INCLUDE = re.compile(r'^#include [<"]([^">]+)[">]', re.M)
+
+
+def included(name, seen):
+    """Everything that a header includes, and what that includes."""
+    file = prefix / "include" / name
+    for one in INCLUDE.findall(file.read_text()) if file.is_file() else []:
+        if one not in seen:
+            seen.add(one)
+            included(one, seen)
+    return seen
+
+
+# Reading Eigen takes nearly all of the time: it is read once for the headers that include it anyway.
+compiler = ["c++", "-std=c++20", f"-I{prefix}/include", "-I/usr/include/eigen3"]
+folder = tempfile.TemporaryDirectory()
+precompiled = {}
+for name in ("Eigen/Geometry", "Eigen/Core"):
+    file = pathlib.Path(folder.name) / name.replace("/", "_")
+    file.write_text(f"#include <{name}>\n")
+    subprocess.run([*compiler, "-x", "c++-header", file, "-o", f"{file}.gch"], check=True)
+    precompiled[name] = ["-include", file]
+
 failures = []
 headers = sorted((prefix / "include" / "gaitd").rglob("*.h"))
 for header in headers:
     include = header.relative_to(prefix / "include")
     source = f'#include "{include}"\n#include "{include}"\nint main() {{}}\n'
+    seen = included(str(include), set())
+    eigen = next((flags for name, flags in precompiled.items() if name in seen), [])
     compiled = subprocess.run(
-        ["c++", "-std=c++20", f"-I{prefix}/include", "-I/usr/include/eigen3",
-         "-fsyntax-only", "-x", "c++", "-"], input=source, capture_output=True, text=True)
+        [*compiler, *eigen, "-fsyntax-only", "-x", "c++", "-"], input=source, capture_output=True, text=True)
     if compiled.returncode != 0:
         failures.append(f"{include}: does not compile on its own: {compiled.stderr.splitlines()[0]}")
         continue

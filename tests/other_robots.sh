@@ -13,7 +13,7 @@ robot() {
 schema: gaitd.scenario/1
 name: $name-$mode-$estimator
 robot: $scratch/$name/robot.yaml
-duration: 20
+duration: 12
 seed: 1
 mode: $mode
 set: {state_estimator.variant: $estimator}

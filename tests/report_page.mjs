@@ -8,6 +8,7 @@ import {check, launch} from './report_browser.mjs';
 const [playwright, page_file, picture] = process.argv.slice(2);
 
 const kLongestOpening = 3000;  // ms
+const measured = !process.env.GAITD_NO_RATE;  // how many frames a second
 const kFrames = 55;  // 1/s: 60 less what a busy machine takes
 
 const browser = await launch(playwright);
@@ -117,7 +118,7 @@ check(after.time > before.time && after.time - before.time < 0.1 * passed + 0.1,
 // Sixty frames each second: for the page itself in each second, with all that a browser does in the
 // best of them, for a machine may be busy.
 let best = 0;
-for (let tries = 0; tries < 120 && best < kFrames; ++tries) {
+for (let tries = 0; measured && tries < 120 && best < kFrames; ++tries) {
   const spent = await processorTime();
   const {frames, seconds} = await page.evaluate(async () => {
     const {player} = gaitd, play = document.getElementById('play');
@@ -135,7 +136,7 @@ for (let tries = 0; tries < 120 && best < kFrames; ++tries) {
   console.log(`${(frames / seconds).toFixed(1)} frames/s, ${each.toFixed(1)} ms of processor time each`);
   check(each < 1000 / 60, `a frame takes ${each.toFixed(1)} ms of processor time`);
 }
-check(best >= kFrames, `it plays at ${best.toFixed(1)} frames/s at best`);
+check(!measured || best >= kFrames, `it plays at ${best.toFixed(1)} frames/s at best`);
 
 // Plots are made as they come into view.
 for (const box of await page.locator('#plots > div').all()) {

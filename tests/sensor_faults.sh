@@ -3,13 +3,13 @@
 # without.
 source "$(dirname "$0")/common.sh"
 
-# walk SENSOR KIND FROM DURATION: plays a walk with that fault; its events go to $scratch/events.
+# walk SENSOR KIND FROM DURATION [SECONDS]: plays a walk with that fault; its events go to $scratch/events.
 walk() {
   cat >"$scratch/walk.yaml" <<SCENARIO
 schema: gaitd.scenario/1
 name: sensor-fault
 robot: atlas
-duration: 9.5
+duration: ${5:-9.5}
 mode: walk-straight
 sensors: {noise: nominal, faults: [{sensor: $1, kind: $2, from: $3, duration: $4}]}
 actuators: {model: nominal}
@@ -23,7 +23,7 @@ SCENARIO
 }
 # faults WITHIN_MS WHAT SENSOR KIND FROM
 faults() {
-  walk "$3" "$4" "$5" 10
+  walk "$3" "$4" "$5" 10 "$(awk "BEGIN { print $5 + 1.2 }")"
   grep -q "\"sensors\".*\"sensor\":\"[a-z_ ]*\",\"what\":\"$2" "$scratch/events" ||
     fail "$3 $4: expected the fault 'sensors', '$2', got: $(cat "$scratch/events")"
   awk -v from="$5" -v within="$1" '{ late = 1000 * ($1 - from); exit !(late > 0 && late <= within) }' \
