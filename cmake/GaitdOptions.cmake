@@ -57,8 +57,8 @@ function(gaitd_in_plugins target)
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
 endfunction()
 
-# Reading the headers of GoogleTest, Eigen, JSON and the standard library takes half of the time of a test's file: they are
-# read once for all. An executable, since the headers of a library are compiled for other addresses.
+# Reading the headers of GoogleTest, Eigen, JSON and the standard library takes half of the time of a test's file:
+# they are read once for all. An executable, since the headers of a library are compiled for other addresses.
 if(GAITD_BUILD_TESTS)
   file(WRITE ${CMAKE_BINARY_DIR}/test_headers.cc "int main() {}\n")
   add_executable(gaitd_test_headers EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/test_headers.cc)
@@ -66,8 +66,9 @@ if(GAITD_BUILD_TESTS)
   target_link_libraries(gaitd_test_headers PRIVATE Eigen3::Eigen GTest::gtest nlohmann_json::nlohmann_json)
   gaitd_never_hot(gaitd_test_headers)
   target_precompile_headers(gaitd_test_headers PRIVATE
-    <gtest/gtest.h> <Eigen/Dense> <nlohmann/json.hpp> <algorithm> <array> <chrono> <cmath> <deque> <filesystem> <fstream> <functional> <limits> <map>
-    <memory> <optional> <random> <set> <sstream> <string> <thread> <unordered_map> <vector>)
+    <gtest/gtest.h> <Eigen/Dense> <nlohmann/json.hpp> <algorithm> <array> <chrono> <cmath> <deque> <filesystem>
+    <fstream> <functional> <limits> <map> <memory> <optional> <random> <set> <sstream> <string> <thread>
+    <unordered_map> <vector>)
 endif()
 
 # gaitd_test(NAME SOURCES... [LIBRARIES...] [OPTIMIZED]): a GoogleTest program registered with CTest. OPTIMIZED: it
@@ -85,10 +86,12 @@ function(gaitd_test name)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gtest GTest::gtest_main)
-  # Tests use the same short names in each file.
+  # Few files at a time: whoever changes one waits for the others.
   set_target_properties(${name} PROPERTIES
-    RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests" UNITY_BUILD OFF)
-  if(NOT ARG_OPTIMIZED)
+    RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests" UNITY_BUILD_BATCH_SIZE 4)
+  if(ARG_OPTIMIZED)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
+  else()
     gaitd_never_hot(${name})
     # GCC 12 finds them in its own std::string where little is inlined.
     target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>)

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export PATH=$PWD/build/release/bin:$PATH
-campaigns=(gate gauntlet terrain estimators model-errors walks footsteps footsteps-apart parameters
+campaigns=(gate gauntlet terrain estimators model-errors walks footsteps footsteps-apart sessions parameters
   drive drive-parameters drive-pushed goto partial)
 names=("${campaigns[@]}" mutations sanitizers slurm soak)
 chosen=("$@")

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "cli/gauntlet/ground.h"
+#include "cli/gauntlet/session.h"
 #include "cli/gauntlet/story.h"
 #include "cli/gauntlet/worlds.h"
 
@@ -125,6 +126,7 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
       {"blocks", blocks},
       {"partial", partial_footholds},
       {"drive", drive},
+      {"session", session},
       {"push-walking", push_walking},
       {"push-standing", push_standing},
       {"goto-easy", [](const Draws& draws) { return world(draws, 0.2); }},

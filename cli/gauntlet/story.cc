@@ -69,6 +69,11 @@ void add_commands(const Story& story, std::string* text) {
         settled(story.goal_x), settled(story.goal_y), settled(story.goal_yaw));
     return;
   }
+  if (!story.commands.empty()) {
+    add(text, "commands:\n");
+    for (const std::string& command : story.commands) *text += "  - " + command + "\n";
+    return;
+  }
   if (!story.drives.empty()) {
     add(text, "commands:\n");
     for (const Drive& drive : story.drives) {
@@ -115,6 +120,7 @@ void add_pushes(const Story& story, std::string* text) {
 
 void add_expectations(const Story& story, std::string* text) {
   add(text, "expect:\n  no_fall: true\n");
+  if (!story.commands.empty()) return;  // some are refused
   if (!story.drives.empty()) {
     // Where it ends nobody says: whoever drives looks at the robot.
     add(text, "  drive_speed_error_max: %.4f\n", kDriveError);
@@ -147,6 +153,12 @@ int Draws::whole(std::string_view what, int low, int high, int place) const {
   return std::min(high, low + static_cast<int>(uniform(what, place) * (high - low + 1)));
 }
 
+std::string text_of(double value) {
+  std::string text;
+  add(&text, "%.4f", settled(value));
+  return text;
+}
+
 std::string scenario_text(std::string_view kind, std::uint64_t seed, const Story& story) {
   const Draws draws(kind, seed);
   const auto strides = static_cast<double>(
@@ -158,7 +170,8 @@ std::string scenario_text(std::string_view kind, std::uint64_t seed, const Story
   add(&text, "schema: gaitd.scenario/1\nname: gauntlet-%s-%llu\nrobot: atlas\n", name.c_str(),
       static_cast<unsigned long long>(seed));
   // A pushed robot takes steps of its own before it goes on.
-  const double walked = story.goes             ? story.at + story.time
+  const double walked = story.goes                ? story.at + story.time
+                        : !story.commands.empty() ? story.time
                         : story.drives.empty() ? story.at + strides * (story.swing + story.transfer)
                                                : story.drives.back().at;
   add(&text, "duration: %.0f\nseed: %llu\n", std::ceil(settled(walked + 8.0)),

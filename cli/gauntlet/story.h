@@ -74,9 +74,10 @@ struct Story {
   Walk walk;                            ///< either this
   std::vector<Foothold> footholds;      ///< or these
   std::vector<Drive> drives;            ///< or these, to a stand at the end
+  std::vector<std::string> commands;    ///< or these, as in a scenario, to anywhere
   bool goes = false;                    ///< or to the goal, as it finds its way
   bool sees = false;                    ///< the ground, which it does not know
-  double time = 0.0;                    ///< s, for going there
+  double time = 0.0;                    ///< s, for going there; when the last command is done
   double swing = 0.7, transfer = 0.25;  ///< s
   std::vector<Push> pushes;
   double goal_x = 0.0, goal_y = 0.0, goal_yaw = 0.0;  ///< m, rad
@@ -84,6 +85,9 @@ struct Story {
   int steps = 0;                                      ///< to be taken
   bool more_steps = false;  ///< may be taken: a pushed robot catches itself
 };
+
+/// Four digits, the same on every machine.
+std::string text_of(double value);
 
 /// As a scenario, with a robot whose masses the controller does not know on ground whose friction
 /// it does not know.

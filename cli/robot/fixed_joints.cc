@@ -39,6 +39,21 @@ std::set<std::string> weightless(const dynamics::UrdfOutline& outline) {
   return without;
 }
 
+// A joint from the same link as one that mimics it is its mirror: one drive turns both hips of a
+// NAO. With one of them fixed the legs would differ.
+void fix_mirrors(const dynamics::UrdfOutline& outline, std::vector<FixedGuess>* fixed) {
+  for (const dynamics::UrdfJointNote& joint : outline.joints) {
+    if (!joint.mimic || !moves(joint) || is_finger(joint)) continue;
+    for (const dynamics::UrdfJointNote& mirror : outline.joints) {
+      const bool same = mirror.name == joint.mimicked && mirror.parent == joint.parent &&
+                        mirror.type == joint.type && !mirror.mimic && moves(mirror);
+      const bool there = std::ranges::any_of(
+          *fixed, [&](const FixedGuess& one) { return one.joint == mirror.name; });
+      if (same && !there) fixed->push_back({mirror.name, joint.name + " mimics it"});
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<FixedGuess> joints_to_fix(const dynamics::UrdfOutline& outline) {
@@ -59,6 +74,7 @@ std::vector<FixedGuess> joints_to_fix(const dynamics::UrdfOutline& outline) {
       fixed.push_back({joint.name, "nothing that it moves has a mass"});
     }
   }
+  fix_mirrors(outline, &fixed);
   return fixed;
 }
 

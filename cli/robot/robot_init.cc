@@ -61,7 +61,9 @@ std::string link_above(const Guess& guess, const LegPair& pair) {
 bool find_pelvis(const std::string& text, Guess* guess, std::string* error) {
   LegPair pair;
   if (!find_legs(guess->urdf.model, &pair, error)) return false;
-  if (const std::vector<int> toes = find_toes(guess->urdf.model, pair); !toes.empty()) {
+  // Toes may be several, beside or behind each other.
+  for (std::vector<int> toes = find_toes(guess->urdf.model, pair); !toes.empty();
+       toes = find_toes(guess->urdf.model, pair)) {
     for (const int toe : toes) {
       guess->fixed.push_back({guess->urdf.model.joints[toe].name, "a toe"});
     }

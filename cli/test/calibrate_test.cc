@@ -15,27 +15,18 @@
 #include "daemon/config/robot.h"
 #include "gaitd/dynamics/dynamics.h"
 #include "gaitd/sdk/views.h"
+#include "walking/test/atlas.h"
 
 namespace gaitd::calibrate {
 namespace {
+
+using testing::atlas;
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double kDegree = M_PI / 180;
-
-const GaitdModel& atlas() {
-  static const daemon::Robot robot = [] {
-    daemon::Settings settings;
-    daemon::Issues issues;
-    auto loaded = daemon::load_robot(GAITD_SOURCE_DIR "/robots/atlas/robot.yaml",
-                                     daemon::Profile::kSimulation, &settings, &issues);
-    EXPECT_TRUE(loaded) << issues.error_text();
-    return *loaded;
-  }();
-  return robot.model;
-}
 
 // A robot that is not what its model says, at rest on a level floor or on its hoist.
 class WrongRobot {

@@ -12,20 +12,23 @@
 #include <memory>
 #include <set>
 
+#include "cli/gauntlet/story.h"
 #include "daemon/config/paths.h"
 #include "daemon/config/robot.h"
 #include "daemon/config/scenario.h"
 #include "daemon/config/yaml_reader.h"
+#include "walking/test/atlas.h"
 
 namespace gaitd::cli {
 namespace {
+
+using testing::atlas;
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using nlohmann::json;
 
 constexpr int kSeeds = 60;
-constexpr double kDegree = M_PI / 180.0;
 
 std::uint64_t hash_of(const std::string& text) {
   std::uint64_t h = 14695981039346656037ULL;
@@ -33,19 +36,7 @@ std::uint64_t hash_of(const std::string& text) {
   return h;
 }
 
-const GaitdModel& atlas() {
-  static const auto kRobot = [] {
-    daemon::Settings settings;
-    daemon::Issues issues;
-    auto robot = daemon::load_robot(daemon::Paths::detect().robot("atlas")->string(),
-                                    daemon::Profile::kSimulation, &settings, &issues);
-    EXPECT_TRUE(robot) << issues.error_text();
-    return robot;
-  }();
-  return kRobot->model;
-}
-
-daemon::Scenario scenario_of(const std::string& kind, std::uint64_t seed) {
+daemon::Scenario drawn_scenario(const std::string& kind, std::uint64_t seed) {
   daemon::Issues issues;
   daemon::Settings settings;
   const daemon::NodePtr root = daemon::parse_yaml(gauntlet_scenario(kind, seed), kind, &issues);
@@ -91,7 +82,7 @@ template <typename Visit>
 void for_each_drawn(const std::string& kind, const Visit& visit) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     SCOPED_TRACE(kind + " " + std::to_string(seed));
-    visit(scenario_of(kind, seed));
+    visit(drawn_scenario(kind, seed));
   }
 }
 
@@ -117,15 +108,19 @@ class Range {
 };
 
 TEST(Gauntlet, TheSameSeedIsTheSameTextOnEveryMachine) {
-  std::map<int, std::string>
-      all;  // drives (1), worlds (2) and half footholds (3) apart: they came later
+  // Drives (1), worlds (2), half footholds (3) and sessions (4) apart: they came later.
+  std::map<int, std::string> all;
   std::set<std::string> different;
   for (const std::string& kind : gauntlet_kinds()) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const std::string text = gauntlet_scenario(kind, seed);
       EXPECT_EQ(text, gauntlet_scenario(kind, seed));
       different.insert(text.substr(text.find("terrain:")));
-      all[kind == "drive" ? 1 : kind.starts_with("goto") ? 2 : kind == "partial" ? 3 : 0] += text;
+      all[kind == "drive"            ? 1
+          : kind.starts_with("goto") ? 2
+          : kind == "partial"        ? 3
+          : kind == "session"        ? 4
+                                     : 0] += text;
     }
   }
   EXPECT_EQ(different.size(), 20 * gauntlet_kinds().size());
@@ -134,6 +129,7 @@ TEST(Gauntlet, TheSameSeedIsTheSameTextOnEveryMachine) {
   EXPECT_EQ(hash_of(all[1]), 0x871326e179adc25fULL);
   EXPECT_EQ(hash_of(all[2]), 0x38638c62b9913a6bULL);
   EXPECT_EQ(hash_of(all[3]), 0xfee805db951847c3ULL);
+  EXPECT_EQ(hash_of(all[4]), 0x51b863dc6cfc92f7ULL);
 }
 
 // The robot has to see its way, there is room where it starts and where it goes to, and what is
@@ -186,10 +182,46 @@ TEST(Gauntlet, ADriveIsAMinuteOfTenVelocities) {
   });
 }
 
+// Everything that operators do, in time, while the robot stands and while it walks.
+TEST(Gauntlet, ASessionIsEightActsInAnyOrder) {
+  std::map<std::string, int> said;
+  int pushes = 0, together = 0;
+  Range length(-0.3, 0.6), aside(0.05, 0.45), height(-0.12, 0.02), impulse(10.0, 30.0);
+  for_each_drawn("session", [&](const daemon::Scenario& scenario) {
+    EXPECT_EQ(scenario.expect.no_fall, true);
+    EXPECT_GE(scenario.commands.size(), 8u);
+    double before = 0.0;
+    for (const auto& command : scenario.commands) {
+      EXPECT_GE(command.at, before);
+      together += command.at < before + 1.0;
+      before = command.at;
+      ++said[command.method];
+      const json& p = command.params;
+      if (command.method == "walk") length.see(p["length"]);
+      if (command.method == "footsteps") aside.see(std::abs(p["footsteps"][0]["y"].get<double>()));
+      if (command.method == "pose" && p.contains("pelvis") && p["pelvis"].contains("z")) {
+        height.see(p["pelvis"]["z"]);
+      }
+    }
+    EXPECT_GE(scenario.duration, before + 4.0);
+    for (const auto& push : scenario.disturbances) {
+      ++pushes;
+      impulse.see(std::hypot(push.force[0], push.force[1]) * push.duration);
+    }
+  });
+  for (const char* method :
+       {"walk", "velocity", "footsteps", "pose", "mode", "stop", "pause", "resume"}) {
+    EXPECT_GT(said[method], kSeeds / 4) << method;
+  }
+  EXPECT_GT(pushes, kSeeds);
+  EXPECT_GT(together, kSeeds);
+}
+
 TEST(Gauntlet, EveryKindIsAcceptedAndAsksForAWalkToAGoal) {
   EXPECT_EQ(gauntlet_scenario("nothing", 1), "");
   for (const std::string& kind : gauntlet_kinds()) {
-    if (kind == "drive") continue;  // whoever drives looks where the robot is
+    // Whoever drives or tries things looks where the robot is.
+    if (kind == "drive" || kind == "session") continue;
     for_each_drawn(kind, [&](const daemon::Scenario& scenario) {
       EXPECT_EQ(scenario.expect.no_fall, true);
       ASSERT_TRUE(scenario.expect.final_pelvis);
@@ -299,7 +331,8 @@ TEST(Gauntlet, PartialFootholdsCarryHalfASole) {
 }
 
 TEST(Gauntlet, StairsDropsAndSlopesAreWithinTheirRanges) {
-  Range rise(0.10, 0.20), fall(-0.20, -0.10), drop(-0.20, -0.10), angle(3 * kDegree, 13 * kDegree);
+  Range rise(0.10, 0.20), fall(-0.20, -0.10), drop(-0.20, -0.10),
+      angle(3 * kRadiansPerDegree, 13 * kRadiansPerDegree);
   const auto changes = [](const daemon::Scenario& scenario, Range* range) {
     double z = scenario.start.position[2];
     int stairs = 0;
@@ -322,7 +355,7 @@ TEST(Gauntlet, StairsDropsAndSlopesAreWithinTheirRanges) {
 }
 
 TEST(Gauntlet, BlocksTiltUpToFifteenDegreesAndGoUpAndDown) {
-  Range tilt(5 * kDegree, 15 * kDegree);
+  Range tilt(5 * kRadiansPerDegree, 15 * kRadiansPerDegree);
   int up = 0, down = 0;
   for_each_drawn("blocks", [&](const daemon::Scenario& scenario) {
     for (const json& step : footsteps_of(scenario)) {

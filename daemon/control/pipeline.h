@@ -53,6 +53,7 @@ class Pipeline {
  private:
   CommandReply set_parameter(const Command& command);
   bool apply(int owner, int index, double value);
+  walking::Refusal too_weak_to_walk() const;
   CommandReply move(const Command& command);
   void begin_control();
   // nullptr, or why not.

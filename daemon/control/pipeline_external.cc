@@ -68,6 +68,9 @@ const char* Pipeline::tare() {
   if (!stands()) {
     return "the tare is taken of a robot that stands; `gaitctl stop`, then try again";
   }
+  if (payload_.estimating()) {
+    return "a load is being weighed, the tare would swallow it; try again when it is found";
+  }
   external_.tare();
   return nullptr;
 }

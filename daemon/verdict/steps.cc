@@ -74,9 +74,8 @@ std::optional<Fall> find_fall(const RunData& run) {
   std::optional<Fall> fall;
   const std::vector<bool> may_fall = judged(run);
   const auto first = std::find(may_fall.begin(), may_fall.end(), true);
-  if (first == may_fall.end()) return fall;
   const Column height = pelvis_height(run);
-  if (!height.empty()) {
+  if (!height.empty() && first != may_fall.end()) {
     // Written so that what is not a number counts as fallen.
     const double least = kFallenHeight * height[static_cast<std::size_t>(first - may_fall.begin())];
     find_first_tick(

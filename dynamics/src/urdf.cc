@@ -3,6 +3,7 @@
 #include "gaitd/dynamics/urdf.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <set>
@@ -19,6 +20,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kStandardGravity = 9.81;
+constexpr double kWater = 1000.0;  // kg/m^3
 
 void copy_name(const std::string& from, char (&to)[GAITD_NAME_SIZE]) {
   std::strncpy(to, from.c_str(), GAITD_NAME_SIZE - 1);
@@ -301,6 +303,12 @@ class TreeBuilder {
     body.mass = merged.mass;
     Vector3d::Map(body.com) = merged.com;
     Matrix3d m = merged.inertia;
+    if (merged.mass > 0 && m.isZero(0)) {
+      const double radius = std::cbrt(3.0 * merged.mass / (4.0 * M_PI * kWater));
+      m = 0.4 * merged.mass * radius * radius * Matrix3d::Identity();
+      xml_.add_warning(body_lines_[i],
+                       owner + ": a mass without an inertia; that of a ball of water is taken");
+    }
     // A rod is possible as a part, but not as a body that moves by itself.
     if (!check_inertia(m, false).empty() && make_physical(&m)) {
       xml_.add_warning(body_lines_[i], owner +

@@ -15,6 +15,7 @@ namespace gaitd::dynamics {
 namespace {
 
 constexpr double kContinuousLimit = 1e9;  // rad
+constexpr double kNoInertia = 1e-12;      // m^2, over the mass: of a point
 
 Eigen::Vector3d to_vector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
@@ -130,6 +131,11 @@ class ElementReader {
                                      " kg, expected above 0; give the mass of the link");
     } else if (link->mass == 0 && !m.isZero(0)) {
       xml_.add_warning(mass.Row(), owner + ": an inertia without a mass; it is taken for nothing");
+      link->inertia.setZero();
+      return;
+    }
+    // What a program wrote where it meant zero.
+    if (m.cwiseAbs().maxCoeff() < kNoInertia * link->mass) {
       link->inertia.setZero();
       return;
     }

@@ -60,8 +60,8 @@ bool read_shape(const TiXmlElement& element, UrdfShape* shape) {
   }
   if (tag == "sphere") {
     shape->kind = ShapeKind::kSphere;
-    shape->size = {number(form, "radius", 0), 0, 0};
-    return shape->size[0] > 0;
+    shape->size = {number(form, "radius", -1), 0, 0};
+    return shape->size[0] >= 0;  // of no radius: a point of contact
   }
   if (tag != "mesh") return false;
   shape->kind = ShapeKind::kMesh;
@@ -95,7 +95,10 @@ void read_joint(const TiXmlElement& element, UrdfOutline* outline) {
   joint.type = attribute_text(&element, "type");
   joint.parent = attribute_text(element.FirstChildElement("parent"), "link");
   joint.child = attribute_text(element.FirstChildElement("child"), "link");
-  joint.mimic = element.FirstChildElement("mimic") != nullptr;
+  if (const TiXmlElement* mimic = element.FirstChildElement("mimic")) {
+    joint.mimic = true;
+    joint.mimicked = attribute_text(mimic, "joint");
+  }
   const TiXmlElement* limit = element.FirstChildElement("limit");
   joint.has_effort = number(limit, "effort", 0) > 0 && number(limit, "velocity", 0) > 0;
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();

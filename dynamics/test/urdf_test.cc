@@ -172,6 +172,20 @@ TEST(Urdf, MovesARoundedInertiaToTheNearestPossibleOne) {
             result.model.bodies[0].inertia[5]);
 }
 
+TEST(Urdf, TakesAMassWithoutAnInertiaForABallOfWater) {
+  for (const char* zero : {"0", "-2.4e-35"}) {
+    const UrdfResult result = load_urdf_text(
+        robot(std::string("<link name='a'><inertial><mass value='4.19'/><inertia ixx='0' iyy='") +
+              zero + "' izz='0'/></inertial></link>"),
+        "t");
+    ASSERT_TRUE(result.ok()) << all(result.errors);
+    ASSERT_EQ(result.warnings.size(), 1u);
+    for (const int moment : {0, 3, 5}) {
+      EXPECT_NEAR(result.model.bodies[0].inertia[moment], 0.4 * 4.19 * 0.01, 1e-4);
+    }
+  }
+}
+
 TEST(Urdf, FloatsOnAnEmptyWorld) {
   const UrdfResult result =
       load_urdf_text(robot("<link name='world'/>" + link("pelvis") + link("leg") +

@@ -8,18 +8,19 @@
 #include "gaitd/dynamics/dynamics.h"
 #include "gaitd/sdk/views.h"
 #include "layer_inputs.h"
+#include "walking/test/tick.h"
 
 namespace gaitd::plugins {
 namespace {
 
 using testing::atlas;
+using testing::kDt;
 
-constexpr double kDt = 0.001;
 constexpr double kGain = 20.0;  // 1/s
 
 // Atlas stands on both feet; the controller wants the CoP in the middle of each sole.
-struct Bench {
-  explicit Bench(const GaitdModel& model = atlas()) : dynamics(model), feedback(model) {
+struct FeedbackBench {
+  explicit FeedbackBench(const GaitdModel& model = atlas()) : dynamics(model), feedback(model) {
     robot = testing::standing_state(atlas());
     dynamics.update(robot);
     for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
@@ -69,7 +70,7 @@ struct Bench {
 const GaitdLeg& left_leg() { return atlas().legs[GAITD_LEFT]; }
 
 TEST(FootFeedback, AsksForNothingWhereTheCopIsWhereItShouldBe) {
-  Bench b;
+  FeedbackBench b;
   EXPECT_NEAR(b.torque(left_leg().ankle_pitch, 100), 0.0, 1e-9);
   EXPECT_NEAR(b.torque(left_leg().ankle_roll, 100), 0.0, 1e-9);
 }
@@ -77,9 +78,9 @@ TEST(FootFeedback, AsksForNothingWhereTheCopIsWhereItShouldBe) {
 TEST(FootFeedback, ALegThatCannotRollItsFootPitchesIt) {
   GaitdModel model = atlas();
   for (GaitdLeg& leg : model.legs) leg.ankle_roll = -1;
-  Bench with;
-  Bench without(model);
-  for (Bench* b : {&with, &without}) b->load(GAITD_LEFT, {-0.02, 0.0});
+  FeedbackBench with;
+  FeedbackBench without(model);
+  for (FeedbackBench* b : {&with, &without}) b->load(GAITD_LEFT, {-0.02, 0.0});
   const int pitch = left_leg().ankle_pitch;
   EXPECT_NE(0.0, with.torque(pitch, 20));
   EXPECT_EQ(with.torque(pitch, 20), without.torque(pitch, 40));
@@ -90,24 +91,24 @@ TEST(FootFeedback, ALegThatCannotRollItsFootPitchesIt) {
 }
 
 TEST(FootFeedback, PushesTheToesDownWhenTheCopIsTooFarBack) {
-  Bench b;
+  FeedbackBench b;
   b.torque(left_leg().ankle_pitch, 1);
   b.load(GAITD_LEFT, {-0.002, 0.0});
   // 2 mm under half of the weight, integrated for 50 ms.
-  const double expected = 0.002 * Bench::half_weight() * kGain * 0.05;
+  const double expected = 0.002 * FeedbackBench::half_weight() * kGain * 0.05;
   EXPECT_NEAR(b.torque(left_leg().ankle_pitch, 50), expected, 0.05 * expected);
   EXPECT_NEAR(b.commands->joints[left_leg().ankle_roll].torque, 0.0, 1e-6);
   EXPECT_NEAR(b.commands->joints[atlas().legs[GAITD_RIGHT].ankle_pitch].torque, 0.0, 1e-9);
 }
 
 TEST(FootFeedback, IsNoneWithoutGain) {
-  Bench b;
+  FeedbackBench b;
   b.load(GAITD_LEFT, {-0.05, 0.02});
   EXPECT_EQ(b.torque(left_leg().ankle_pitch, 500, 0.0), 0.0);
 }
 
 TEST(FootFeedback, KeepsItsLimitAndDoesNotWindUp) {
-  Bench b;
+  FeedbackBench b;
   b.torque(left_leg().ankle_pitch, 1);
   b.load(GAITD_LEFT, {-0.05, 0.0});
   const double most = FootFeedback::kLimit * atlas().joints[left_leg().ankle_pitch].effort_limit;
@@ -117,7 +118,7 @@ TEST(FootFeedback, KeepsItsLimitAndDoesNotWindUp) {
 }
 
 TEST(FootFeedback, ForgetsWhereTheCopShallBeNearTheEdge) {
-  Bench b;
+  FeedbackBench b;
   b.torque(left_leg().ankle_pitch, 1);
   b.load(GAITD_LEFT, {-0.02, 0.0});
   const double before = b.torque(left_leg().ankle_pitch, 50);
@@ -126,7 +127,7 @@ TEST(FootFeedback, ForgetsWhereTheCopShallBeNearTheEdge) {
 }
 
 TEST(FootFeedback, ForgetsAFootThatStandsOnItsToeOnly) {
-  Bench b;
+  FeedbackBench b;
   b.torque(left_leg().ankle_pitch, 1);
   b.load(GAITD_LEFT, {-0.02, 0.0});
   const double before = b.torque(left_leg().ankle_pitch, 50);

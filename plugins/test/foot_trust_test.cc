@@ -6,12 +6,15 @@
 #include <cmath>
 #include <random>
 
+#include "walking/test/tick.h"
+
 namespace gaitd::plugins {
 namespace {
 
-constexpr double kPeriod = 0.001;  // s
-constexpr double kLeast = 20.0;    // N
-constexpr double kMost = 48.0;     // N, 0.12 of the weight
+using testing::kDt;
+
+constexpr double kLeast = 20.0;  // N
+constexpr double kMost = 48.0;   // N, 0.12 of the weight
 
 struct Swing {
   Swing() {
@@ -24,7 +27,7 @@ struct Swing {
     sdk::Vector6d wrench = sdk::Vector6d::Zero();
     wrench[0] = 0.01 * force;
     wrench[5] = force;
-    return tare.less(wrench, in_air, kLeast, model, kPeriod)[5];
+    return tare.less(wrench, in_air, kLeast, model, kDt)[5];
   }
   GaitdModel model{};
   SwingTare tare;

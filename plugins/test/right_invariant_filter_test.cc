@@ -8,16 +8,18 @@
 #include <random>
 
 #include "gaitd/sdk/views.h"
+#include "walking/test/tick.h"
 
 namespace gaitd::plugins {
 namespace {
+
+using testing::kDt;
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Filter = RightInvariantFilter;
 
 constexpr double kGravity = 9.81;
-constexpr double kPeriod = 0.001;
 
 const Vector3d kRate(0.3, -0.5, 0.8);          // rad/s, constant
 const Vector3d kAcceleration(0.4, -0.2, 0.3);  // m/s^2, W, constant
@@ -29,13 +31,13 @@ struct Motion {
   Vector3d v = Vector3d(0.5, 0.0, 0.0), p = Vector3d(0.0, 0.0, 0.0);
 
   Vector3d specific_force() const {
-    const Quaterniond middle = R * sdk::exp_so3(0.5 * kPeriod * kRate);
+    const Quaterniond middle = R * sdk::exp_so3(0.5 * kDt * kRate);
     return middle.conjugate() * (kAcceleration + Vector3d(0, 0, kGravity));
   }
   void step() {
-    p += kPeriod * v + 0.5 * kPeriod * kPeriod * kAcceleration;
-    v += kPeriod * kAcceleration;
-    R = R * sdk::exp_so3(kPeriod * kRate);
+    p += kDt * v + 0.5 * kDt * kDt * kAcceleration;
+    v += kDt * kAcceleration;
+    R = R * sdk::exp_so3(kDt * kRate);
   }
   Vector3d seen(const Vector3d& point) const { return R.conjugate() * (point - p); }
 };
@@ -48,7 +50,7 @@ TEST(RightInvariantFilter, PredictsAMotionExactly) {
   Motion motion;
   filter.velocity = motion.v;
   for (int i = 0; i < 2000; ++i) {
-    filter.predict(kRate, motion.specific_force(), kPeriod, noise());
+    filter.predict(kRate, motion.specific_force(), kDt, noise());
     motion.step();
   }
   EXPECT_LT((filter.position - motion.p).norm(), 1e-9);
@@ -69,7 +71,7 @@ TEST(RightInvariantFilter, AWrongHeadingIsNoInnovation) {
   filter.add_point(0, motion.seen(kPoint), 1e-3);
   filter.add_point(1, motion.seen(-kPoint), 1e-3);
   for (int i = 0; i < 1000; ++i) {
-    filter.predict(kRate, motion.specific_force(), kPeriod, noise());
+    filter.predict(kRate, motion.specific_force(), kDt, noise());
     motion.step();
     filter.correct_point(0, motion.seen(kPoint), 1e-3);
     filter.correct_point(1, motion.seen(-kPoint), 1e-3);
@@ -92,7 +94,7 @@ TEST(RightInvariantFilter, APointOfContactShowsVelocityTiltAndBiases) {
   filter.covariance.diagonal().segment<3>(Filter::kGyroBias).setConstant(1e-4);
   filter.add_point(2, motion.seen(kPoint), 1e-4);
   for (int i = 0; i < 8000; ++i) {
-    filter.predict(kRate + gyro_bias, motion.specific_force(), kPeriod, noise());
+    filter.predict(kRate + gyro_bias, motion.specific_force(), kDt, noise());
     motion.step();
     filter.correct_point(2, motion.seen(kPoint), 1e-4);
   }
@@ -112,7 +114,7 @@ TEST(RightInvariantFilter, KnowsHowWrongItIs) {
     return Vector3d(sigma * normal(random), sigma * normal(random), sigma * normal(random));
   };
   const Filter::Noise n = noise();
-  const double per_sample = 1.0 / std::sqrt(kPeriod);
+  const double per_sample = 1.0 / std::sqrt(kDt);
   constexpr double kSigma = 2e-3;
   constexpr int kRuns = 60;
   double sum = 0.0;
@@ -129,9 +131,9 @@ TEST(RightInvariantFilter, KnowsHowWrongItIs) {
     Vector3d foot = kPoint;
     for (int i = 0; i < 500; ++i) {
       filter.predict(kRate + draw(n.gyro * per_sample),
-                     motion.specific_force() + draw(n.accelerometer * per_sample), kPeriod, n);
+                     motion.specific_force() + draw(n.accelerometer * per_sample), kDt, n);
       motion.step();
-      foot += draw(n.foot_horizontal * std::sqrt(kPeriod));
+      foot += draw(n.foot_horizontal * std::sqrt(kDt));
       filter.correct_point(0, motion.seen(foot) + draw(kSigma), kSigma);
     }
     const Vector3d error = filter.velocity - motion.v;
@@ -150,7 +152,7 @@ TEST(RightInvariantFilter, WithoutContactsItKnowsLessAndLess) {
   const auto spread = [&] { return filter.velocity_covariance().trace(); };
   const auto run = [&] {
     for (int i = 0; i < 1000; ++i) {
-      filter.predict(kRate, motion.specific_force(), kPeriod, noise());
+      filter.predict(kRate, motion.specific_force(), kDt, noise());
       motion.step();
       filter.correct_point(3, motion.seen(kPoint), 1e-3);
     }
@@ -192,7 +194,7 @@ TEST(RightInvariantFilter, FeetThatMoveButDoNotTurnTellTheBiasAboutTheVertical) 
   walking.foot_turn = 4e-3;
   const Vector3d ahead(0.1, 0.1, -0.9), behind(-0.1, 0.1, -0.9);
   for (int i = 0; i < 20000; ++i) {
-    filter.predict(bias, up, kPeriod, walking);
+    filter.predict(bias, up, kDt, walking);
     const Vector3d sideways(0.0, 0.002 * std::sin(0.002 * M_PI * i), 0.0);
     if (i % 700 == 0) {
       filter.add_point(0, ahead + sideways, sigma);
@@ -220,7 +222,7 @@ TEST(RightInvariantFilter, WhatItLearnsOfTheGyroscopeMovesNothing) {
   loose.foot_turn = 0.1;
   const Vector3d ahead(0.1, 0.1, -0.9), behind(-0.1, 0.1, -0.9);
   for (int i = 0; i < 60000; ++i) {
-    filter.predict(bias, up, kPeriod, loose);
+    filter.predict(bias, up, kDt, loose);
     if (i % 500 == 0) {
       filter.add_point(0, ahead, sigma);
       filter.add_point(1, behind, sigma);
@@ -235,7 +237,7 @@ TEST(RightInvariantFilter, WhatItLearnsOfTheGyroscopeMovesNothing) {
   const double heading = sdk::yaw_of(filter.orientation);
   const double unknown = (filter.gyro_bias - bias).norm();
   for (int i = 0; i < 5000; ++i) {
-    filter.predict(bias, up, kPeriod, firm);
+    filter.predict(bias, up, kDt, firm);
     filter.correct_point(0, ahead, sigma);
     filter.correct_point(1, behind, sigma);
   }

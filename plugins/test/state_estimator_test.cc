@@ -14,15 +14,16 @@
 #include "kinematic_inertial.h"
 #include "layer_inputs.h"
 #include "walking/test/allocation_counter.h"
+#include "walking/test/tick.h"
 
 namespace gaitd::plugins {
 namespace {
 
+using testing::kDt;
+
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using testing::atlas;
-
-constexpr double kPeriod = 0.001;  // s
 
 struct Noise {
   double joint = 0.0;          // rad
@@ -106,9 +107,9 @@ class Sway {
 };
 
 template <class Estimator>
-class Bench {
+class EstimatorBench {
  public:
-  Bench(double sway, const Noise& noise, unsigned seed = 1)
+  EstimatorBench(double sway, const Noise& noise, unsigned seed = 1)
       : motion(sway),
         noise_(noise),
         random_(seed),
@@ -128,7 +129,7 @@ class Bench {
   }
 
   void sense() {
-    const double t = tick * kPeriod;
+    const double t = tick * kDt;
     const Sway::Moment m = motion.at(t);
     sensors->tick = tick;
     sensors->time = t;
@@ -170,7 +171,7 @@ class Bench {
   GaitdStatus process(Estimator& estimator) {
     GaitdStateEstimatorInput in{};
     in.size = sizeof(in);
-    in.time = testing::layer_time(kPeriod, tick);
+    in.time = testing::layer_time(kDt, tick);
     in.omega = 3.0;
     in.start = start;
     in.sensors = sensors.get();
@@ -181,7 +182,7 @@ class Bench {
     return estimator.process(in, state);
   }
   void run_for(double seconds) {
-    const int last = tick + static_cast<int>(seconds / kPeriod + 0.5);
+    const int last = tick + static_cast<int>(seconds / kDt + 0.5);
     for (; tick < last; ++tick) {
       sense();
       if (tamper) tamper();
@@ -190,7 +191,7 @@ class Bench {
     }
   }
 
-  double time() const { return tick * kPeriod; }
+  double time() const { return tick * kDt; }
   double position_error() {
     return (Vector3d(sdk::view(state.pelvis_position)) - motion.position(time())).norm();
   }
@@ -236,7 +237,7 @@ struct Errors {
   double position = 0.0, velocity = 0.0, tilt = 0.0;
 };
 template <class Estimator>
-Errors errors_of(Bench<Estimator>& b, double seconds) {
+Errors errors_of(EstimatorBench<Estimator>& b, double seconds) {
   Errors e;
   b.check = [&] {
     if (b.time() < 1.5) return;
@@ -263,7 +264,7 @@ TYPED_TEST_SUITE(StateEstimator, Estimators, Names);
 TYPED_TEST(StateEstimator, APullIsNoTilt) {
   double tilt[2];
   for (const bool told : {false, true}) {
-    Bench<TypeParam> b(0.0, {});
+    EstimatorBench<TypeParam> b(0.0, {});
     b.run_for(1.0);
     b.pull = {0.06 * atlas().total_mass * atlas().gravity, 0.0, 0.0};
     b.told_of_pull = told;
@@ -277,7 +278,7 @@ TYPED_TEST(StateEstimator, APullIsNoTilt) {
 // A robot that is let go of just above the ground: its accelerometer shows nothing, then the
 // impact.
 TYPED_TEST(StateEstimator, WaitsForGravityBeforeItLevels) {
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   b.tamper = [&] {
     Vector3d force(0, 0, 0.01);
     if (b.tick >= 5) force = {-30, 20, 60};
@@ -296,7 +297,7 @@ TYPED_TEST(StateEstimator, WaitsForGravityBeforeItLevels) {
 
 // On a hoist the feet carry nothing.
 TYPED_TEST(StateEstimator, LevelsARobotThatHangs) {
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   b.tamper = [&] {
     for (auto& foot : b.sensors->feet) {
       sdk::view(foot.force).setZero();
@@ -340,7 +341,7 @@ TEST(ImuPlace, IsThatOfTheKinematics) {
 
 // Nothing carries it for a minute: with what is wrong in the IMU it would be kilometres away.
 TYPED_TEST(StateEstimator, HoldsOnToARobotOnItsHoist) {
-  Bench<TypeParam> b(0.0, kNominal);
+  EstimatorBench<TypeParam> b(0.0, kNominal);
   b.accelerometer_bias = {0.05, -0.05, 0.03};
   b.run_for(2.0);
   b.share[0] = b.share[1] = 0.0;
@@ -360,7 +361,7 @@ TYPED_TEST(StateEstimator, HoldsOnToARobotOnItsHoist) {
 }
 
 TYPED_TEST(StateEstimator, FindsARobotThatStandsStill) {
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   const Errors e = errors_of(b, 3.0);
   EXPECT_LT(e.position, 1e-6);
   EXPECT_LT(e.velocity, 1e-6);
@@ -375,7 +376,7 @@ TYPED_TEST(StateEstimator, FindsARobotThatStandsStill) {
 }
 
 TYPED_TEST(StateEstimator, FollowsASwayWithPerfectSensors) {
-  Bench<TypeParam> b(1.0, {});
+  EstimatorBench<TypeParam> b(1.0, {});
   const Errors e = errors_of(b, 5.0);
   EXPECT_LT(e.position, 0.01);
   EXPECT_LT(e.velocity, 0.03);
@@ -386,7 +387,7 @@ TYPED_TEST(StateEstimator, FollowsASwayWithPerfectSensors) {
 TYPED_TEST(StateEstimator, StaysBoundedWithNominalNoise) {
   for (unsigned seed : {1u, 2u, 3u}) {
     for (double sway : {0.0, 1.0}) {
-      Bench<TypeParam> b(sway, kNominal, seed);
+      EstimatorBench<TypeParam> b(sway, kNominal, seed);
       const Errors e = errors_of(b, 6.0);
       EXPECT_LT(e.position, 0.02) << seed << " " << sway;
       EXPECT_LT(e.velocity, 0.08) << seed << " " << sway;
@@ -396,7 +397,7 @@ TYPED_TEST(StateEstimator, StaysBoundedWithNominalNoise) {
 }
 
 TYPED_TEST(StateEstimator, StartsWhereTheOperatorSays) {
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   b.start = {{1.5, -0.7, 0.3}, 0.9};
   b.run_for(1.0);
   const Vector3d middle =
@@ -407,7 +408,7 @@ TYPED_TEST(StateEstimator, StartsWhereTheOperatorSays) {
 
 TYPED_TEST(StateEstimator, FindsItsTiltAtTheStart) {
   // The IMU says that the robot leans: the whole robot is turned about the soles.
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   b.lean = sdk::exp_so3(Vector3d(0.02, 0.03, 0.0));
   b.run_for(1.0);
   const Vector3d rpy = sdk::roll_pitch_yaw(sdk::quaternion(b.state.pelvis_orientation));
@@ -417,7 +418,7 @@ TYPED_TEST(StateEstimator, FindsItsTiltAtTheStart) {
 
 // The bias is on all axes: about the level ones, gravity shows it.
 TYPED_TEST(StateEstimator, ABiasedGyroscopeHardlyTiltsIt) {
-  Bench<TypeParam> b(0.0, {.gyro_bias = 0.004});
+  EstimatorBench<TypeParam> b(0.0, {.gyro_bias = 0.004});
   double tilt = 0.0;
   b.check = [&] { tilt = std::max(tilt, b.tilt_error()); };
   b.run_for(6.0);
@@ -427,7 +428,7 @@ TYPED_TEST(StateEstimator, ABiasedGyroscopeHardlyTiltsIt) {
 // In long steps stance feet turn on the ground, and the robot with them.
 TEST(KinematicInertial, WhatTurnedInAWalkIsNotTurnedBackInTheStand) {
   constexpr double kRate = 0.2;  // rad/s
-  Bench<KinematicInertial> b(0.0, {});
+  EstimatorBench<KinematicInertial> b(0.0, {});
   b.run_for(1.5);
   b.gait.phase = GAITD_PHASE_TRANSFER;
   b.run_for(0.5);
@@ -447,7 +448,7 @@ TEST(KinematicInertial, WhatTurnedInAWalkIsNotTurnedBackInTheStand) {
 }
 
 TYPED_TEST(StateEstimator, TheBalanceShowsTheBiasOfTheAccelerometer) {
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   b.accelerometer_bias = {0.08, -0.1, 0.0};
   b.run_for(0.05);
   EXPECT_GT(b.tilt_error(), 0.01);  // the bias alone makes 0.013
@@ -462,7 +463,7 @@ TYPED_TEST(StateEstimator, TheBalanceShowsTheBiasOfTheAccelerometer) {
 }
 
 TYPED_TEST(StateEstimator, ARobotThatHangsTellsNothingByItsBalance) {
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   b.balanced = false;
   b.cop[0] = 0.1;
   b.share[GAITD_LEFT] = b.share[GAITD_RIGHT] = 0.2;
@@ -471,7 +472,7 @@ TYPED_TEST(StateEstimator, ARobotThatHangsTellsNothingByItsBalance) {
 }
 
 TYPED_TEST(StateEstimator, ReportsTheCentreOfPressure) {
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   b.balanced = false;
   b.cop[0] = 0.05;
   b.cop[1] = -0.02;
@@ -487,7 +488,7 @@ TYPED_TEST(StateEstimator, ReportsTheCentreOfPressure) {
 }
 
 TYPED_TEST(StateEstimator, ContactsHaveHysteresis) {
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   const double on = testing::parameter_default<TypeParam>("contact_on");
   const double off = kContactOff * on;
   ASSERT_GT(on, off);
@@ -512,7 +513,7 @@ TYPED_TEST(StateEstimator, ContactsHaveHysteresis) {
 }
 
 TYPED_TEST(StateEstimator, AFootThatPullsCarriesNothing) {
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   b.run_for(0.3);
   b.share[GAITD_LEFT] = -0.2;
   b.share[GAITD_RIGHT] = 1.0;
@@ -524,7 +525,7 @@ TYPED_TEST(StateEstimator, AFootThatPullsCarriesNothing) {
 
 TYPED_TEST(StateEstimator, SensorsThatAreNotValidAreNotUsed) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   b.run_for(1.0);
   b.tamper = [&] {
     // For a few milliseconds everything says nonsense, and says so.
@@ -548,7 +549,7 @@ TYPED_TEST(StateEstimator, SensorsThatAreNotValidAreNotUsed) {
 }
 
 TYPED_TEST(StateEstimator, TakesTheTiltThatAnImuMeasures) {
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   b.run_for(0.5);
   const Quaterniond mount = sdk::quaternion(atlas().imus[0].orientation);
   const Quaterniond measured = sdk::exp_so3(Vector3d(0.01, -0.02, 0.5)) * mount;
@@ -567,11 +568,11 @@ TYPED_TEST(StateEstimator, TakesTheTiltThatAnImuMeasures) {
 TYPED_TEST(StateEstimator, TheOtherVariantContinuesFromItsState) {
   using Other =
       std::conditional_t<std::is_same_v<TypeParam, InvariantEkf>, KinematicInertial, InvariantEkf>;
-  Bench<TypeParam> before(1.0, kNominal);
+  EstimatorBench<TypeParam> before(1.0, kNominal);
   before.run_for(2.0);
   GaitdStateEstimatorState state{};
   before.layer.get_state(state);
-  Bench<Other> after(1.0, kNominal);
+  EstimatorBench<Other> after(1.0, kNominal);
   after.tick = before.tick;
   after.layer.set_state(state);
   after.sense();
@@ -587,14 +588,14 @@ TYPED_TEST(StateEstimator, TheOtherVariantContinuesFromItsState) {
 }
 
 TYPED_TEST(StateEstimator, AWrongNumberOfJointsIsRefused) {
-  Bench<TypeParam> b(0.0, {});
+  EstimatorBench<TypeParam> b(0.0, {});
   b.sense();
   b.sensors->joint_count = atlas().joint_count - 1;
   EXPECT_EQ(b.process(b.layer), GAITD_INVALID_ARGUMENT);
 }
 
 TYPED_TEST(StateEstimator, AnotherInstanceContinuesFromItsState) {
-  Bench<TypeParam> b(1.0, {});
+  EstimatorBench<TypeParam> b(1.0, {});
   b.run_for(2.0);
   GaitdStateEstimatorState state{};
   b.layer.get_state(state);
@@ -616,7 +617,7 @@ TYPED_TEST(StateEstimator, AnotherInstanceContinuesFromItsState) {
 
 // What ran beside another one goes on with its own filters: no rate jumps when it takes over.
 TYPED_TEST(StateEstimator, KeepsTheFiltersOfTheJointsWhenItTakesAState) {
-  Bench<TypeParam> b(1.0, kNominal);
+  EstimatorBench<TypeParam> b(1.0, kNominal);
   b.run_for(2.0);
   TypeParam alone = b.layer;
   GaitdStateEstimatorState state{};
@@ -637,7 +638,7 @@ TYPED_TEST(StateEstimator, KeepsTheFiltersOfTheJointsWhenItTakesAState) {
 }
 
 TYPED_TEST(StateEstimator, StateGoesInAndComesOutTheSame) {
-  Bench<TypeParam> b(1.0, kNominal);
+  EstimatorBench<TypeParam> b(1.0, kNominal);
   b.run_for(1.0);
   GaitdStateEstimatorState in{};
   b.layer.get_state(in);
@@ -658,7 +659,7 @@ TYPED_TEST(StateEstimator, StateGoesInAndComesOutTheSame) {
 TYPED_TEST(StateEstimator, GivesTheSameBitsTwice) {
   GaitdRobotState states[2];
   for (GaitdRobotState& s : states) {
-    Bench<TypeParam> b(1.0, kNominal, 9);
+    EstimatorBench<TypeParam> b(1.0, kNominal, 9);
     b.run_for(1.0);
     s = b.state;
   }
@@ -666,7 +667,7 @@ TYPED_TEST(StateEstimator, GivesTheSameBitsTwice) {
 }
 
 TYPED_TEST(StateEstimator, NeverAllocates) {
-  Bench<TypeParam> b(1.0, kNominal);
+  EstimatorBench<TypeParam> b(1.0, kNominal);
   int allocations = 0;
   for (; b.tick < 500; ++b.tick) {
     b.sense();

@@ -30,7 +30,7 @@ GaitdStepAdjustment process(StepPlan& layer, const SyntheticWalk& w) {
   return process(layer, w, w.robot);
 }
 
-SyntheticWalk in_swing(double fraction = 0.5) {
+SyntheticWalk planned_swing(double fraction = 0.5) {
   SyntheticWalk w;
   EXPECT_FALSE(w.machine.walk({.steps = 5, .length = 0.4}).refused());
   EXPECT_TRUE(w.run_until_fraction(3, fraction));  // the right foot swings
@@ -57,7 +57,7 @@ Vector2d foothold(const SyntheticWalk& w, const GaitdStepAdjustment& out) {
 }
 
 TEST(StepPlan, WhatTheCmpCanDoMovesNoFoothold) {
-  const SyntheticWalk w = in_swing();
+  const SyntheticWalk w = planned_swing();
   for (const Vector2d& error : {Vector2d(0.0, 0.0), Vector2d(0.01, 0.0), Vector2d(0.0, -0.01)}) {
     const GaitdStepAdjustment out = with_error(w, error.x(), error.y());
     EXPECT_EQ(out.shift[0], 0.0);
@@ -67,7 +67,7 @@ TEST(StepPlan, WhatTheCmpCanDoMovesNoFoothold) {
 }
 
 TEST(StepPlan, AnErrorMovesTheFootholdItsWayAndALargerOneFurther) {
-  const SyntheticWalk w = in_swing();
+  const SyntheticWalk w = planned_swing();
   double last = 0.0;
   for (double error : {0.06, 0.08, 0.1}) {
     const double shift = with_error(w, error, 0.0).shift[0];
@@ -79,7 +79,7 @@ TEST(StepPlan, AnErrorMovesTheFootholdItsWayAndALargerOneFurther) {
 }
 
 TEST(StepPlan, AShockMovesNoFootholdAndAPushDoes) {
-  const SyntheticWalk w = in_swing();
+  const SyntheticWalk w = planned_swing();
   StepPlan layer(atlas());
   GaitdRobotState robot = w.robot;
   const auto shift = [&](double error) {
@@ -95,7 +95,7 @@ TEST(StepPlan, AShockMovesNoFootholdAndAPushDoes) {
 
 TEST(StepPlan, MissesLessThanAnUnchangedStepWould) {
   for (double fraction : {0.2, 0.5, 0.7}) {
-    const SyntheticWalk w = in_swing(fraction);
+    const SyntheticWalk w = planned_swing(fraction);
     const double omega = w.gait().omega;
     const double left = w.gait().time_remaining;
     // The CMP stays where the plan has it on average: only foothold and time differ.
@@ -138,7 +138,7 @@ Vector2d soles_apart() {
 TEST(StepPlan, SolesNeverMeetAndNoStepLeavesTheReach) {
   const Vector2d apart = soles_apart();
   for (double fraction : {0.1, 0.3, 0.5, 0.7}) {
-    const SyntheticWalk w = in_swing(fraction);
+    const SyntheticWalk w = planned_swing(fraction);
     const Vector2d stance = sdk::view(w.gait().footholds[GAITD_LEFT].pose.position).head<2>();
     const Vector2d foot = sdk::view(w.robot.feet[GAITD_RIGHT].position).head<2>();
     for (double x : {-1.5, -0.5, 0.0, 0.5, 1.5}) {
@@ -159,14 +159,14 @@ TEST(StepPlan, SolesNeverMeetAndNoStepLeavesTheReach) {
 }
 
 TEST(StepPlan, AFootMayLandInFrontOfTheOtherOne) {
-  const SyntheticWalk w = in_swing(0.5);
+  const SyntheticWalk w = planned_swing(0.5);
   const double stance = w.gait().footholds[GAITD_LEFT].pose.position[1];
   const Vector2d at = foothold(w, with_error(w, 0.0, 0.1));  // towards the stance foot
   EXPECT_LT(stance - at.y(), soles_apart().y());
 }
 
 TEST(StepPlan, ASwingWaitsForAFootThatHasFarToGo) {
-  const SyntheticWalk w = in_swing(0.8);
+  const SyntheticWalk w = planned_swing(0.8);
   const GaitdStepAdjustment out = with_error(w, 0.0, -0.2);  // outwards, just before touchdown
   EXPECT_GT(out.time_shift, 0.01);
   EXPECT_LE(out.time_shift, 0.5 * w.gait().phase_duration + 1e-9);
@@ -198,7 +198,7 @@ TEST(StepPlan, StaysInTheLandingRegion) {
 }
 
 TEST(StepPlan, ChangesNothingInTheLastMoments) {
-  SyntheticWalk w = in_swing(0.5);
+  SyntheticWalk w = planned_swing(0.5);
   StepPlan layer(atlas());
   w.robot.icp[0] += 0.15;
   w.adjustment = process(layer, w);
@@ -211,7 +211,7 @@ TEST(StepPlan, ChangesNothingInTheLastMoments) {
 }
 
 TEST(StepPlan, AFasterSwingKeepsItsLeastDuration) {
-  const SyntheticWalk w = in_swing(0.2);
+  const SyntheticWalk w = planned_swing(0.2);
   const GaitdStepAdjustment out = with_error(w, 0.5, 0.0);
   EXPECT_LT(out.time_shift, -0.05);
   const double time = std::sqrt(atlas().nominal_com_height / atlas().gravity);
@@ -240,7 +240,7 @@ TEST(StepPlan, ATransferIsShortenedByALeadOfTheIcpOnly) {
 }
 
 TEST(StepPlan, GoesOnFromAShiftThatAnotherVariantMade) {
-  SyntheticWalk w = in_swing();
+  SyntheticWalk w = planned_swing();
   StepPlan first(atlas());
   w.robot.icp[0] += 0.12;
   w.adjustment = process(first, w);
@@ -256,7 +256,7 @@ TEST(StepPlan, GoesOnFromAShiftThatAnotherVariantMade) {
 }
 
 TEST(StepPlan, NeverAllocates) {
-  SyntheticWalk w = in_swing();
+  SyntheticWalk w = planned_swing();
   StepPlan layer(atlas());
   w.robot.icp[0] += 0.15;
   const int before = testing::allocation_count();

@@ -28,9 +28,9 @@ using Output = GaitdWholeBodyControllerOutput;
 double weight() { return atlas().total_mass * atlas().gravity; }
 
 // Atlas in its nominal posture (with a little motion if wanted), with the objectives of a gait.
-class Bench {
+class ControllerBench {
  public:
-  explicit Bench(double period = 0.001)
+  explicit ControllerBench(double period = 0.001)
       : walk(period),
         builder(atlas()),
         objectives(std::make_unique<GaitdObjectives>()),
@@ -91,7 +91,7 @@ class Bench {
 
 class Recomputed {
  public:
-  explicit Recomputed(const Bench& b) : dynamics(atlas()) {
+  explicit Recomputed(const ControllerBench& b) : dynamics(atlas()) {
     const GaitdRobotState& r = b.walk.robot;
     const int n = atlas().joint_count;
     dynamics.update(sdk::view(r.pelvis_position), sdk::quaternion(r.pelvis_orientation),
@@ -125,7 +125,7 @@ class Recomputed {
   dynamics::Vector6d momentum_rate;
 };
 
-void expect_physical(const Bench& b) {
+void expect_physical(const ControllerBench& b) {
   const Recomputed r(b);
   EXPECT_LT(r.force.head<6>().cwiseAbs().maxCoeff(), 1e-6 * weight());
   for (int i = 0; i < atlas().joint_count; ++i) {
@@ -140,7 +140,7 @@ void expect_physical(const Bench& b) {
   }
 }
 
-void expect_sound_contacts(const Bench& b) {
+void expect_sound_contacts(const ControllerBench& b) {
   const GaitdObjectives& o = *b.objectives;
   for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
     const GaitdFoothold& foothold = b.walk.gait().footholds[side];
@@ -174,7 +174,7 @@ void expect_sound_contacts(const Bench& b) {
 }
 
 TEST(ComHeightQp, StandingAtlasIsHeldUpByBothFeet) {
-  Bench b;
+  ControllerBench b;
   ComHeightQp layer(atlas());
   ASSERT_EQ(b.process(layer), GAITD_OK);
   ASSERT_EQ(b.out->info.status, GAITD_WBC_SOLVED);
@@ -192,7 +192,7 @@ TEST(ComHeightQp, StandingAtlasIsHeldUpByBothFeet) {
 TEST(ComHeightQp, SolutionsArePhysicalInStirredStates) {
   ComHeightQp layer(atlas());
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    Bench b;
+    ControllerBench b;
     b.stir(seed);
     ASSERT_EQ(b.process(layer), GAITD_OK);
     ASSERT_EQ(b.out->info.status, GAITD_WBC_SOLVED) << seed;
@@ -203,7 +203,7 @@ TEST(ComHeightQp, SolutionsArePhysicalInStirredStates) {
 }
 
 // Both hands at walls beside the robot.
-void hold_on(Bench& b, double force) {
+void hold_on(ControllerBench& b, double force) {
   dynamics::Kinematics kinematics(atlas());
   kinematics.update(b.walk.robot);
   for (int hand : {GAITD_LEFT, GAITD_RIGHT}) {
@@ -224,7 +224,7 @@ TEST(ComHeightQp, HandsCarryWhatFeetCannot) {
   // To the left, more than feet can push a robot that keeps upright.
   double missed[2];
   for (int held : {0, 1}) {
-    Bench b;
+    ControllerBench b;
     ComHeightQp layer(atlas());
     b.adjustment.linear_momentum_rate[1] = 0.25 * weight();
     b.make_objectives();
@@ -254,7 +254,7 @@ TEST(ComHeightQp, HandsCarryWhatFeetCannot) {
 }
 
 TEST(ComHeightQp, AHandThatHoldsStaysWhereItIs) {
-  Bench b;
+  ControllerBench b;
   ComHeightQp layer(atlas());
   hold_on(b, 200.0);
   ASSERT_EQ(b.process(layer), GAITD_OK);
@@ -269,7 +269,7 @@ TEST(ComHeightQp, AHandThatHoldsStaysWhereItIs) {
 }
 
 TEST(ComHeightQp, TheMomentumObjectiveIsMetInAllThreeDirections) {
-  Bench b;
+  ControllerBench b;
   ComHeightQp layer(atlas());
   b.adjustment.linear_momentum_rate[0] = 60.0;
   b.adjustment.linear_momentum_rate[1] = -40.0;
@@ -284,7 +284,7 @@ TEST(ComHeightQp, TheMomentumObjectiveIsMetInAllThreeDirections) {
 }
 
 TEST(ComHeightQp, TheHeightIsTakenWhateverTheMaskSays) {
-  Bench b;
+  ControllerBench b;
   ComHeightQp layer(atlas());
   b.objectives->momentum_mask = 0b011000;
   b.objectives->momentum_rate[5] = 150.0;
@@ -295,7 +295,7 @@ TEST(ComHeightQp, TheHeightIsTakenWhateverTheMaskSays) {
 // Of a leg that stands the mode says how straight it is, unless the height does.
 TEST(ComHeightQp, TheHeightAndNotTheModeBendsALegThatStands) {
   auto knee_torque = [](std::uint32_t mask, double bend) {
-    Bench b;
+    ControllerBench b;
     ComHeightQp layer(atlas());
     b.objectives->momentum_mask = mask;
     const int knee = atlas().legs[GAITD_LEFT].knee;
@@ -309,7 +309,7 @@ TEST(ComHeightQp, TheHeightAndNotTheModeBendsALegThatStands) {
 }
 
 TEST(ComHeightQp, WalksThroughEveryPhaseWithPhysicalSolutions) {
-  Bench b(0.004);
+  ControllerBench b(0.004);
   ComHeightQp layer(atlas());
   ASSERT_FALSE(b.walk.machine.walk({.steps = 2, .length = 0.1}).refused());
   int swings = 0;
@@ -337,7 +337,7 @@ double largest_share(const Output& out) {
 }
 
 TEST(ComHeightQp, TorqueLimitsAreKeptWhenTheyBind) {
-  Bench b;
+  ControllerBench b;
   ComHeightQp layer(atlas());
   b.objectives->momentum_rate[5] = 500.0;
   ASSERT_EQ(b.process(layer), GAITD_OK);
@@ -352,7 +352,7 @@ TEST(ComHeightQp, TorqueLimitsAreKeptWhenTheyBind) {
 }
 
 TEST(ComHeightQp, JointsAtAStopAreNotPushedFurther) {
-  Bench b;
+  ControllerBench b;
   ComHeightQp layer(atlas());
   const int knee = atlas().legs[GAITD_LEFT].knee;
   b.walk.robot.joint_position[knee] = atlas().joints[knee].position_max;
@@ -367,7 +367,7 @@ TEST(ComHeightQp, JointsAtAStopAreNotPushedFurther) {
 
 TEST(ComHeightQp, InputThatIsNoNumberGivesAStatusAndIsForgotten) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Bench b;
+  ControllerBench b;
   ComHeightQp layer(atlas());
   ASSERT_EQ(b.process(layer), GAITD_OK);
   const Output good = *b.out;
@@ -399,7 +399,7 @@ TEST(ComHeightQp, InputThatIsNoNumberGivesAStatusAndIsForgotten) {
 TEST(ComHeightQp, GivesTheSameBitsTwice) {
   Output outputs[2];
   for (Output& out : outputs) {
-    Bench b(0.004);
+    ControllerBench b(0.004);
     ComHeightQp layer(atlas());
     ASSERT_FALSE(b.walk.machine.walk({.steps = 1, .length = 0.1}).refused());
     for (int i = 0; i < 300; ++i) {
@@ -417,7 +417,7 @@ TEST(ComHeightQp, GivesTheSameBitsTwice) {
 }
 
 TEST(ComHeightQp, AnotherInstanceContinuesFromItsState) {
-  Bench b;
+  ControllerBench b;
   ComHeightQp first(atlas());
   for (int i = 0; i < 20; ++i) {
     b.walk.tick();
@@ -439,7 +439,7 @@ TEST(ComHeightQp, AnotherInstanceContinuesFromItsState) {
 }
 
 TEST(ComHeightQp, NeverAllocatesAfterTheFirstTicks) {
-  Bench b(0.004);
+  ControllerBench b(0.004);
   ComHeightQp layer(atlas());
   for (int i = 0; i < 3; ++i) b.process(layer);
   ASSERT_FALSE(b.walk.machine.walk({.steps = 1, .length = 0.1}).refused());
@@ -455,13 +455,13 @@ TEST(ComHeightQp, NeverAllocatesAfterTheFirstTicks) {
 }
 
 TEST(NullspaceQp, StraightLegsLeaveOneFreedomBentOnesNone) {
-  Bench bent;
+  ControllerBench bent;
   NullspaceQp controller(atlas());
   ASSERT_EQ(bent.process(controller), GAITD_OK);
   EXPECT_EQ(bent.out->info.status, GAITD_WBC_SOLVED);
   EXPECT_LT(bent.out->info.null_trace, 0.5);
 
-  Bench straight;
+  ControllerBench straight;
   straight.straighten(0.3);
   controller.reset();
   ASSERT_EQ(straight.process(controller), GAITD_OK);
@@ -474,7 +474,7 @@ TEST(NullspaceQp, KneesAtTheSingularityGetNoTorqueSpike) {
   std::array<double, 4> torque{};
   const std::array<double, 4> knees = {0.0, 0.001, 0.01, 0.05};
   for (std::size_t i = 0; i < knees.size(); ++i) {
-    Bench b;
+    ControllerBench b;
     b.straighten(knees[i]);
     controller.reset();
     for (int k = 0; k < 5; ++k) {
@@ -504,7 +504,7 @@ struct Plain {
 // height is spent on it.
 TEST(InverseDynamicsQp, AFreeHeightIsNotSpentOnAJump) {
   auto vertical_force = [](double rise_speed, double velocity) {
-    Bench b;
+    ControllerBench b;
     b.straighten(0.6);
     b.walk.robot.com_velocity[2] = velocity;
     b.objectives->momentum_rate[4] = 14.0 * atlas().total_mass;
@@ -529,7 +529,7 @@ TEST(InverseDynamicsQp, AFreeHeightIsNotSpentOnAJump) {
 // more it is, and contacts and limits hold all the same.
 TEST(InverseDynamicsQp, TorquesDoNotJump) {
   auto largest_change = [](double weight) {
-    Bench b;
+    ControllerBench b;
     b.straighten(0.3);
     Plain controller{.limits = {.torque_rate_weight = weight}};
     EXPECT_EQ(b.process(controller), GAITD_OK);
@@ -556,7 +556,7 @@ TEST(InverseDynamicsQp, TorquesDoNotJump) {
 }
 
 // m/s^2, of the distance of a separation, in the solution.
-double parting(const Bench& b, const GaitdSeparation& s) {
+double parting(const ControllerBench& b, const GaitdSeparation& s) {
   const Recomputed r(b);
   dynamics::Matrix6X jacobian(6, r.acceleration.size());
   Vector3d apart = Vector3d::Zero();
@@ -571,7 +571,7 @@ double parting(const Bench& b, const GaitdSeparation& s) {
 }
 
 TEST(InverseDynamicsQp, ASeparationIsKeptAndOneThatIsKeptAnywayChangesNothing) {
-  Bench b;
+  ControllerBench b;
   b.stir(5);
   GaitdSeparation s{};
   s.body[0] = atlas().hands[GAITD_LEFT].body;
@@ -596,7 +596,7 @@ TEST(InverseDynamicsQp, ASeparationIsKeptAndOneThatIsKeptAnywayChangesNothing) {
 
 TEST(NullspaceQp, ThePrivilegedKneeDecidesWhichWayTheBodyMoves) {
   for (double goal : {-50.0, 50.0}) {
-    Bench b;
+    ControllerBench b;
     b.straighten(0.4);
     for (const GaitdLeg& leg : atlas().legs) {
       b.objectives->privileged_acceleration[leg.knee] = leg.knee_bend_sign * goal;
@@ -616,7 +616,7 @@ TEST(NullspaceQp, ThePrivilegedKneeDecidesWhichWayTheBodyMoves) {
 TEST(NullspaceQp, WeightsSayWhichLegCounts) {
   double knee[2];
   for (int heavier : {GAITD_LEFT, GAITD_RIGHT}) {
-    Bench b;
+    ControllerBench b;
     b.straighten(0.4);
     for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
       const GaitdLeg& leg = atlas().legs[side];

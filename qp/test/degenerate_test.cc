@@ -10,14 +10,14 @@
 namespace gaitd::qp {
 namespace {
 
+using testing::kInfinity;
+using testing::kMax;
+
 using testing::make_random_problem;
 using testing::OwnedProblem;
 using testing::Random;
 using testing::RandomProblemSpec;
 using testing::to_vector;
-
-constexpr Dimensions kMax{112, 40, 96};
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Result solve_and_judge(DenseSolver* solver, const OwnedProblem& owned) {
   const Result result = solver->solve(owned.view());

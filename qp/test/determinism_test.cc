@@ -9,12 +9,12 @@
 namespace gaitd::qp {
 namespace {
 
+using testing::kMax;
+
 using testing::make_random_problem;
 using testing::OwnedProblem;
 using testing::Random;
 using testing::RandomProblemSpec;
-
-constexpr Dimensions kMax{112, 40, 96};
 
 std::vector<double> everything(const Result& result) {
   std::vector<double> all = {static_cast<double>(result.iterations), result.objective,

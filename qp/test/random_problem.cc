@@ -10,8 +10,6 @@
 namespace gaitd::qp::testing {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 Eigen::MatrixXd random_square(int n, int rank, double condition, Random* random) {
   Eigen::MatrixXd factor = random->matrix(std::max(rank, 0), n);
   for (int i = 0; i < factor.rows(); ++i) {

@@ -4,11 +4,15 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 
 #include "gaitd/qp/dense_solver.h"
 #include "gaitd/qp/problem.h"
 
 namespace gaitd::qp::testing {
+
+inline constexpr Dimensions kMax{112, 40, 96};  // of the solvers of the tests
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Owns the data of a Problem.
 struct OwnedProblem {

@@ -9,14 +9,14 @@
 namespace gaitd::qp {
 namespace {
 
+using testing::kMax;
+
 using testing::HessianKind;
 using testing::make_random_problem;
 using testing::Random;
 using testing::RandomProblemSpec;
 using testing::SolvedProblem;
 using testing::to_vector;
-
-constexpr Dimensions kMax{112, 40, 96};
 
 RandomProblemSpec draw_spec(Random* random) {
   RandomProblemSpec spec;

@@ -4,16 +4,17 @@
 #include <algorithm>
 #include <string>
 
+#include "random_problem.h"
 #include "recorded_problems.h"
 
 namespace gaitd::qp {
 namespace {
 
+using testing::kMax;
+
 using testing::read_recorded;
 using testing::RecordedProblem;
 using testing::to_vector;
-
-constexpr Dimensions kMax{112, 40, 96};
 
 class Recorded : public ::testing::TestWithParam<const char*> {
  protected:

@@ -9,14 +9,14 @@
 namespace gaitd::qp {
 namespace {
 
+using testing::kMax;
+
 using testing::HessianKind;
 using testing::make_random_problem;
 using testing::OwnedProblem;
 using testing::Random;
 using testing::RandomProblemSpec;
 using testing::to_vector;
-
-constexpr Dimensions kMax{112, 40, 96};
 
 TEST(SingularHessian, RankDeficientProblemsReachTheKktOfTheOriginal) {
   DenseSolver solver(kMax);

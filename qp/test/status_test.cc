@@ -9,13 +9,14 @@
 namespace gaitd::qp {
 namespace {
 
+using testing::kInfinity;
+using testing::kMax;
+
 using testing::make_random_problem;
 using testing::OwnedProblem;
 using testing::Random;
 using testing::RandomProblemSpec;
 
-constexpr Dimensions kMax{112, 40, 96};
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 OwnedProblem small_problem() {

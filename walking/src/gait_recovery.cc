@@ -62,8 +62,9 @@ GaitdFootstep GaitMachine::recovery_step(const GaitdRobotState& robot, int side)
       heading.conjugate() * Eigen::Vector3d(coming.x() - middle.x(), coming.y() - middle.y(), 0.0);
   const StepLimits most = limits();
   local.x() = std::clamp(local.x(), -most.backward, most.forward);
-  local.y() = side_sign(side) * std::clamp(side_sign(side) * local.y(),
-                                           model_.nominal_foot_separation, most.largest_separation);
+  const double nearest = model_.nominal_foot_separation;
+  local.y() = side_sign(side) * std::clamp(side_sign(side) * local.y(), nearest,
+                                           std::max(nearest, most.largest_separation));
   sdk::view(step.pose.position).head<2>() = (middle + heading * local).head<2>();
   step.pose.position[2] -= height_offset_;
   sdk::store(heading, step.pose.orientation);

@@ -6,6 +6,7 @@
 
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/footsteps.h"
+#include "gaitd/walking/pose_path.h"
 #include "gaitd/walking/support.h"
 
 namespace gaitd::walking {
@@ -16,13 +17,20 @@ constexpr double kLowestPelvis = 0.1;  // of the nominal height of the centre of
 constexpr double kLargestTilt = 0.2;   // rad, roll and pitch
 constexpr double kLargestYaw = 0.3;    // rad
 constexpr double kFastestTurn = 1.2;   // rad/s, mean, from one way point to the next
-constexpr double kChestMiss = 0.02;    // rad, of a spine at its limits
-constexpr double kRateShare = 0.5;     // of the velocity limit of a joint, for a motion
-constexpr double kPeak = 1.875;        // speed of a minimum-jerk motion, over its mean
-constexpr int kSearch = 40;            // steps of the search for where a hand ends
+// m and rad, beyond those of way points: what a smooth way between them takes.
+constexpr double kBeyond = 0.02;
+constexpr double kTurnBeyond = 0.05;
+constexpr double kChestMiss = 0.02;  // rad, of a spine at its limits
+constexpr double kRateShare = 0.5;   // of the velocity limit of a joint, for a motion
+constexpr double kPeak = 1.875;      // speed of a minimum-jerk motion, over its mean
+constexpr int kSearch = 40;          // steps of the search for where a hand ends
 constexpr const char* kTurnNames[] = {"roll", "pitch", "yaw"};
 
 bool is_hand(int part) { return part == GAITD_PART_LEFT_ARM || part == GAITD_PART_RIGHT_ARM; }
+
+bool stands(const GaitdGaitState& gait) {
+  return gait.phase == GAITD_PHASE_STAND && gait.footstep_count == 0;
+}
 
 Eigen::Quaterniond heading_of(const GaitdGaitState& gait) {
   return sdk::quaternion(
@@ -35,6 +43,25 @@ Eigen::Vector2d turned(const Eigen::Quaterniond& heading, const double* shift) {
 
 Eigen::Quaterniond turn_of(const GaitdMotionPoint& point) {
   return sdk::from_roll_pitch_yaw(point.value[3], point.value[4], point.value[5]);
+}
+
+// At time 0.
+GaitdMotionPoint point_of(const double* shift, const Eigen::Quaterniond& turn) {
+  GaitdMotionPoint point{};
+  std::copy_n(shift, 3, point.value);
+  sdk::view(point.value).segment<3>(3) = sdk::roll_pitch_yaw(turn);
+  return point;
+}
+
+// The mean rates, to way point `i` of a motion.
+Refusal check_turn(const GaitdMotionPoint& from, const GaitdMotionPoint& to, int i) {
+  for (int axis = 3; axis < 6; ++axis) {
+    const double rate = std::abs(to.value[axis] - from.value[axis]) / (to.time - from.time);
+    if (rate <= kFastestTurn) continue;
+    return refuse("pose: way point %d turns at %.2f rad/s, at most %.1f expected; give it time",
+                  i + 1, rate, kFastestTurn);
+  }
+  return {};
 }
 
 // Times that increase, and numbers; "" where everything is right.
@@ -82,7 +109,7 @@ Refusal Motions::command(const MotionCommand& command, const GaitdRobotState& ro
   Refusal refusal = check_points(motion);
   if (refusal.refused()) return refusal;
   if (command.part == GAITD_PART_PELVIS) {
-    refusal = check_pelvis(motion, gait);
+    refusal = check_pelvis(motion, gait, references);
   } else if (command.part == GAITD_PART_CHEST) {
     refusal = check_chest(motion, references);
   } else if (is_hand(command.part)) {
@@ -102,22 +129,19 @@ Refusal Motions::command(const MotionCommand& command, const GaitdRobotState& ro
   return {};
 }
 
-// From the way point before, as far as nothing can follow it: no CMP inside the feet stops a centre
-// of mass that starts so fast.
-Refusal Motions::check_segment(const GaitdMotion& motion, int i, const GaitdGaitState& gait) const {
-  if (i == 0) return {};
-  const GaitdMotionPoint& from = motion.points[i - 1];
+// As far as nothing can follow it: no CMP inside the feet stops a centre of mass that starts so
+// fast.
+Refusal Motions::check_segment(const GaitdMotion& motion, int i, const GaitdGaitState& gait,
+                               const GaitdTaskReferences& references) const {
+  const GaitdMotionPoint from =
+      i > 0 ? motion.points[i - 1]
+            : point_of(references.com_shift, sdk::quaternion(references.pelvis_turn));
   const GaitdMotionPoint& to = motion.points[i];
   const double time = to.time - from.time;
-  for (int axis = 3; axis < 6; ++axis) {
-    const double rate = std::abs(to.value[axis] - from.value[axis]) / time;
-    if (rate > kFastestTurn) {
-      return refuse("pose: way point %d turns at %.2f rad/s, at most %.1f expected; give it time",
-                    i + 1, rate, kFastestTurn);
-    }
-  }
+  const Refusal fast = check_turn(from, to, i);
+  if (fast.refused()) return fast;
   const Eigen::Vector2d way(to.value[0] - from.value[0], to.value[1] - from.value[1]);
-  if (way.norm() == 0.0) return {};
+  if (way.norm() == 0.0 || !stands(gait)) return {};
   // Full speed ahead for half of the time, then back.
   const Eigen::Vector2d most = 4.0 / (time * time * gait.omega * gait.omega) * way;
   const Eigen::Vector2d rest = middle(gait.footholds[GAITD_LEFT], gait.footholds[GAITD_RIGHT]);
@@ -127,13 +151,46 @@ Refusal Motions::check_segment(const GaitdMotion& motion, int i, const GaitdGait
       support_polygon(model_, gait).inside_distance(rest + turned(heading_of(gait), shift));
   if (inside >= 0.0) return {};
   return refuse(
-      "pose: way point %d is %.3f m from the one before in %.2f s, and the feet could not "
-      "stop there; give it time",
+      "pose: way point %d is %.3f m away in %.2f s, and the feet could not stop there; give it "
+      "time",
       i + 1, way.norm(), time);
 }
 
-Refusal Motions::check_pelvis(const GaitdMotion& motion, const GaitdGaitState& gait) const {
-  const bool stands = gait.phase == GAITD_PHASE_STAND && gait.footstep_count == 0;
+Refusal Motions::check_way(const GaitdMotion& motion, const GaitdGaitState& gait,
+                           const GaitdTaskReferences& references) const {
+  PosePath::Sample now;
+  now.position = sdk::view(references.com_shift);
+  now.velocity = sdk::view(references.com_shift_velocity);
+  now.acceleration = sdk::view(references.com_shift_acceleration);
+  now.orientation = sdk::quaternion(references.pelvis_turn);
+  now.angular_velocity = sdk::view(references.pelvis_turn_rate);
+  PosePath way;
+  way.begin(now, motion, 0.0);
+  const Eigen::Vector2d rest = middle(gait.footholds[GAITD_LEFT], gait.footholds[GAITD_RIGHT]);
+  const auto feet = support_polygon(model_, gait);
+  const double lowest = -kLowestPelvis * model_.nominal_com_height;
+  constexpr int kSamples = 100;
+  for (int k = 1; k <= kSamples; ++k) {
+    const PosePath::Sample at = way.at(way.duration() * k / kSamples);
+    const Eigen::Vector3d icp = at.position + at.velocity / gait.omega;
+    const Eigen::Vector3d turn = sdk::log_so3(at.orientation);
+    const bool shifted = !at.position.head<2>().isZero(0.0) || !at.velocity.head<2>().isZero(0.0);
+    const bool beside = shifted && stands(gait) &&
+                        feet.inside_distance(rest + turned(heading_of(gait), icp.data())) < 0.0;
+    const bool low = at.position.z() < lowest - kBeyond || at.position.z() > kBeyond;
+    const bool tilted = turn.head<2>().cwiseAbs().maxCoeff() > kLargestTilt + kTurnBeyond ||
+                        std::abs(turn.z()) > kLargestYaw + kTurnBeyond;
+    if (!beside && !low && !tilted) continue;
+    return refuse(
+        "pose: the pelvis would swing out to x %.3f, y %.3f, z %.3f m, roll %.2f, pitch %.2f, yaw "
+        "%.2f rad on its way; wait until it is at rest, or give it another time",
+        at.position.x(), at.position.y(), at.position.z(), turn.x(), turn.y(), turn.z());
+  }
+  return {};
+}
+
+Refusal Motions::check_pelvis(const GaitdMotion& motion, const GaitdGaitState& gait,
+                              const GaitdTaskReferences& references) const {
   const double lowest = -kLowestPelvis * model_.nominal_com_height;
   const Eigen::Vector2d rest = middle(gait.footholds[GAITD_LEFT], gait.footholds[GAITD_RIGHT]);
   for (int i = 0; i < motion.point_count; ++i) {
@@ -153,10 +210,8 @@ Refusal Motions::check_pelvis(const GaitdMotion& motion, const GaitdGaitState& g
                       -largest, largest);
       }
     }
-    const Refusal fast = check_segment(motion, i, gait);
-    if (fast.refused()) return fast;
     if (shift[0] == 0.0 && shift[1] == 0.0) continue;
-    if (!stands) {
+    if (!stands(gait)) {
       return refuse(
           "pose: pelvis.x and pelvis.y shift a robot that stands, this one walks; wait until it "
           "stands, or `gaitctl stop`");
@@ -170,7 +225,11 @@ Refusal Motions::check_pelvis(const GaitdMotion& motion, const GaitdGaitState& g
           shift[0], shift[1], inside, kShiftMargin);
     }
   }
-  return {};
+  for (int i = 0; i < motion.point_count; ++i) {
+    const Refusal fast = check_segment(motion, i, gait, references);
+    if (fast.refused()) return fast;
+  }
+  return check_way(motion, gait, references);
 }
 
 Refusal Motions::check_chest(const GaitdMotion& motion,
@@ -184,6 +243,11 @@ Refusal Motions::check_chest(const GaitdMotion& motion,
     JointChain::Pose goal = rest;
     goal.orientation = pelvis.conjugate() * turn_of(motion.points[i]) * rest.orientation;
     JointChain::Joints q = spine_.nominal();
+    const GaitdMotionPoint from =
+        i > 0 ? motion.points[i - 1]
+              : point_of(references.com_shift, sdk::quaternion(references.chest_turn));
+    const Refusal fast = check_turn(from, motion.points[i], i);
+    if (fast.refused()) return fast;
     const double miss = spine_.reach(goal, kSearch, q).turn;
     if (miss > kChestMiss) {
       const double* turn = motion.points[i].value + 3;

@@ -103,6 +103,11 @@ Refusal Payload::estimate(int body, const ExternalWrench& external, bool stands)
         "payload.estimate: expected a tare of the robot without its load, got none yet; put the "
         "load down, and `gaitctl tare`");
   }
+  if (external.tare_waits()) {
+    return refuse(
+        "payload.estimate: a tare is being taken, the load would be in it; put it down, and try "
+        "again when the robot has stood still for two seconds");
+  }
   body_ = body;
   begin_round(1);
   return {};

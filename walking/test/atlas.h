@@ -25,6 +25,8 @@ inline const GaitdModel& atlas() {
   return model;
 }
 
+inline double atlas_weight() { return atlas().total_mass * atlas().gravity; }  // N
+
 // What depends on the posture: soles with their twists, centre of mass, ICP for `omega` (1/s).
 inline void fill_kinematics(const GaitdModel& model, double omega, GaitdRobotState& robot) {
   dynamics::Kinematics kinematics(model);

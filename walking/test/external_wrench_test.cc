@@ -7,19 +7,22 @@
 
 #include "atlas.h"
 #include "gaitd/sdk/loads.h"
+#include "walking/test/tick.h"
 
 namespace gaitd::walking {
 namespace {
+
+using testing::atlas_weight;
+
+using testing::kDt;
 
 using dynamics::Vector6d;
 using Eigen::Vector3d;
 using testing::atlas;
 
-constexpr double kDt = 1e-3;
-
 // Atlas stands still on its left foot, which carries it against `pull` (at the CoM, W).
-struct Bench {
-  Bench() : robot(testing::standing_state(atlas())) { gait.phase = GAITD_PHASE_STAND; }
+struct PulledRobot {
+  PulledRobot() : robot(testing::standing_state(atlas())) { gait.phase = GAITD_PHASE_STAND; }
 
   void turn(double yaw) {
     sdk::store(sdk::from_yaw(yaw), robot.pelvis_orientation);
@@ -51,20 +54,18 @@ struct Bench {
   ExternalWrench external{atlas()};
 };
 
-const double kWeight = atlas().total_mass * atlas().gravity;  // N
-
 TEST(ExternalWrench, ALoadThatNobodyToldOfMakesItHeavier) {
   for (const int phase : {GAITD_PHASE_STAND, GAITD_PHASE_SWING}) {
-    Bench b;
+    PulledRobot b;
     b.run_for(2.0);
     EXPECT_FALSE(b.external.misjudged());
     b.gait.phase = phase;
-    b.pull.z() = -0.06 * kWeight;
+    b.pull.z() = -0.06 * atlas_weight();
     b.run_for(0.5);
     EXPECT_FALSE(b.external.misjudged()) << "as much as a step does";
     b.run_for(7.5);
     EXPECT_TRUE(b.external.misjudged());
-    EXPECT_NEAR(b.external.surplus(), 0.06 * kWeight, 0.002 * kWeight);
+    EXPECT_NEAR(b.external.surplus(), 0.06 * atlas_weight(), 0.002 * atlas_weight());
     b.pull.z() = 0.0;
     b.run_for(8.0);
     EXPECT_FALSE(b.external.misjudged());
@@ -72,25 +73,25 @@ TEST(ExternalWrench, ALoadThatNobodyToldOfMakesItHeavier) {
 }
 
 TEST(ExternalWrench, ALoadThatWasToldOfAndIsNotThereMakesItLighter) {
-  Bench b;
+  PulledRobot b;
   b.run_for(2.0);
   const GaitdLoad load{.body = 0, .reserved = 0, .mass = 35.0, .com = {}};
   ASSERT_TRUE(sdk::put_load(load, b.robot.loads));
   b.gait.phase = GAITD_PHASE_SWING;
   b.run_for(1.0);
   EXPECT_TRUE(b.external.misjudged());
-  EXPECT_LT(b.external.surplus(), -0.05 * kWeight);
+  EXPECT_LT(b.external.surplus(), -0.05 * atlas_weight());
   b.robot.loads = {};
   b.run_for(0.1);
   EXPECT_FALSE(b.external.misjudged()) << "told that it was not there";
 }
 
 TEST(ExternalWrench, ASteadyPullIsFoundAndCountedOn) {
-  Bench b;
+  PulledRobot b;
   b.run_for(2.0);
   EXPECT_TRUE(b.external.tared());
   EXPECT_FALSE(b.external.pulled());
-  b.pull = 0.08 * kWeight * Vector3d(0.6, -0.8, 0.0);
+  b.pull = 0.08 * atlas_weight() * Vector3d(0.6, -0.8, 0.0);
   b.couple = Vector3d(10.0, 5.0, -2.0);
   b.run_for(0.5);
   EXPECT_LT((b.force() - b.pull).norm(), 0.1 * b.pull.norm());
@@ -101,14 +102,14 @@ TEST(ExternalWrench, ASteadyPullIsFoundAndCountedOn) {
 }
 
 TEST(ExternalWrench, APullThatEndsIsSoonForgotten) {
-  Bench b;
+  PulledRobot b;
   b.run_for(2.0);
-  b.pull = Vector3d(0.0, 0.1 * kWeight, 0.0);
+  b.pull = Vector3d(0.0, 0.1 * atlas_weight(), 0.0);
   b.run_for(3.0);
   ASSERT_TRUE(b.external.pulled());
   b.pull.setZero();
   b.run_for(0.15);
-  EXPECT_LT(b.counted_on().norm(), 0.02 * kWeight);
+  EXPECT_LT(b.counted_on().norm(), 0.02 * atlas_weight());
   b.run_for(2.0);
   EXPECT_FALSE(b.external.pulled());
   EXPECT_LT(b.force().norm(), 1.0);
@@ -117,7 +118,7 @@ TEST(ExternalWrench, APullThatEndsIsSoonForgotten) {
 // The largest that the robot has to hold standing, and one that it has to step for.
 TEST(ExternalWrench, APushIsNotCountedOn) {
   for (const auto& [force, time] : {std::pair(340.0, 0.2), std::pair(1500.0, 0.1)}) {
-    Bench b;
+    PulledRobot b;
     b.run_for(2.0);
     double most = 0.0;
     const auto run = [&](double seconds) {
@@ -130,15 +131,15 @@ TEST(ExternalWrench, APushIsNotCountedOn) {
     run(time);
     b.pull.setZero();
     run(1.0);
-    EXPECT_LT(most, 0.03 * kWeight) << force;
+    EXPECT_LT(most, 0.03 * atlas_weight()) << force;
     EXPECT_FALSE(b.external.pulled()) << force;
   }
 }
 
 TEST(ExternalWrench, ADraughtIsLeftToTheFeedback) {
-  Bench b;
+  PulledRobot b;
   b.run_for(2.0);
-  b.pull = Vector3d(0.025 * kWeight, 0.0, 0.0);
+  b.pull = Vector3d(0.025 * atlas_weight(), 0.0, 0.0);
   b.run_for(3.0);
   EXPECT_NEAR(b.force().x(), b.pull.x(), 1.0);
   EXPECT_FALSE(b.external.pulled());
@@ -146,38 +147,38 @@ TEST(ExternalWrench, ADraughtIsLeftToTheFeedback) {
 
 // Drives that stick and bend: forces that come and go with the steps.
 TEST(ExternalWrench, WhatComesAndGoesIsNoPull) {
-  Bench b;
+  PulledRobot b;
   b.run_for(2.0);
   bool pulled = false;
   double largest = 0.0;
   for (double time = 0.0; time < 16.0; time += 0.01) {
-    const double amplitude = 0.07 * kWeight * std::min(1.0, time / 12.0);
+    const double amplitude = 0.07 * atlas_weight() * std::min(1.0, time / 12.0);
     b.pull = Vector3d(0.0, amplitude * std::sin(2.0 * M_PI * 1.2 * time), 0.0);
     b.run_for(0.01);
     pulled |= b.external.pulled();
     largest = std::max(largest, b.force().norm());
   }
   EXPECT_FALSE(pulled);
-  EXPECT_GT(largest, 0.04 * kWeight);
-  b.pull = Vector3d(0.12 * kWeight, 0.0, 0.0);
+  EXPECT_GT(largest, 0.04 * atlas_weight());
+  b.pull = Vector3d(0.12 * atlas_weight(), 0.0, 0.0);
   b.run_for(1.0);
   EXPECT_TRUE(b.external.pulled());
 }
 
 TEST(ExternalWrench, AWindThatRisesIsAPull) {
-  Bench b;
+  PulledRobot b;
   b.run_for(2.0);
   for (double time = 0.0; time < 5.0; time += 0.01) {
-    b.pull = Vector3d(0.016 * kWeight * time, 0.0, 0.0);
+    b.pull = Vector3d(0.016 * atlas_weight() * time, 0.0, 0.0);
     b.run_for(0.01);
   }
   EXPECT_TRUE(b.external.pulled());
 }
 
 TEST(ExternalWrench, ALoadIsShownAndNotCountedOn) {
-  Bench b;
+  PulledRobot b;
   b.run_for(2.0);
-  b.pull = Vector3d(0.08 * kWeight, 0.0, -0.06 * kWeight);
+  b.pull = Vector3d(0.08 * atlas_weight(), 0.0, -0.06 * atlas_weight());
   b.run_for(2.0);
   EXPECT_NEAR(b.force().z(), b.pull.z(), 2.0);
   EXPECT_EQ(b.counted_on().z(), 0.0);
@@ -185,7 +186,7 @@ TEST(ExternalWrench, ALoadIsShownAndNotCountedOn) {
 }
 
 TEST(ExternalWrench, WhatShowsWhenNobodyPullsTurnsWithTheRobot) {
-  Bench b;
+  PulledRobot b;
   b.offset = Vector3d(60.0, -30.0, 20.0);
   b.run_for(2.0);
   EXPECT_LT(b.force().norm(), 1.0);
@@ -197,13 +198,13 @@ TEST(ExternalWrench, WhatShowsWhenNobodyPullsTurnsWithTheRobot) {
 
 // The sensors of a light robot: their offsets turn with the feet.
 TEST(ExternalWrench, APullBelowTheOffsetsOfTheSensorsIsNotBelieved) {
-  Bench b;
-  b.offset = Vector3d(0.0, 0.12 * kWeight, 0.0);
+  PulledRobot b;
+  b.offset = Vector3d(0.0, 0.12 * atlas_weight(), 0.0);
   b.run_for(2.0);
-  b.pull = Vector3d(0.1 * kWeight, 0.0, 0.0);
+  b.pull = Vector3d(0.1 * atlas_weight(), 0.0, 0.0);
   b.run_for(3.0);
   EXPECT_FALSE(b.external.pulled());
-  b.pull = Vector3d(0.15 * kWeight, 0.0, 0.0);
+  b.pull = Vector3d(0.15 * atlas_weight(), 0.0, 0.0);
   b.run_for(3.0);
   EXPECT_TRUE(b.external.pulled());
 }
@@ -211,14 +212,14 @@ TEST(ExternalWrench, APullBelowTheOffsetsOfTheSensorsIsNotBelieved) {
 TEST(ExternalWrench, FeetWithoutSensorsShowNothing) {
   GaitdModel model = atlas();
   for (GaitdFoot& foot : model.feet) foot.force_sensor.body = -1;
-  Bench b;
+  PulledRobot b;
   ExternalWrench blind(model);
   for (int i = 0; i < 3000; ++i) blind.update(kDt, true, b.gait, b.robot);
   EXPECT_FALSE(blind.tared());
 }
 
 TEST(ExternalWrench, WithoutATareNothingIsBelieved) {
-  Bench b;
+  PulledRobot b;
   b.gait.phase = GAITD_PHASE_SWING;
   b.pull = Vector3d(150.0, 0.0, 0.0);
   b.run_for(3.0);
@@ -230,7 +231,7 @@ TEST(ExternalWrench, WithoutATareNothingIsBelieved) {
 }
 
 TEST(ExternalWrench, ATareThatIsAskedForReplacesTheFirst) {
-  Bench b;
+  PulledRobot b;
   b.pull = Vector3d(150.0, 0.0, 0.0);
   b.run_for(2.0);  // somebody held it when it stood up
   EXPECT_LT(b.force().norm(), 1.0);

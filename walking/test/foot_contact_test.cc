@@ -5,11 +5,13 @@
 
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/support.h"
+#include "walking/test/tick.h"
 
 namespace gaitd::walking {
 namespace {
 
-constexpr double kDt = 1e-3;
+using testing::kDt;
+
 constexpr double kWeight = 1000.0;               // N
 constexpr double kLength = 0.13, kWidth = 0.06;  // m, half extents of the sole
 

@@ -47,6 +47,18 @@ TEST(GaitRecovery, StepsTowardsTheIcpAndClosesTheFeetAgain) {
   EXPECT_EQ(w.gait().phase, GAITD_PHASE_STAND);
 }
 
+// Whatever footsteps are accepted: a robot that catches itself does not cross its legs.
+TEST(GaitRecovery, StepsNoNarrowerThanItStands) {
+  SyntheticWalk w;
+  set(w, Gait::kWidestStep, 0.1);
+  w.run_for(0.1);
+  w.icp_error = kLost;
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 1, 0.2));
+  const double apart = std::abs(w.gait().commanded[0].pose.position[1] -
+                                w.gait().footholds[w.gait().support].pose.position[1]);
+  EXPECT_NEAR(apart, atlas().nominal_foot_separation, 1e-9);
+}
+
 TEST(GaitRecovery, CanBeTurnedOff) {
   SyntheticWalk w;
   set(w, Gait::kRecovery, 0.0);

@@ -45,7 +45,7 @@ class PushedWalk : public SyntheticWalk {
   int step_;
 };
 
-double middle(const GaitdGaitState& gait, int axis) {
+double middle_of_feet(const GaitdGaitState& gait, int axis) {
   return 0.5 * (gait.footholds[GAITD_LEFT].pose.position[axis] +
                 gait.footholds[GAITD_RIGHT].pose.position[axis]);
 }
@@ -54,12 +54,12 @@ TEST(GaitReturn, EndsWhereItWasToldAfterAPushInTheLastSteps) {
   for (const auto& [forward, left] : {std::pair{0.0, 0.4}, {-0.4, 0.0}, {0.3, -0.3}}) {
     PushedWalk w(4, forward, left);
     w.run_for(0.1);
-    const double start = middle(w.gait(), 0);
+    const double start = middle_of_feet(w.gait(), 0);
     ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3, .first_side = GAITD_RIGHT}).refused());
     w.run_for(0.5);
     ASSERT_TRUE(w.run_until_stand());
-    EXPECT_NEAR(middle(w.gait(), 0), start + 4 * 0.3, 0.05) << forward << ' ' << left;
-    EXPECT_NEAR(middle(w.gait(), 1), 0.0, 0.05) << forward << ' ' << left;
+    EXPECT_NEAR(middle_of_feet(w.gait(), 0), start + 4 * 0.3, 0.05) << forward << ' ' << left;
+    EXPECT_NEAR(middle_of_feet(w.gait(), 1), 0.0, 0.05) << forward << ' ' << left;
     EXPECT_GT(w.swings, 5);
     EXPECT_LT(w.swings, 16);
     // Soles are 0.13 m wide.
@@ -123,15 +123,15 @@ TEST(GaitReturn, ADriveLeadsNowhere) {
 TEST(GaitReturn, ANewWalkGoesOnFromTheOldWay) {
   PushedWalk w(4, 0.0, 0.4);
   w.run_for(0.1);
-  const double start = middle(w.gait(), 0);
+  const double start = middle_of_feet(w.gait(), 0);
   ASSERT_FALSE(w.machine.walk({.steps = 4, .length = 0.3, .first_side = GAITD_RIGHT}).refused());
   ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 5));
   const Refusal refused = w.machine.walk({.steps = 4, .length = 0.3});
   ASSERT_FALSE(refused.refused()) << refused.message;
   w.run_for(0.5);
   ASSERT_TRUE(w.run_until_stand());
-  EXPECT_NEAR(middle(w.gait(), 0), start + 8 * 0.3, 0.05);
-  EXPECT_NEAR(middle(w.gait(), 1), 0.0, 0.05);
+  EXPECT_NEAR(middle_of_feet(w.gait(), 0), start + 8 * 0.3, 0.05);
+  EXPECT_NEAR(middle_of_feet(w.gait(), 1), 0.0, 0.05);
 }
 
 }  // namespace

@@ -9,9 +9,14 @@
 #include "atlas.h"
 #include "gaitd/walking/support.h"
 #include "walking/test/allocation_counter.h"
+#include "walking/test/tick.h"
 
 namespace gaitd::walking {
 namespace {
+
+using testing::atlas_weight;
+
+using testing::kDt;
 
 using Change = Handholds::Change;
 using Eigen::Vector2d;
@@ -19,12 +24,9 @@ using Eigen::Vector3d;
 using sdk::view;
 using testing::atlas;
 
-constexpr double kDt = 1e-3;
-const double kWeight = atlas().total_mass * atlas().gravity;  // N
-
 // Atlas stands beside a wall. The whole robot is carried along where its hand is to move.
-struct Bench {
-  Bench() : robot(testing::standing_state(atlas())) {}
+struct RobotAtAWall {
+  RobotAtAWall() : robot(testing::standing_state(atlas())) {}
 
   HandholdCommand wall(double force = 150.0) const {
     HandholdCommand command;
@@ -61,7 +63,7 @@ struct Bench {
 };
 
 TEST(Handholds, PressThenHold) {
-  Bench b;
+  RobotAtAWall b;
   ASSERT_FALSE(b.handholds.take(b.wall(), b.robot).refused());
   EXPECT_EQ(b.run_for(0.3, {0, -0.05, 0}), Change::kNone);
   EXPECT_EQ(b.right().state, GAITD_HANDHOLD_SOUGHT);
@@ -75,7 +77,7 @@ TEST(Handholds, PressThenHold) {
 }
 
 TEST(Handholds, AHandThatFindsNothingLetsGo) {
-  Bench b;
+  RobotAtAWall b;
   ASSERT_FALSE(b.handholds.take(b.wall(), b.robot).refused());
   EXPECT_EQ(b.run_for(3.0, {0, -0.05, 0}), Change::kNothing);
   EXPECT_FALSE(b.handholds.busy());
@@ -83,7 +85,7 @@ TEST(Handholds, AHandThatFindsNothingLetsGo) {
 }
 
 TEST(Handholds, AHandThatIsTornOffIsNotCountedOn) {
-  Bench b;
+  RobotAtAWall b;
   b.hold();
   EXPECT_EQ(b.run_for(0.02, {0.5, 0, 0}), Change::kNone);
   EXPECT_EQ(b.run_for(0.2, {0.5, 0, 0}), Change::kLost);
@@ -92,7 +94,7 @@ TEST(Handholds, AHandThatIsTornOffIsNotCountedOn) {
 }
 
 TEST(Handholds, AHandWhoseArmFailsIsNotCountedOn) {
-  Bench b;
+  RobotAtAWall b;
   b.hold();
   const JointChain arm = JointChain::arm(atlas(), GAITD_RIGHT);
   const std::uint64_t elbow = std::uint64_t{1} << arm.joint(arm.size() / 2);
@@ -106,14 +108,14 @@ TEST(Handholds, AHandWhoseArmFailsIsNotCountedOn) {
 }
 
 TEST(Handholds, AreNotTakenTwice) {
-  Bench b;
+  RobotAtAWall b;
   b.hold();
   EXPECT_TRUE(b.handholds.take(b.wall(), b.robot).refused());
   EXPECT_EQ(b.right().state, GAITD_HANDHOLD_HELD);
 }
 
 TEST(Handholds, LetsGoGradually) {
-  Bench b;
+  RobotAtAWall b;
   b.hold();
   ASSERT_FALSE(b.handholds.release(GAITD_BOTH).refused());
   double before = b.right().force_max, steepest = 0.0;
@@ -129,7 +131,7 @@ TEST(Handholds, LetsGoGradually) {
 }
 
 TEST(Handholds, SaysWhyOnlyOnce) {
-  Bench b;
+  RobotAtAWall b;
   b.hold();
   ASSERT_FALSE(b.handholds.release(GAITD_RIGHT).refused());
   EXPECT_EQ(b.run_for(1.0), Change::kReleased);
@@ -137,7 +139,7 @@ TEST(Handholds, SaysWhyOnlyOnce) {
 }
 
 TEST(Handholds, LetGoOfARobotThatSteps) {
-  Bench b;
+  RobotAtAWall b;
   b.hold();
   b.gait.phase = GAITD_PHASE_TRANSFER;
   EXPECT_EQ(b.run_for(1.0), Change::kSteps);
@@ -145,7 +147,7 @@ TEST(Handholds, LetGoOfARobotThatSteps) {
 }
 
 TEST(Handholds, AStretchedArmDoesNotPress) {
-  Bench b;
+  RobotAtAWall b;
   const JointChain arm = JointChain::arm(atlas(), GAITD_RIGHT);
   for (int i = 0; i < arm.size(); ++i) b.robot.joint_position[arm.joint(i)] = 0.0;
   const Refusal refusal = b.handholds.take(b.wall(), b.robot);
@@ -154,7 +156,7 @@ TEST(Handholds, AStretchedArmDoesNotPress) {
 }
 
 TEST(Handholds, DrawTheHandBack) {
-  Bench b;
+  RobotAtAWall b;
   b.hold();
   const double at = b.right().position[1];
   ASSERT_FALSE(b.handholds.release(GAITD_RIGHT).refused());
@@ -167,7 +169,7 @@ TEST(Handholds, DrawTheHandBack) {
 }
 
 TEST(Handholds, AreCountedOnForWhatTheArmBears) {
-  Bench b;
+  RobotAtAWall b;
   ASSERT_FALSE(b.handholds.take(b.wall(1e4), b.robot).refused());
   const double allowed = b.handholds.allowed();
   EXPECT_LT(allowed, 1e4);
@@ -190,7 +192,7 @@ TEST(Handholds, AreCountedOnForWhatTheArmBears) {
 }
 
 TEST(Handholds, NormalsAreInTheAxesOfTheHeading) {
-  Bench b;
+  RobotAtAWall b;
   sdk::store(sdk::from_yaw(1.0), b.robot.pelvis_orientation);
   ASSERT_FALSE(b.handholds.take(b.wall(), b.robot).refused());
   b.run_for(kDt);
@@ -199,7 +201,7 @@ TEST(Handholds, NormalsAreInTheAxesOfTheHeading) {
 }
 
 TEST(Handholds, AreGoneWithTheControl) {
-  Bench b;
+  RobotAtAWall b;
   b.hold();
   b.handholds.update(kDt, false, b.gait, b.planned, b.robot);
   EXPECT_FALSE(b.handholds.busy());
@@ -210,7 +212,7 @@ TEST(Handholds, AreGoneWithTheControl) {
 // by f, no change of angular momentum and of height. Checked by the balance of moments about the
 // CoM, which knows nothing of lean().
 TEST(SupportRegion, IsWhereFeetAndHandsCanPutTheCmp) {
-  Bench b;
+  RobotAtAWall b;
   b.hold();
   GaitdGaitState gait{};
   for (int side : {GAITD_LEFT, GAITD_RIGHT}) {
@@ -241,15 +243,15 @@ TEST(SupportRegion, IsWhereFeetAndHandsCanPutTheCmp) {
       // about the CoM vanish.
       Vector3d arm;
       arm << feet.vertex(corner) - com.head<2>(), -height;
-      Vector3d foot(0, 0, kWeight - f.z());
+      Vector3d foot(0, 0, atlas_weight() - f.z());
       const Vector3d moment = hand.cross(f);
       // (arm x foot)_x = arm.y F_z + height F_y,  (arm x foot)_y = -height F_x - arm.x F_z
       foot.y() = (-moment.x() - arm.y() * foot.z()) / height;
       foot.x() = (moment.y() - arm.x() * foot.z()) / height;
       const Vector2d force = (foot + f).head<2>();
-      const Vector2d cmp = com.head<2>() - force * height / kWeight;
+      const Vector2d cmp = com.head<2>() - force * height / atlas_weight();
       // lean() takes the moment of a vertical force about the CoM instead of the CoP.
-      const double slack = std::abs(f.z()) / kWeight * arm.head<2>().norm() + 1e-9;
+      const double slack = std::abs(f.z()) / atlas_weight() * arm.head<2>().norm() + 1e-9;
       EXPECT_GE(region.inside_distance(cmp), -slack);
       outermost = std::max(outermost, -feet.inside_distance(cmp));
     }
@@ -269,7 +271,7 @@ TEST(SupportRegion, IsWhereFeetAndHandsCanPutTheCmp) {
 }
 
 TEST(SupportRegion, WithoutHandsIsThePolygonOfTheFeet) {
-  Bench b;
+  RobotAtAWall b;
   GaitdGaitState gait{};
   gait.omega = 3.0;
   GaitdPose pose{};

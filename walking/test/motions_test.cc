@@ -71,6 +71,38 @@ TEST_F(MotionsTest, RefusesWhatTheFeetCannotHold) {
   expect_refused(pelvis_to(1, std::nan("")), "numbers");
 }
 
+// A pelvis that still moves swings out the further, the more time it is given to come to rest.
+TEST_F(MotionsTest, RefusesAWayThatSwingsOut) {
+  references_.com_shift[1] = 0.05;
+  references_.com_shift_velocity[1] = 0.125;
+  EXPECT_EQ(refusal(pelvis_to(1, 0.1)), "");
+  MotionCommand slow = pelvis_to(1, 0.1);
+  slow.motion.points[0].time = 10.0;
+  expect_refused(slow, "swing out to");
+  references_.com_shift_velocity[1] = 0.0;
+  EXPECT_EQ(refusal(slow), "");
+  references_.com_shift[1] = 0.0;
+  references_.com_shift[2] = -0.05;
+  references_.com_shift_velocity[2] = -0.125;
+  slow.motion.points[0].value[1] = 0.0;
+  expect_refused(slow, "swing out to");
+}
+
+TEST_F(MotionsTest, RefusesAFirstWayPointThatIsTooNear) {
+  references_.com_shift[1] = -0.14;
+  MotionCommand fast = pelvis_to(1, 0.14);
+  fast.motion.points[0].time = 0.5;
+  expect_refused(fast, "could not stop");
+  fast.motion.points[0].time = 3.0;
+  EXPECT_EQ(refusal(fast), "");
+  MotionCommand turn = pelvis_to(3, 0.15);
+  turn.motion.points[0].time = 0.05;
+  expect_refused(turn, "turns at");
+  MotionCommand chest = command_of(GAITD_PART_CHEST, GAITD_MOTION_CHEST, 0b111000, 0.05);
+  chest.motion.points[0].value[5] = 0.3;
+  expect_refused(chest, "turns at");
+}
+
 TEST_F(MotionsTest, StraightLegsHaveNoHeight) {
   walk_.machine.set_mode(GAITD_MODE_WALK_STRAIGHT);
   walk_.tick();

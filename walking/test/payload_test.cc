@@ -7,21 +7,23 @@
 
 #include "atlas.h"
 #include "gaitd/sdk/loads.h"
+#include "walking/test/tick.h"
 
 namespace gaitd::walking {
 namespace {
+
+using testing::atlas_weight;
+
+using testing::kDt;
 
 using dynamics::Vector6d;
 using Eigen::Vector3d;
 using sdk::view;
 using testing::atlas;
 
-constexpr double kDt = 1e-3;
-const double kWeight = atlas().total_mass * atlas().gravity;  // N
-
 // Atlas stands still on its left foot, which carries it and what is really on it.
-struct Bench {
-  Bench() : robot(testing::standing_state(atlas())) { gait.phase = GAITD_PHASE_STAND; }
+struct LadenRobot {
+  LadenRobot() : robot(testing::standing_state(atlas())) { gait.phase = GAITD_PHASE_STAND; }
 
   // The estimator counts on what is known.
   void think() {
@@ -77,7 +79,7 @@ GaitdLoad load_of(double mass, const Vector3d& com, int body = atlas().chest_bod
 }
 
 TEST(Payload, IsWeighed) {
-  Bench b;
+  LadenRobot b;
   b.run_for(2.0);
   const Vector3d place(0.25, 0.05, view(atlas().bodies[atlas().chest_body].com).z());
   sdk::put_load(load_of(17.5, place), b.real);
@@ -89,11 +91,11 @@ TEST(Payload, IsWeighed) {
   EXPECT_EQ(b.payload.loads().count, 1);
   b.run_for(1.0);
   EXPECT_EQ(b.external.unknown_load(), 0.0) << "it is known now";
-  EXPECT_LT(b.external.now().norm(), 0.01 * kWeight);
+  EXPECT_LT(b.external.now().norm(), 0.01 * atlas_weight());
 }
 
 TEST(Payload, ItsHeightShowsWhenTheTrunkIsTilted) {
-  Bench b;
+  LadenRobot b;
   b.run_for(2.0);
   const Vector3d place(0.2, -0.04, 0.1);
   sdk::put_load(load_of(20.0, place), b.real);
@@ -107,7 +109,7 @@ TEST(Payload, ItsHeightShowsWhenTheTrunkIsTilted) {
 }
 
 TEST(Payload, WhatWasKnownOfALinkIsReplacedAndOtherLinksKeepTheirs) {
-  Bench b;
+  LadenRobot b;
   b.run_for(2.0);
   const int hand = atlas().hands[GAITD_LEFT].body;
   sdk::put_load(load_of(4.0, {0.0, 0.1, 0.0}, hand), b.real);
@@ -126,10 +128,10 @@ TEST(Payload, WhatWasKnownOfALinkIsReplacedAndOtherLinksKeepTheirs) {
 }
 
 TEST(Payload, NothingIsWeighedWhileSomebodyPullsOrTheRobotMoves) {
-  Bench b;
+  LadenRobot b;
   b.run_for(2.0);
   sdk::put_load(load_of(10.0, {0.1, 0.0, 0.3}), b.real);
-  b.pull = 0.05 * kWeight * Vector3d::UnitX();
+  b.pull = 0.05 * atlas_weight() * Vector3d::UnitX();
   EXPECT_EQ(b.weigh(atlas().chest_body), Payload::Outcome::kPulled);
   EXPECT_EQ(b.payload.loads().count, 0);
   b.pull.setZero();
@@ -150,8 +152,19 @@ TEST(Payload, NothingIsWeighedWhileSomebodyPullsOrTheRobotMoves) {
   EXPECT_EQ(last, Payload::Outcome::kMoved);
 }
 
+TEST(Payload, IsNotWeighedWhileATareIsTaken) {
+  LadenRobot b;
+  b.run_for(2.0);
+  b.external.tare();
+  const Refusal refusal = b.payload.estimate(atlas().chest_body, b.external, true);
+  EXPECT_NE(std::string(refusal.message).find("a tare is being taken"), std::string::npos);
+  EXPECT_FALSE(b.payload.estimating());
+  b.run_for(2.0);
+  EXPECT_FALSE(b.payload.estimate(atlas().chest_body, b.external, true).refused());
+}
+
 TEST(Payload, IsRefusedWhereItCannotBeWeighedOrCarried) {
-  Bench b;
+  LadenRobot b;
   EXPECT_TRUE(b.payload.estimate(1, b.external, true).refused()) << "no tare";
   b.run_for(2.0);
   EXPECT_TRUE(b.payload.estimate(1, b.external, false).refused()) << "it walks";

@@ -4,14 +4,16 @@
 #include <gtest/gtest.h>
 
 #include "gaitd/sdk/views.h"
+#include "walking/test/tick.h"
 
 namespace gaitd::walking {
 namespace {
 
-constexpr double kDt = 1e-3;
-constexpr double kWeight = 1000.0;  // N
-constexpr double kLever = 0.006;    // m, beside the line of a tilted sole
-constexpr SoleRest::Limits kLimits{.start = 0.02, .full = 0.04};
+using testing::kDt;
+
+constexpr double kRobotWeight = 1000.0;  // N
+constexpr double kLever = 0.006;         // m, beside the line of a tilted sole
+constexpr SoleRest::Limits kRestLimits{.start = 0.02, .full = 0.04};
 
 GaitdFoothold sole() {
   GaitdFoothold foothold{};
@@ -24,10 +26,10 @@ GaitdFoothold sole() {
   return foothold;
 }
 
-struct Foot {
-  Foot() {
+struct RestingFoot {
+  RestingFoot() {
     state.cop_valid = 1;
-    state.wrench[5] = kWeight;
+    state.wrench[5] = kRobotWeight;
     turn(Eigen::Vector3d::Zero());
   }
   void turn(const Eigen::Vector3d& rotation) {
@@ -36,7 +38,7 @@ struct Foot {
   void press(double x, double y) { state.cop[0] = x, state.cop[1] = y; }
   void run_for(double seconds, SoleRest& rest) const {
     for (int i = 0; i < static_cast<int>(seconds / kDt); ++i) {
-      rest.update(kDt, state, sole(), kWeight, kLimits);
+      rest.update(kDt, state, sole(), kRobotWeight, kRestLimits);
     }
   }
   GaitdFootState state{};
@@ -44,7 +46,7 @@ struct Foot {
 
 TEST(SoleRest, AFlatSoleBearsAsAWhole) {
   SoleRest rest;
-  Foot foot;
+  RestingFoot foot;
   foot.press(0.02, 0.01);
   foot.run_for(0.5, rest);
   foot.press(0.13, 0.0);  // at the edge, and still flat
@@ -56,7 +58,7 @@ TEST(SoleRest, AFlatSoleBearsAsAWhole) {
 
 TEST(SoleRest, OnItsToesItBearsOnTheLineOfTheToes) {
   SoleRest rest;
-  Foot foot;
+  RestingFoot foot;
   foot.run_for(0.5, rest);
   foot.turn({0.0, 0.06, 0.0});  // heel up
   foot.press(0.13, 0.01);
@@ -73,7 +75,7 @@ TEST(SoleRest, OnItsToesItBearsOnTheLineOfTheToes) {
 
 TEST(SoleRest, OnAnEdgeOfTheGroundItBearsThere) {
   SoleRest rest;
-  Foot foot;
+  RestingFoot foot;
   foot.press(0.05, 0.0);
   foot.run_for(0.5, rest);
   foot.turn({0.0, -0.06, 0.0});  // the heel drops over an edge under the sole
@@ -88,7 +90,7 @@ TEST(SoleRest, OnAnEdgeOfTheGroundItBearsThere) {
 // Over the same edge the other way: what has to come down is the heel.
 TEST(SoleRest, ItPressesWhereItHasToComeDown) {
   SoleRest rest;
-  Foot foot;
+  RestingFoot foot;
   foot.press(-0.05, 0.0);
   foot.run_for(0.5, rest);
   foot.turn({0.0, 0.06, 0.0});  // the toes drop
@@ -104,13 +106,13 @@ TEST(SoleRest, ItPressesWhereItHasToComeDown) {
 
 TEST(SoleRest, BetweenFlatAndTiltedTheBearingMovesWithoutAJump) {
   SoleRest rest;
-  Foot foot;
+  RestingFoot foot;
   foot.run_for(0.5, rest);
   foot.press(0.13, 0.0);
   double before = -0.13;
   for (double tilt = 0.0; tilt < 0.06; tilt += 1e-3) {
     foot.turn({0.0, tilt, 0.0});
-    rest.update(kDt, foot.state, sole(), kWeight, kLimits);
+    rest.update(kDt, foot.state, sole(), kRobotWeight, kRestLimits);
     const double x = rest.bearing_point({-0.13, 0.0}).x();
     EXPECT_GE(x, before);
     EXPECT_LT(x - before, 0.02);
@@ -121,15 +123,15 @@ TEST(SoleRest, BetweenFlatAndTiltedTheBearingMovesWithoutAJump) {
 
 TEST(SoleRest, FlatIsHowTheFootCameToLieAfterTouchdown) {
   SoleRest rest;
-  Foot foot;
+  RestingFoot foot;
   foot.turn({0.0, 0.2, 0.0});
-  rest.update(kDt, foot.state, sole(), kWeight, kLimits);
+  rest.update(kDt, foot.state, sole(), kRobotWeight, kRestLimits);
   foot.turn({0.1, 0.15, 0.3});  // turned by the slope that it met
   foot.run_for(0.3, rest);
   EXPECT_EQ(rest.share(), 0.0);
   foot.turn({0.0, 0.0, 0.0});
   foot.press(-0.13, 0.0);
-  rest.update(kDt, foot.state, sole(), kWeight, kLimits);
+  rest.update(kDt, foot.state, sole(), kRobotWeight, kRestLimits);
   EXPECT_EQ(rest.share(), 1.0);
   rest.reset();  // in the air
   EXPECT_EQ(rest.share(), 0.0);
@@ -140,30 +142,30 @@ TEST(SoleRest, FlatIsHowTheFootCameToLieAfterTouchdown) {
 // It landed on its inner edge, was still so when it should have come to lie, and comes down then.
 TEST(SoleRest, ASoleThatComesDownLateIsNotHeldOnTheEdgeThatItLandedOn) {
   SoleRest rest;
-  Foot foot;
+  RestingFoot foot;
   foot.turn({0.05, 0.0, 0.0});  // the left edge up
   foot.press(0.02, -0.06);
   foot.run_for(0.1, rest);
   EXPECT_EQ(rest.share(), 0.0);
   for (double tilt = 0.05; tilt >= 0.0; tilt -= 1e-3) {
     foot.turn({tilt, 0.0, 0.0});
-    rest.update(kDt, foot.state, sole(), kWeight, kLimits);
+    rest.update(kDt, foot.state, sole(), kRobotWeight, kRestLimits);
     EXPECT_EQ(rest.share(), 0.0) << tilt;
   }
   // Flat now; what it tilts by from here on counts.
   foot.turn({0.05, 0.0, 0.0});
-  rest.update(kDt, foot.state, sole(), kWeight, kLimits);
+  rest.update(kDt, foot.state, sole(), kRobotWeight, kRestLimits);
   EXPECT_EQ(rest.share(), 1.0);
 }
 
 TEST(SoleRest, GroundThatGivesWaySlowlyTiltsNothing) {
   SoleRest rest;
-  Foot foot;
+  RestingFoot foot;
   foot.press(0.02, 0.0);
   foot.run_for(0.3, rest);
   for (int i = 0; i < 2000; ++i) {
     foot.turn({0.0, 5e-5 * i, 0.0});
-    rest.update(kDt, foot.state, sole(), kWeight, kLimits);
+    rest.update(kDt, foot.state, sole(), kRobotWeight, kRestLimits);
     EXPECT_EQ(rest.share(), 0.0);
   }
 }

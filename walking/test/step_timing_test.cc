@@ -13,7 +13,7 @@ namespace {
 using testing::atlas;
 using testing::SyntheticWalk;
 
-constexpr TimingLimits kLimits = {.knee = 0.2, .drop = 0.25, .roll = 0.9, .change = 0.25};
+constexpr TimingLimits kTimingLimits = {.knee = 0.2, .drop = 0.25, .roll = 0.9, .change = 0.25};
 
 // At the start of the transfer of step 2, with the CoM a part of the way from the trailing foot to
 // the leading one.
@@ -50,41 +50,41 @@ TEST(StepTiming, LeavesWhatIsWithinReachAlone) {
   StepTiming timing(atlas());
   for (double length : {0.2, 0.35, 0.5}) {
     const Start s = start_of_step(length, 0.6, 0.25, 4);
-    EXPECT_LT(timing.excess(s.gait, s.com, kLimits, {}), 0.0) << length;
-    for (double change : timing.solve(s.gait, s.com, kLimits)) EXPECT_EQ(change, 0.0);
+    EXPECT_LT(timing.excess(s.gait, s.com, kTimingLimits, {}), 0.0) << length;
+    for (double change : timing.solve(s.gait, s.com, kTimingLimits)) EXPECT_EQ(change, 0.0);
   }
 }
 
 TEST(StepTiming, ShortensALongTransferOfALongStep) {
   StepTiming timing(atlas());
   const Start s = long_step();
-  const double before = timing.excess(s.gait, s.com, kLimits, {});
+  const double before = timing.excess(s.gait, s.com, kTimingLimits, {});
   ASSERT_GT(before, 0.02);
-  const auto changes = timing.solve(s.gait, s.com, kLimits);
+  const auto changes = timing.solve(s.gait, s.com, kTimingLimits);
   EXPECT_LT(changes[0], -0.05);
-  EXPECT_LT(timing.excess(s.gait, s.com, kLimits, changes), 0.6 * before);
+  EXPECT_LT(timing.excess(s.gait, s.com, kTimingLimits, changes), 0.6 * before);
   const double durations[] = {0.6, 1.0, 0.6, 1.0};
   for (int i = 0; i < StepTiming::kPhases; ++i) {
-    EXPECT_LE(std::abs(changes[i]), kLimits.change * durations[i] + 1e-9);
+    EXPECT_LE(std::abs(changes[i]), kTimingLimits.change * durations[i] + 1e-9);
   }
 }
 
 TEST(StepTiming, ChangesNoMoreThanIsNeeded) {
   StepTiming timing(atlas());
   const Start s = long_step();
-  auto changes = timing.solve(s.gait, s.com, kLimits);
-  const double reached = timing.excess(s.gait, s.com, kLimits, changes);
+  auto changes = timing.solve(s.gait, s.com, kTimingLimits);
+  const double reached = timing.excess(s.gait, s.com, kTimingLimits, changes);
   for (double& change : changes) change *= 0.8;
-  EXPECT_GT(timing.excess(s.gait, s.com, kLimits, changes), reached + 1e-3);
+  EXPECT_GT(timing.excess(s.gait, s.com, kTimingLimits, changes), reached + 1e-3);
 }
 
 TEST(StepTiming, SaysTheSameEveryTime) {
   StepTiming timing(atlas());
   const Start s = long_step();
-  const auto first = timing.solve(s.gait, s.com, kLimits);
+  const auto first = timing.solve(s.gait, s.com, kTimingLimits);
   const Start other = start_of_step(0.85, 0.7, 0.6, 4);
-  timing.solve(other.gait, other.com, kLimits);
-  EXPECT_EQ(timing.solve(s.gait, s.com, kLimits), first);
+  timing.solve(other.gait, other.com, kTimingLimits);
+  EXPECT_EQ(timing.solve(s.gait, s.com, kTimingLimits), first);
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ using testing::footstep;
 using testing::SyntheticWalk;
 
 // A left foot that goes `ahead` of a right one, from as far behind it.
-Refusal swing(const GaitdModel& model, double ahead, double rise, double duration, double height) {
+Refusal refusal_of_swing(const GaitdModel& model, double ahead, double rise, double duration,
+                         double height) {
   GaitdFootstep step = footstep(GAITD_LEFT, ahead, 0.2264, rise);
   step.swing_duration = duration;
   step.swing_height = height;
@@ -24,41 +25,41 @@ Refusal swing(const GaitdModel& model, double ahead, double rise, double duratio
 }
 
 TEST(SwingLimits, WhatLegsCanDoIsAccepted) {
-  EXPECT_STREQ(swing(atlas(), 0.35, 0.0, 0.6, 0.13).message, "");
-  EXPECT_STREQ(swing(atlas(), 0.7, 0.0, 0.7, 0.13).message, "");
-  EXPECT_STREQ(swing(atlas(), -0.25, 0.0, 0.6, 0.13).message, "");
-  EXPECT_STREQ(swing(atlas(), 0.39, 0.2, 0.9, 0.13).message, "") << "stairs";
-  EXPECT_STREQ(swing(atlas(), 0.3, -0.2, 0.7, 0.13).message, "");
+  EXPECT_STREQ(refusal_of_swing(atlas(), 0.35, 0.0, 0.6, 0.13).message, "");
+  EXPECT_STREQ(refusal_of_swing(atlas(), 0.7, 0.0, 0.7, 0.13).message, "");
+  EXPECT_STREQ(refusal_of_swing(atlas(), -0.25, 0.0, 0.6, 0.13).message, "");
+  EXPECT_STREQ(refusal_of_swing(atlas(), 0.39, 0.2, 0.9, 0.13).message, "") << "stairs";
+  EXPECT_STREQ(refusal_of_swing(atlas(), 0.3, -0.2, 0.7, 0.13).message, "");
 }
 
 TEST(SwingLimits, AFootThatIsTooFastIsRefusedWithTheDurationThatItNeeds) {
-  const std::string message = swing(atlas(), 0.35, 0.0, 0.1, 0.13).message;
+  const std::string message = refusal_of_swing(atlas(), 0.35, 0.0, 0.1, 0.13).message;
   EXPECT_NE(message.find("footstep 2 (left): 0.700 m in a swing of 0.10 s"), std::string::npos)
       << message;
   EXPECT_NE(message.find("of l_leg_kny, at most 12.0 expected"), std::string::npos) << message;
   const auto advice = message.rfind("take ");
   ASSERT_NE(advice, std::string::npos) << message;
   const double enough = std::stod(message.substr(advice + 5)) + 0.01;
-  EXPECT_STREQ(swing(atlas(), 0.35, 0.0, enough, 0.13).message, "");
-  EXPECT_TRUE(swing(atlas(), 0.35, 0.0, enough - 0.03, 0.13).refused());
+  EXPECT_STREQ(refusal_of_swing(atlas(), 0.35, 0.0, enough, 0.13).message, "");
+  EXPECT_TRUE(refusal_of_swing(atlas(), 0.35, 0.0, enough - 0.03, 0.13).refused());
 }
 
 TEST(SwingLimits, FollowTheVelocityLimitsOfTheModel) {
-  ASSERT_FALSE(swing(atlas(), 0.35, 0.0, 0.6, 0.13).refused());
+  ASSERT_FALSE(refusal_of_swing(atlas(), 0.35, 0.0, 0.6, 0.13).refused());
   GaitdModel slow = atlas();
   slow.joints[slow.legs[GAITD_LEFT].knee].velocity_limit = 2.0;
-  EXPECT_NE(std::string(swing(slow, 0.35, 0.0, 0.6, 0.13).message).find("l_leg_kny"),
+  EXPECT_NE(std::string(refusal_of_swing(slow, 0.35, 0.0, 0.6, 0.13).message).find("l_leg_kny"),
             std::string::npos);
   slow = atlas();
   slow.joints[slow.legs[GAITD_LEFT].hip_pitch].velocity_limit = 0.5;
-  EXPECT_NE(std::string(swing(slow, 0.35, 0.0, 0.6, 0.13).message).find("l_leg_hpy"),
+  EXPECT_NE(std::string(refusal_of_swing(slow, 0.35, 0.0, 0.6, 0.13).message).find("l_leg_hpy"),
             std::string::npos);
 }
 
 TEST(SwingLimits, AFootIsNotLiftedHigherThanTheKneeBends) {
-  const std::string message = swing(atlas(), 0.2, 0.0, 2.0, 0.8).message;
+  const std::string message = refusal_of_swing(atlas(), 0.2, 0.0, 2.0, 0.8).message;
   EXPECT_NE(message.find("the foot would rise to 0.800 m"), std::string::npos) << message;
-  EXPECT_STREQ(swing(atlas(), 0.2, 0.0, 2.0, 0.3).message, "");
+  EXPECT_STREQ(refusal_of_swing(atlas(), 0.2, 0.0, 2.0, 0.3).message, "");
 }
 
 TEST(SwingLimits, HoldForWalksAndFootstepsAlsoBehindThoseAhead) {

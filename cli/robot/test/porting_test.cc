@@ -63,6 +63,27 @@ TEST(RobotInit, SaysWhyItEnds) {
   std::filesystem::remove(file);
 }
 
+// One drive turns both hips of a NAO: with only the one that mimics fixed, its legs would differ.
+TEST(FixedJoints, OneThatIsMimickedByItsMirrorIsFixedWithIt) {
+  dynamics::UrdfOutline outline;
+  for (const std::string side : {"L", "R"}) {
+    dynamics::UrdfJointNote hip{side + "Hip", "torso", side + "Thigh", "revolute"};
+    hip.has_effort = true;
+    if (side == "R") {
+      hip.mimic = true;
+      hip.mimicked = "LHip";
+    }
+    dynamics::UrdfJointNote knee{side + "Knee", side + "Thigh", side + "Shin", "revolute"};
+    knee.has_effort = true;
+    outline.joints.push_back(hip);
+    outline.joints.push_back(knee);
+    outline.links_with_mass.insert({side + "Thigh", side + "Shin"});
+  }
+  std::vector<std::string> fixed;
+  for (const FixedGuess& one : joints_to_fix(outline)) fixed.push_back(one.joint);
+  EXPECT_EQ(fixed, (std::vector<std::string>{"RHip", "LHip"}));
+}
+
 TEST(SoleShape, IsTheLowerFaceOfABox) {
   SoleGuess sole;
   std::string error;

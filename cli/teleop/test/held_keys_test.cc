@@ -4,14 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "cli/teleop/test/clock.h"
+
 namespace gaitd::cli::teleop {
 namespace {
-
-using std::chrono::milliseconds;
-
-const Time kBegin = Time{} + std::chrono::hours(1);
-
-Time at(int ms) { return kBegin + milliseconds(ms); }
 
 TEST(HeldKeys, AKeyIsHeldForSevenTenthsUntilItsFirstRepeat) {
   HeldKeys keys;

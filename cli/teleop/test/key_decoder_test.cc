@@ -4,15 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "cli/teleop/test/clock.h"
+
 namespace gaitd::cli::teleop {
 namespace {
 
-using std::chrono::milliseconds;
 using Keys = std::vector<Key>;
-
-const Time kBegin = Time{} + std::chrono::hours(1);
-
-Time at(int ms) { return kBegin + milliseconds(ms); }
 
 TEST(KeyDecoder, KnowsLettersInBothCases) {
   KeyDecoder decoder;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "cli/teleop/estop_line.h"
+#include "cli/teleop/test/clock.h"
 #include "cli/test/cli_process.h"
 #include "daemon/server/listening_socket.h"
 
@@ -14,8 +15,6 @@ namespace gaitd::cli::teleop {
 namespace {
 
 using std::chrono::milliseconds;
-
-Time at(int ms) { return Time{} + std::chrono::hours(1) + milliseconds(ms); }
 
 class Peer : public ::testing::Test {
  protected:

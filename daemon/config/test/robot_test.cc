@@ -32,7 +32,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 // Reads a changed description of Atlas and returns the errors.
-std::string errors_of(const std::string& text) {
+std::string errors_of_robot(const std::string& text) {
   TemporaryFolder folder;
   std::filesystem::copy_file(std::filesystem::path(atlas_file()).parent_path() / "atlas.urdf",
                              folder.path() / "atlas.urdf");
@@ -45,7 +45,7 @@ std::string errors_of(const std::string& text) {
 }
 
 std::string errors_with(const std::string& from, const std::string& to) {
-  return errors_of(replaced(atlas_text(), from, to));
+  return errors_of_robot(replaced(atlas_text(), from, to));
 }
 
 #define EXPECT_ERROR(from, to, part)                                                \
@@ -297,7 +297,7 @@ TEST(Robot, GivesTheFiguresOfAPostureThatDoesNotStand) {
     leaning =
         replaced(leaning, std::string(side) + "aky: -0.2760", std::string(side) + "aky: -0.6");
   }
-  const std::string errors = errors_of(leaning);
+  const std::string errors = errors_of_robot(leaning);
   EXPECT_NE(errors.find("posture: expected a centre of mass above the feet, got 0."),
             std::string::npos)
       << errors;
@@ -339,7 +339,7 @@ TEST(Robot, FixesJointsAndTurnsThePelvis) {
       text = replaced(text, std::string("  ") + side + "_arm_" + joint + ": 0.0\n", "");
     }
   }
-  EXPECT_EQ(errors_of(text), "");
+  EXPECT_EQ(errors_of_robot(text), "");
   EXPECT_ERROR("chest: utorso", "chest: utorso\nfixed: [l_thumb]",
                "fixed: expected a joint of the URDF or a glob (*_finger_*), got l_thumb");
   // The soles follow the frame of the pelvis.

@@ -14,16 +14,16 @@ namespace {
 
 const std::string kHead = "schema: gaitd.scenario/1\nname: test\nrobot: atlas\nduration: 10\n";
 
-std::optional<Scenario> read(const std::string& text, Issues* issues, Settings* settings) {
+std::optional<Scenario> read_text(const std::string& text, Issues* issues, Settings* settings) {
   const NodePtr root = parse_yaml(text, "test.yaml", issues);
   if (!root) return std::nullopt;
   return read_scenario(root, "test.yaml", settings, issues);
 }
 
-std::string errors_of(const std::string& text) {
+std::string errors_of_scenario(const std::string& text) {
   Issues issues;
   Settings settings;
-  const auto scenario = read(text, &issues, &settings);
+  const auto scenario = read_text(text, &issues, &settings);
   EXPECT_EQ(scenario.has_value(), issues.ok());
   return issues.error_text();
 }
@@ -33,8 +33,8 @@ std::string errors_of(const std::string& text) {
 
 TEST(Scenario, ANameLeadsToNoOtherFolder) {
   const auto errors_of_name = [](const std::string& name) {
-    return errors_of("schema: gaitd.scenario/1\nname: '" + name +
-                     "'\nrobot: atlas\nduration: 10\n" + "terrain: {ground_z: 0}\n");
+    return errors_of_scenario("schema: gaitd.scenario/1\nname: '" + name +
+                              "'\nrobot: atlas\nduration: 10\n" + "terrain: {ground_z: 0}\n");
   };
   for (const char* name :
        {"../x", "/tmp/x", "a/b", ".hidden", "..", "a b", "a\\b", "caf\xC3\xA9"}) {
@@ -48,11 +48,11 @@ TEST(Scenario, ANameLeadsToNoOtherFolder) {
 TEST(Scenario, ALogHoldsWhatIsExpected) {
   Issues issues;
   Settings settings;
-  const auto scenario = read(kHead +
-                                 "terrain: {ground_z: 0}\n"
-                                 "expect: {no_fall: true, icp_error_rms_max: 0.02, checks: "
-                                 "[{signal: com/z, stat: p99, during: always, max: 1.5}]}\n",
-                             &issues, &settings);
+  const auto scenario = read_text(kHead +
+                                      "terrain: {ground_z: 0}\n"
+                                      "expect: {no_fall: true, icp_error_rms_max: 0.02, checks: "
+                                      "[{signal: com/z, stat: p99, during: always, max: 1.5}]}\n",
+                                  &issues, &settings);
   ASSERT_TRUE(scenario) << issues.error_text();
   const auto logged = read_logged_expectations(scenario->expect_section.dump());
   ASSERT_TRUE(logged);
@@ -77,7 +77,7 @@ TEST(Scenario, BoundsOfRealDrivesAreWider) {
   Issues issues;
   Settings settings;
   settings.set(SettingSource::kCommandLine, "expect.bounds", make_scalar("real_drives", {}));
-  const auto scenario = read(text, &issues, &settings);
+  const auto scenario = read_text(text, &issues, &settings);
   ASSERT_TRUE(scenario) << issues.error_text();
   EXPECT_DOUBLE_EQ(scenario->expect.icp_error_rms_max.value(), 0.04);
   EXPECT_DOUBLE_EQ(scenario->expect.stance_knee_mean_max.value(), 0.36);
@@ -90,7 +90,7 @@ TEST(Scenario, BoundsOfRealDrivesAreWider) {
 TEST(Scenario, ReadsEverySection) {
   Issues issues;
   Settings settings;
-  const auto scenario = read(
+  const auto scenario = read_text(
       kHead +
           "seed: 7\n"
           "start: {x: 1, y: 2, yaw: 0.5}\n"
@@ -178,13 +178,13 @@ TEST(Scenario, ReadsEverySection) {
 TEST(Scenario, CommandsCanBeParsedAgainFromWhatTheScenarioHolds) {
   Issues issues;
   Settings settings;
-  const auto scenario = read(kHead +
-                                 "commands:\n"
-                                 "  - {at: 1, mode: walk-bent}\n"
-                                 "  - {at: 1, walk: {steps: 2, first: left}}\n"
-                                 "  - {at: 1, replace: [{side: left, x: 0.3, y: 0.12}]}\n"
-                                 "  - {at: 2, stop: true}\n",
-                             &issues, &settings);
+  const auto scenario = read_text(kHead +
+                                      "commands:\n"
+                                      "  - {at: 1, mode: walk-bent}\n"
+                                      "  - {at: 1, walk: {steps: 2, first: left}}\n"
+                                      "  - {at: 1, replace: [{side: left, x: 0.3, y: 0.12}]}\n"
+                                      "  - {at: 2, stop: true}\n",
+                                  &issues, &settings);
   ASSERT_TRUE(scenario) << issues.error_text();
   const auto model = std::make_unique<GaitdModel>();
   for (const ScenarioCommand& command : scenario->commands) {
@@ -196,7 +196,7 @@ TEST(Scenario, CommandsCanBeParsedAgainFromWhatTheScenarioHolds) {
 TEST(Scenario, HasFlatGroundAndNoDisturbancesByDefault) {
   Issues issues;
   Settings settings;
-  const auto scenario = read(kHead, &issues, &settings);
+  const auto scenario = read_text(kHead, &issues, &settings);
   ASSERT_TRUE(scenario) << issues.error_text();
   EXPECT_EQ(scenario->terrain["ground_z"], 0.0);
   EXPECT_EQ(scenario->sensors["noise"], "none");
@@ -205,7 +205,7 @@ TEST(Scenario, HasFlatGroundAndNoDisturbancesByDefault) {
 }
 
 TEST(Scenario, ReportsEveryErrorAtOnce) {
-  const std::string errors = errors_of(
+  const std::string errors = errors_of_scenario(
       "schema: gaitd.scenario/2\nname: test\nrobot: atlas\nduration: -3\nmood: bent\n"
       "terrain: {friction: -1, boxes: [{center: [0, 0, 0], size: [0, 1, 1]}]}\n"
       "sensors: {noise: loud}\nactuators: {model: {bandwith: 60}}\n"
@@ -236,20 +236,22 @@ TEST(Scenario, ReportsEveryErrorAtOnce) {
 }
 
 TEST(Scenario, RefusesContradictions) {
-  EXPECT_PART(errors_of(kHead + "commands: [{at: 11, stop: true}]\n"),
+  EXPECT_PART(errors_of_scenario(kHead + "commands: [{at: 11, stop: true}]\n"),
               "commands[0].at: expected a time before the end of the scenario, got 11");
-  EXPECT_PART(errors_of(kHead + "disturbances: [{link: a, force: [1, 0, 0], duration: 1, when: "
-                                "{time: 12}}]\n"),
-              "when.time: expected a time before the end");
-  EXPECT_PART(errors_of(kHead + "terrain: {friction: 1}\n"),
+  EXPECT_PART(
+      errors_of_scenario(kHead + "disturbances: [{link: a, force: [1, 0, 0], duration: 1, when: "
+                                 "{time: 12}}]\n"),
+      "when.time: expected a time before the end");
+  EXPECT_PART(errors_of_scenario(kHead + "terrain: {friction: 1}\n"),
               "ground_z, boxes or height_map, got none of them");
-  EXPECT_PART(errors_of(kHead + "commands: [{at: 1, pause: false}]\n"), "expected true, got false");
-  EXPECT_PART(errors_of(kHead + "commands: [{at: 1, swap: {layer: toe_of, to: x}}]\n"),
+  EXPECT_PART(errors_of_scenario(kHead + "commands: [{at: 1, pause: false}]\n"),
+              "expected true, got false");
+  EXPECT_PART(errors_of_scenario(kHead + "commands: [{at: 1, swap: {layer: toe_of, to: x}}]\n"),
               "did you mean 'toe_off'?");
-  EXPECT_PART(errors_of(kHead + "expect: {final_pelvis: {x: 1, y: 1, tolerance: 1, "
-                                "yaw_tolerance: 1}}\n"),
+  EXPECT_PART(errors_of_scenario(kHead + "expect: {final_pelvis: {x: 1, y: 1, tolerance: 1, "
+                                         "yaw_tolerance: 1}}\n"),
               "expected a yaw beside it");
-  EXPECT_PART(errors_of(kHead + "commands: [{at: 1, wlak: {steps: 1}}]\n"),
+  EXPECT_PART(errors_of_scenario(kHead + "commands: [{at: 1, wlak: {steps: 1}}]\n"),
               "commands[0].wlak: unknown key; did you mean 'walk'?");
 }
 
@@ -258,46 +260,49 @@ const std::string kWalking = kHead + "mode: walk-bent\n";
 TEST(Scenario, RefusesADisturbanceInAStepThatIsNeverCommanded) {
   const std::string walk = kWalking + "commands: [{at: 1, walk: {steps: 2}}]\n";
   const std::string push = "disturbances: [{link: a, force: [1, 0, 0], duration: 1, when: {step: ";
-  EXPECT_EQ(errors_of(walk + push + "3}}]\n"), "");
-  EXPECT_PART(errors_of(walk + push + "4}}]\n"),
+  EXPECT_EQ(errors_of_scenario(walk + push + "3}}]\n"), "");
+  EXPECT_PART(errors_of_scenario(walk + push + "4}}]\n"),
               "test.yaml:7: disturbances[0].when.step: expected at most the last step that is "
               "commanded, 3, got 4");
 }
 
 TEST(Scenario, RefusesExpectationsThatNothingCanFulfil) {
   EXPECT_PART(
-      errors_of(kHead + "expect: {steps_taken: 2}\n"),
+      errors_of_scenario(kHead + "expect: {steps_taken: 2}\n"),
       "test.yaml:5: expect.steps_taken: expected at most the steps that are commanded, 0 by "
       "the commands, got 2; add a walk to 'commands'");
-  EXPECT_EQ(errors_of(kHead + "expect: {steps_taken: 0}\n"), "");
+  EXPECT_EQ(errors_of_scenario(kHead + "expect: {steps_taken: 0}\n"), "");
   const std::string walk = kWalking + "commands: [{at: 1, walk: {steps: 2}}]\n";
-  EXPECT_EQ(errors_of(walk + "expect: {steps_taken: 2, toe_off_steps_min: 2}\n"), "");
-  EXPECT_PART(errors_of(walk + "expect: {steps_taken: 3, toe_off_steps_min: 4}\n"),
+  EXPECT_EQ(errors_of_scenario(walk + "expect: {steps_taken: 2, toe_off_steps_min: 2}\n"), "");
+  EXPECT_PART(errors_of_scenario(walk + "expect: {steps_taken: 3, toe_off_steps_min: 4}\n"),
               "expect.toe_off_steps_min: expected at most the steps that are commanded, 2");
-  EXPECT_PART(errors_of(kHead + "expect: {stance_knee_mean_max: 0.3}\n"),
+  EXPECT_PART(errors_of_scenario(kHead + "expect: {stance_knee_mean_max: 0.3}\n"),
               "expected a walk, as it is taken over single support");
-  EXPECT_PART(
-      errors_of(kHead + "expect: {checks: [{signal: a, stat: max, during: swing, max: 1}]}\n"),
-      "expect.checks: expected a walk, as 'a' is checked while walking, got none");
-  EXPECT_PART(errors_of(kHead + "expect: {pelvis_drift_max: {start: 10, max: 1}}\n"),
+  EXPECT_PART(errors_of_scenario(
+                  kHead + "expect: {checks: [{signal: a, stat: max, during: swing, max: 1}]}\n"),
+              "expect.checks: expected a walk, as 'a' is checked while walking, got none");
+  EXPECT_PART(errors_of_scenario(kHead + "expect: {pelvis_drift_max: {start: 10, max: 1}}\n"),
               "expected a start before the end of the scenario, got 10 s");
 }
 
 TEST(Scenario, RefusesWalkingInModeStand) {
   const std::string walk = "commands: [{at: 1, walk: {steps: 2}}]\n";
-  EXPECT_PART(errors_of(kHead + walk),
+  EXPECT_PART(errors_of_scenario(kHead + walk),
               "test.yaml:5: commands: walk at 1 s will be refused: the gait mode is stand; write "
               "mode: walk-bent");
-  EXPECT_PART(errors_of(kWalking + "commands: [{at: 1, mode: stand}, {at: 2, footsteps: [{side: "
-                                   "left, x: 0, y: 0.1}]}]\n"),
-              "footsteps at 2 s will be refused: the gait mode is stand");
-  EXPECT_EQ(errors_of(kHead + "commands: [{at: 2, walk: {steps: 2}}, {at: 1, mode: walk-bent}]\n"),
+  EXPECT_PART(
+      errors_of_scenario(kWalking + "commands: [{at: 1, mode: stand}, {at: 2, footsteps: [{side: "
+                                    "left, x: 0, y: 0.1}]}]\n"),
+      "footsteps at 2 s will be refused: the gait mode is stand");
+  EXPECT_EQ(errors_of_scenario(kHead +
+                               "commands: [{at: 2, walk: {steps: 2}}, {at: 1, mode: walk-bent}]\n"),
             "");
 }
 
 TEST(Scenario, RefusesWalkingWhileNotArmed) {
   const auto with = [](const std::string& before) {
-    return errors_of(kWalking + "commands:\n" + before + "  - {at: 4, walk: {steps: 2}}\n");
+    return errors_of_scenario(kWalking + "commands:\n" + before +
+                              "  - {at: 4, walk: {steps: 2}}\n");
   };
   EXPECT_PART(with("  - {at: 1, disarm: true}\n"),
               "test.yaml:8: commands: walk at 4 s will be refused: the robot is not armed since "
@@ -315,7 +320,7 @@ TEST(Scenario, RefusesWalkingWhileNotArmed) {
 
 TEST(Scenario, RefusesFeetThatDoNotAlternate) {
   const auto of = [](const std::string& commands) {
-    return errors_of(kWalking + "commands:\n" + commands);
+    return errors_of_scenario(kWalking + "commands:\n" + commands);
   };
   // Right, left and the closing right: the second walk cannot begin right.
   const std::string walk = "  - {at: 1, walk: {steps: 2, first: right}}\n";
@@ -334,8 +339,9 @@ TEST(Scenario, RefusesFeetThatDoNotAlternate) {
 
 TEST(Scenario, RefusesReversedOutlinesAndRegionsBesideTheFoothold) {
   const auto of = [](const std::string& more) {
-    return errors_of(kWalking + "commands: [{at: 1, footsteps: [{side: left, x: 0.3, y: 0.1, " +
-                     more + "}]}]\n");
+    return errors_of_scenario(kWalking +
+                              "commands: [{at: 1, footsteps: [{side: left, x: 0.3, y: 0.1, " +
+                              more + "}]}]\n");
   };
   EXPECT_PART(of("contact_polygon: [[0.1, 0.05], [0.1, -0.05], [0, -0.05], [0, 0.05]]"),
               "commands[0].footsteps.footsteps[0].contact_polygon: expected a convex outline, "
@@ -356,8 +362,8 @@ TEST(Scenario, TheCommandLineReplacesKeysOfTheScenario) {
     ASSERT_TRUE(settings.set_assignment(assignment, &issues)) << issues.error_text();
   }
   const auto scenario =
-      read(kHead + "terrain: {ground_z: 0, friction: 0.8}\nsensors: {noise: none}\n", &issues,
-           &settings);
+      read_text(kHead + "terrain: {ground_z: 0, friction: 0.8}\nsensors: {noise: none}\n", &issues,
+                &settings);
   ASSERT_TRUE(scenario) << issues.error_text();
   EXPECT_EQ(scenario->seed, 5u);
   EXPECT_EQ(scenario->duration, 3.0);
@@ -378,8 +384,8 @@ TEST(Scenario, SensorsAreAClassOrFiguresOrBoth) {
   const auto noise_of = [](const std::string& noise) {
     Issues issues;
     Settings settings;
-    const auto scenario = read(kHead + "terrain: {ground_z: 0}\nsensors: {noise: " + noise + "}\n",
-                               &issues, &settings);
+    const auto scenario = read_text(
+        kHead + "terrain: {ground_z: 0}\nsensors: {noise: " + noise + "}\n", &issues, &settings);
     return scenario ? scenario->sensors["noise"].dump() : issues.error_text();
   };
   EXPECT_EQ(noise_of("rough"), R"("rough")");
@@ -402,7 +408,7 @@ TEST(Scenario, TheCommandLineReplacesKeysOfADisturbance) {
   const auto with = [&](std::initializer_list<const char*> assignments, Issues* issues) {
     Settings settings;
     for (const char* assignment : assignments) settings.set_assignment(assignment, issues);
-    return read(pushed, issues, &settings);
+    return read_text(pushed, issues, &settings);
   };
   Issues issues;
   const auto scenario = with({"disturbances.1.force=20", "disturbances.1.direction=1.5707963",
@@ -430,7 +436,7 @@ TEST(Scenario, TheCommandLineReplacesKeysOfACommand) {
   const auto with = [&](std::initializer_list<const char*> assignments, Issues* issues) {
     Settings settings;
     for (const char* assignment : assignments) settings.set_assignment(assignment, issues);
-    return read(commanded, issues, &settings);
+    return read_text(commanded, issues, &settings);
   };
   Issues issues;
   const auto scenario =
@@ -455,7 +461,7 @@ TEST(Scenario, ErrorsOfAnOverrideNameTheCommandLine) {
   Issues issues;
   Settings settings;
   settings.set_assignment("seed=many", &issues);
-  EXPECT_FALSE(read(kHead, &issues, &settings));
+  EXPECT_FALSE(read_text(kHead, &issues, &settings));
   EXPECT_PART(issues.error_text(), "--set seed=many: seed: expected a whole number");
 }
 
@@ -485,12 +491,12 @@ TEST(Scenario, LinksAreCheckedAgainstTheRobot) {
   const auto robot = load_robot(Paths::detect().robot("atlas").value_or("").string(),
                                 Profile::kSimulation, &settings, &issues);
   ASSERT_TRUE(robot) << issues.error_text();
-  const auto scenario =
-      read(kHead +
-               "commands: [{at: 1, push: {link: utorsoo, force: [1, 0, 0], duration: 1}}]\n"
-               "disturbances: [{link: pelvs, force: [1, 0, 0], duration: 1, when: {time: 1}}]\n"
-               "model_error: {mass_scale: {head1: 1.1}, friction: 0.5}\n",
-           &issues, &settings);
+  const auto scenario = read_text(
+      kHead +
+          "commands: [{at: 1, push: {link: utorsoo, force: [1, 0, 0], duration: 1}}]\n"
+          "disturbances: [{link: pelvs, force: [1, 0, 0], duration: 1, when: {time: 1}}]\n"
+          "model_error: {mass_scale: {head1: 1.1}, friction: 0.5}\n",
+      &issues, &settings);
   ASSERT_TRUE(scenario) << issues.error_text();
   check_scenario(*scenario, robot->model, &issues);
   EXPECT_EQ(issues.error_count(), 3u) << issues.error_text();
@@ -508,7 +514,7 @@ TEST(Scenario, TheRobotMustHaveRoomAtItsStart) {
   ASSERT_TRUE(robot) << none.error_text();
   const auto check = [&](const std::string& text, bool warning = false) {
     Issues issues;
-    const auto scenario = read(kHead + text, &issues, &settings);
+    const auto scenario = read_text(kHead + text, &issues, &settings);
     EXPECT_TRUE(scenario) << issues.error_text();
     if (scenario) check_scenario(*scenario, robot->model, &issues);
     return warning ? issues.warning_text() : issues.error_text();

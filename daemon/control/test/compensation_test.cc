@@ -10,13 +10,15 @@
 
 #include "gaitd/sdk/views.h"
 #include "walking/test/atlas.h"
+#include "walking/test/tick.h"
 
 namespace gaitd::daemon {
 namespace {
 
+using testing::kDt;
+
 using testing::atlas;
 
-constexpr double kPeriod = 0.001;  // s
 constexpr int kJoint = 7;
 
 class CompensationTest : public ::testing::Test {
@@ -27,7 +29,7 @@ class CompensationTest : public ::testing::Test {
       data_->sensors = {};
       data_->sensors.joints[kJoint].position = position;
       data_->sensors.joints[kJoint].torque = torque;
-      compensation->sensors(kPeriod, *data_);
+      compensation->sensors(kDt, *data_);
     }
   }
   const GaitdJointSensor& joint() const { return data_->sensors.joints[kJoint]; }
@@ -42,8 +44,8 @@ TEST_F(CompensationTest, ARobotLikeItsModelIsLeftAsItIs) {
   data_->sensors.feet[GAITD_LEFT].force[2] = -0.0;
   data_->commands.joints[kJoint].torque = 100.0;
   const auto before = std::make_unique<TickData>(*data_);
-  compensation.sensors(kPeriod, *data_);
-  compensation.commands(kPeriod, *data_);
+  compensation.sensors(kDt, *data_);
+  compensation.commands(kDt, *data_);
   EXPECT_EQ(std::memcmp(&data_->sensors, &before->sensors, sizeof(GaitdSensors)), 0);
   EXPECT_EQ(std::memcmp(&data_->commands, &before->commands, sizeof(GaitdJointCommands)), 0);
 }
@@ -56,7 +58,7 @@ TEST_F(CompensationTest, TheLinkIsBehindItsMotorByTorqueOverStiffness) {
   EXPECT_EQ(joint().velocity, 0.0);
   read(&compensation, 0.5, 300.0, 1);
   EXPECT_LT(joint().velocity, 0.0);  // the load grows: the link gives way
-  const double turned = kPeriod * joint().velocity;
+  const double turned = kDt * joint().velocity;
   EXPECT_NEAR(joint().position, 0.48 + turned, 1e-12);
   read(&compensation, 0.5, 300.0, 200);
   EXPECT_NEAR(joint().position, 0.5 - 0.01 - 0.03, 1e-9);
@@ -73,7 +75,7 @@ TEST_F(CompensationTest, FrictionIsMadeUpForWithTheRateThatTheLinkIsToHave) {
     command.mode = mode;
     command.torque = 5.0;
     command.velocity = rate;
-    compensation.commands(kPeriod, *data_);
+    compensation.commands(kDt, *data_);
     return command.torque;
   };
   EXPECT_NEAR(torque_at(0.0), 5.0 - 3.0, 1e-12);
@@ -99,8 +101,8 @@ TEST_F(CompensationTest, FrictionDampsWhatShakesARobotThatStands) {
     for (int i = 0; i < 2000; ++i) {
       command = {};
       command.mode = GAITD_JOINT_MODE_TORQUE;
-      command.velocity = std::sin(2.0 * M_PI * hertz * kPeriod * i);
-      compensation.commands(kPeriod, *data_);
+      command.velocity = std::sin(2.0 * M_PI * hertz * kDt * i);
+      compensation.commands(kDt, *data_);
       if (i > 1000) most = std::max(most, std::abs(command.torque));
     }
     return most;
@@ -124,7 +126,7 @@ TEST_F(CompensationTest, ReferencesAreThoseOfTheEncoder) {
   read(&compensation, 0.5, -400.0, 10);  // what is measured closes no loop
   data_->commands.joints[kJoint].position = 0.3;
   data_->commands.joints[kJoint].torque = 100.0;
-  compensation.commands(kPeriod, *data_);
+  compensation.commands(kDt, *data_);
   EXPECT_NEAR(data_->commands.joints[kJoint].position, 0.3 + 0.01 + 0.01, 1e-12);
 }
 
@@ -151,7 +153,7 @@ TEST_F(CompensationTest, AFootInTheAirWeighsNothing) {
         sensor.conjugate() * weight_W + Eigen::Vector3d(own.force.data());
     sdk::view(data_->sensors.feet[GAITD_LEFT].moment) =
         sensor.conjugate() * arm_W.cross(weight_W) + Eigen::Vector3d(own.moment.data());
-    compensation.sensors(kPeriod, *data_);
+    compensation.sensors(kDt, *data_);
     EXPECT_LT(sdk::view(data_->sensors.feet[GAITD_LEFT].force).norm(), 1e-9) << estimated;
     EXPECT_LT(sdk::view(data_->sensors.feet[GAITD_LEFT].moment).norm(), 1e-9) << estimated;
   }

@@ -22,7 +22,7 @@ namespace gaitd::daemon {
 namespace {
 
 constexpr int kNever = 1 << 30;
-constexpr int kStanding = 4500;  // ticks after which the robot stands
+constexpr int kStandingTick = 4500;  // ticks after which the robot stands
 
 class FailingBackend {
  public:
@@ -257,7 +257,7 @@ TEST_F(ControlLoopTest, APushThatIsMadeIsToldAndNoFailure) {
 }
 
 TEST_F(ControlLoopTest, AHeadThatFailsIsToldAndTheRobotGoesOn) {
-  backend.neck_fails = kStanding;
+  backend.neck_fails = kStandingTick;
   const LoopReport report = run(standing(5.0));
   EXPECT_EQ(report.end, RunEnd::kDuration);
   EXPECT_EQ(backend.bench.pipeline->safety().state(), SafetyState::kStanding);

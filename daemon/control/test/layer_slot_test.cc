@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "walking/test/atlas.h"
+#include "walking/test/tick.h"
 
 namespace gaitd::daemon {
 namespace {
 
+using testing::kDt;
+
 using testing::atlas;
-constexpr double kPeriod = 0.001;  // s
 
 // A planner that says x = `value`; see scripted_planner.cc for the faults.
 LoadedLayer* planner(double value, int fault = 0, int fault_tick = 0) {
@@ -39,7 +41,7 @@ class Slot : public ::testing::Test {
   std::string tick() {
     GaitdIcpPlannerInput in{};
     in.size = sizeof(in);
-    in.time = {tick_++, 0.0, kPeriod};
+    in.time = {tick_++, 0.0, kDt};
     double time = 0.0;
     const char* error = slot_.run(in, out_, &time);
     SwapReport report;

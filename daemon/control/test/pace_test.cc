@@ -5,16 +5,19 @@
 
 #include <algorithm>
 
+#include "walking/test/tick.h"
+
 namespace gaitd::daemon {
 namespace {
 
-constexpr double kPeriod = 0.001;  // s
-constexpr double kRun = 0.01;      // s
+using testing::kDt;
+
+constexpr double kRun = 0.01;  // s
 
 // A loop that begins its ticks when they are due, on a clock that only moves as it is told.
 class Loop {
  public:
-  explicit Loop(OverrunPolicy policy) : pace_(kPeriod, policy, kRun) { pace_.start(now_); }
+  explicit Loop(OverrunPolicy policy) : pace_(kDt, policy, kRun) { pace_.start(now_); }
   // A tick that takes this long (s), and the wait for the next one.
   Pace::Next tick(double seconds) {
     now_ += static_cast<std::int64_t>(1e9 * seconds);
@@ -52,7 +55,7 @@ TEST(Pace, OneLongStallIsAFaultAtOnce) {
 TEST(Pace, AStallUpToTheLongestRunIsNone) {
   for (const double past : {-1e-6, 1e-6}) {
     Loop loop(OverrunPolicy::kStop);
-    EXPECT_EQ(loop.tick(kPeriod + kRun + past).fault, past > 0.0);
+    EXPECT_EQ(loop.tick(kDt + kRun + past).fault, past > 0.0);
   }
 }
 

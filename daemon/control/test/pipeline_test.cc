@@ -213,6 +213,29 @@ TEST(Pipeline, AValueThatAWalkDoesNotBearIsRefusedUntilTheRobotIsAtRest) {
   EXPECT_TRUE(set(0.9).accepted);
 }
 
+TEST(Pipeline, ARobotWhoseTorquesAreHeldDownStandsAndDoesNotWalk) {
+  Bench b;
+  std::string error;
+  Command command;
+  command.type = CommandType::kSetParameter;
+  command.parameter_index = b.parameters.find("limits.torque_ratio", &error);
+  command.parameter_value = 0.3;
+  ASSERT_TRUE(b.pipeline->execute(command).accepted);
+  b.run_for(0.1);
+  ASSERT_TRUE(b.execute(CommandType::kArm).accepted);
+  b.run_for(6.0);
+  ASSERT_EQ(b.state(), SafetyState::kStanding);
+  Command walk;
+  walk.type = CommandType::kWalk;
+  walk.walk = {.steps = 2, .length = 0.2};
+  const std::string why = b.pipeline->execute(walk).message.data();
+  EXPECT_NE(why.find("limits.torque_ratio is 0.3, 0.5 to 1 expected for steps"), std::string::npos)
+      << why;
+  command.parameter_value = 0.8;
+  ASSERT_TRUE(b.pipeline->execute(command).accepted);
+  EXPECT_TRUE(b.pipeline->execute(walk).accepted);
+}
+
 TEST(Pipeline, OnHardwareSwapsOnlyWhenTheConfigurationAllowsIt) {
   Bench b;
   b.pipeline->layers().rules().simulation = false;

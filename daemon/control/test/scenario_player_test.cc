@@ -8,13 +8,14 @@
 
 #include "daemon/parameters/safety_parameters.h"
 #include "walking/test/atlas.h"
+#include "walking/test/tick.h"
 
 namespace gaitd::daemon {
 namespace {
 
-using testing::atlas;
+using testing::kDt;
 
-constexpr double kPeriod = 0.001;  // s
+using testing::atlas;
 
 ScenarioCommand command(double at, const char* method, nlohmann::json params = {}) {
   ScenarioCommand c;
@@ -70,9 +71,9 @@ class Player {
   }
   // Ticks from `from` to `to` (s); the first end that is found, and when.
   ScenarioPlayer::End run(double from, double to, double* when) {
-    for (double t = from; t < to - 1e-9; t += kPeriod) {
+    for (double t = from; t < to - 1e-9; t += kDt) {
       at(t);
-      const auto end = player.update(kPeriod, *data);
+      const auto end = player.update(kDt, *data);
       if (when != nullptr) *when = t;
       if (end != ScenarioPlayer::End::kRunning) return end;
     }
@@ -116,8 +117,8 @@ TEST(ScenarioPlayer, ATimeThatIsNoBinaryNumberIsMetInItsTick) {
         std::stod(std::to_string(tick / 1000) + "." + std::to_string(1000 + tick % 1000).substr(1)),
         "stop")};
     Player p(s);
-    EXPECT_EQ(p.player.next_command((tick - 1) * kPeriod), nullptr) << tick;
-    EXPECT_NE(p.player.next_command(tick * kPeriod), nullptr) << tick;
+    EXPECT_EQ(p.player.next_command((tick - 1) * kDt), nullptr) << tick;
+    EXPECT_NE(p.player.next_command(tick * kDt), nullptr) << tick;
   }
 }
 

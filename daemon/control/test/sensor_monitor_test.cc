@@ -9,14 +9,16 @@
 #include <string>
 
 #include "walking/test/atlas.h"
+#include "walking/test/tick.h"
 
 namespace gaitd::daemon {
 namespace {
 
+using testing::kDt;
+
 using testing::atlas;
 using Suspicion = SensorMonitor::Suspicion;
 
-constexpr double kPeriod = 0.001;  // s
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Sensors that never say the same twice.
@@ -75,7 +77,7 @@ class Bench {
       check();
     }
   }
-  void check() { monitor.check(kPeriod, parameters, *data); }
+  void check() { monitor.check(kDt, parameters, *data); }
   void run(int ticks) {
     for (int i = 0; i < ticks; ++i) {
       next();
@@ -115,7 +117,7 @@ TEST(SensorMonitor, HoldsTheLastReadingThroughASpike) {
   EXPECT_EQ(b.data->sensors.imus[0].angular_rate[1], before);
   EXPECT_LT(b.data->sensors.joints[4].position, 0.4);
   EXPECT_LT(b.data->sensors.feet[0].force[2], 900.0);
-  EXPECT_NEAR(b.data->sensors.imus[0].info.age, kPeriod, 1e-9);
+  EXPECT_NEAR(b.data->sensors.imus[0].info.age, kDt, 1e-9);
   EXPECT_EQ(b.monitor.suspect().suspicion, Suspicion::kUntrue);
   b.run(1);
   EXPECT_EQ(b.data->sensors.imus[0].info.age, 0.0);

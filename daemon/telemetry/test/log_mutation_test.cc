@@ -17,7 +17,7 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr int kTicks = 120;
+constexpr int kMutatedTicks = 120;
 constexpr int kMutations = 2000;
 
 // All that a reader can get from a log.
@@ -92,7 +92,7 @@ class Mutations : public testing::TestWithParam<McapCompression> {
   void SetUp() override {
     path_ = testing::TempDir() + "gaitd_mutations_" +
             (GetParam() == McapCompression::kZstd ? "zstd" : "none") + ".mcap";
-    write_sample_log(path_, kTicks, {.compression = GetParam(), .chunk_bytes = 6000});
+    write_sample_log(path_, kMutatedTicks, {.compression = GetParam(), .chunk_bytes = 6000});
     bytes_ = read_file(path_);
     std::string error;
     const auto log = LogReader::open(path_, &error);
@@ -100,7 +100,7 @@ class Mutations : public testing::TestWithParam<McapCompression> {
     ASSERT_FALSE(log->damage().any()) << log->damage().findings.front();
     ASSERT_TRUE(log->sealed());
     whole_ = content_of(*log);
-    ASSERT_EQ(whole_.csv.size(), static_cast<std::size_t>(kTicks));
+    ASSERT_EQ(whole_.csv.size(), static_cast<std::size_t>(kMutatedTicks));
   }
 
   // Is what is told of the log enough to know that this tick was lost?
@@ -172,9 +172,9 @@ TEST_P(Mutations, EveryLostRowIsTold) {
     if (HasFatalFailure()) return;
   }
   std::printf("[ MUTATED  ] %d refused, %d told, with %.0f %% of their rows\n", refused, damaged,
-              100.0 * rows / (kTicks * std::max(damaged, 1)));
+              100.0 * rows / (kMutatedTicks * std::max(damaged, 1)));
   EXPECT_GT(damaged, kMutations / 2);
-  EXPECT_GT(rows, kTicks * damaged / 2);
+  EXPECT_GT(rows, kMutatedTicks * damaged / 2);
 }
 
 TEST_P(Mutations, LogsWithoutSealsAreReadAndSayThatTheyHaveNone) {

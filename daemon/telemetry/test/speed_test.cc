@@ -9,7 +9,7 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr int kTicks = 100000;
+constexpr int kMeasuredTicks = 100000;
 constexpr int kJoints = 30;
 
 // About 400 signals: most of them smooth, a few noisy, some constant, as in a walk.
@@ -85,13 +85,13 @@ void measure(const char* name, const McapOptions& options, int ticks) {
   std::remove(path.c_str());
 }
 
-TEST(Speed, AHundredThousandTicks) { measure("default", {}, kTicks); }
+TEST(Speed, AHundredThousandTicks) { measure("default", {}, kMeasuredTicks); }
 
 TEST(Speed, Choices) {
-  measure("none", {.compression = McapCompression::kNone}, kTicks / 50);
-  measure("zstd -1", {.level = -1}, kTicks / 50);
-  measure("zstd 1", {.level = 1}, kTicks / 50);
-  measure("zstd 3", {.level = 3}, kTicks / 50);
+  measure("none", {.compression = McapCompression::kNone}, kMeasuredTicks / 50);
+  measure("zstd -1", {.level = -1}, kMeasuredTicks / 50);
+  measure("zstd 1", {.level = 1}, kMeasuredTicks / 50);
+  measure("zstd 3", {.level = 3}, kMeasuredTicks / 50);
 }
 
 }  // namespace

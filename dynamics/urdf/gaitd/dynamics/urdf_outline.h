@@ -29,6 +29,7 @@ struct UrdfJointNote {
   bool mimic = false;
   bool has_effort = false;  // and a velocity, both above 0
   bool has_range = true;    // an axis, and limits apart from each other where its type has some
+  std::string mimicked;     // the joint that it follows
 };
 
 // <sensor> in a <gazebo> of a link or joint.

@@ -11,10 +11,12 @@ namespace gaitd::can {
 namespace {
 
 using Bytes = std::array<uint8_t, 8>;
-const Ranges kRanges{12.5, 30.0, 10.0, 500.0, 5.0};
-const MotorId kMotor{5, 0x15};
+const Ranges kMitRanges{12.5, 30.0, 10.0, 500.0, 5.0};
+const MotorId kMitMotor{5, 0x15};
 
-Frame command_of(const MotorCommand& command) { return kDamiao.command(kMotor, kRanges, command); }
+Frame command_of(const MotorCommand& command) {
+  return kDamiao.command(kMitMotor, kMitRanges, command);
+}
 
 TEST(MitDialects, EveryCodeSurvivesARoundTrip) {
   const double ranges[] = {12.5, 3.141593, 95.5, 10.0, 54.0, 0.1};
@@ -39,7 +41,7 @@ TEST(MitDialects, EveryCodeOfEveryFieldSurvivesInTheFrame) {
     command.damping = from_code(small ^ 0x555, 0, 5, 12);
     command.torque = from_code(0xFFF - small, -10, 10, 12);
     const Frame frame = command_of(command);
-    const MotorCommand back = kDamiao.read_command(frame, kRanges).value();
+    const MotorCommand back = kDamiao.read_command(frame, kMitRanges).value();
     ASSERT_EQ(frame.data, command_of(back).data) << code;
     ASSERT_EQ(code, static_cast<uint32_t>(frame.data[0] << 8 | frame.data[1]));
     ASSERT_EQ(small, static_cast<uint32_t>(frame.data[2] << 4 | frame.data[3] >> 4));
@@ -59,9 +61,9 @@ TEST(MitDialects, EveryCodeOfAReplySurvivesInEachDialect) {
       reply.position = from_code(code, -12.5, 12.5, 16);
       reply.velocity = from_code(code & 0xFFF, -30, 30, 12);
       reply.torque = from_code(code >> 4, -10, 10, 12);
-      const Frame frame = dialect->reply(kMotor, kRanges, reply);
-      ASSERT_FALSE(dialect->read_reply(frame, {6, 0x15}, kRanges)) << "of another motor";
-      const auto back = dialect->read_reply(frame, kMotor, kRanges);
+      const Frame frame = dialect->reply(kMitMotor, kMitRanges, reply);
+      ASSERT_FALSE(dialect->read_reply(frame, {6, 0x15}, kMitRanges)) << "of another motor";
+      const auto back = dialect->read_reply(frame, kMitMotor, kMitRanges);
       ASSERT_TRUE(back) << code;
       ASSERT_EQ(back->error, 1);
       ASSERT_DOUBLE_EQ(back->position, reply.position);
@@ -80,7 +82,7 @@ TEST(MitDialects, ZeroIsAlmostTheMiddleAndNotAnAllZeroPayload) {
   EXPECT_FALSE(kDamiao.is_torque_free(command_of({.stiffness = 0.2})));
   Frame nothing;  // what a forgotten initialisation would send
   EXPECT_FALSE(kDamiao.is_torque_free(nothing));
-  EXPECT_DOUBLE_EQ(-10.0, kDamiao.read_command(nothing, kRanges)->torque);
+  EXPECT_DOUBLE_EQ(-10.0, kDamiao.read_command(nothing, kMitRanges)->torque);
 }
 
 TEST(MitDialects, TheSafeIdleIsMiddleCodesWithASmallDamping) {
@@ -103,10 +105,10 @@ TEST(MitDialects, PublishedExamples) {
 
 TEST(MitDialects, SpecialFrames) {
   const Bytes enable{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFC};
-  EXPECT_EQ(enable, kDamiao.special(kMotor, Special::kEnable).data);
+  EXPECT_EQ(enable, kDamiao.special(kMitMotor, Special::kEnable).data);
   for (const Special s :
        {Special::kEnable, Special::kDisable, Special::kSetZero, Special::kClear}) {
-    EXPECT_EQ(s, kDamiao.read_special(kDamiao.special(kMotor, s)));
+    EXPECT_EQ(s, kDamiao.read_special(kDamiao.special(kMitMotor, s)));
   }
   EXPECT_FALSE(kDamiao.read_special(command_of({12.5, 30, 500, 5, 10})));
 }
@@ -116,7 +118,7 @@ TEST(MitDialects, DamiaoReplyHasErrorAndTemperatures) {
   frame.id = 0x11;
   frame.data = {0xB1, 0x80, 0x00, 0x80, 0x08, 0x00, 65, 70};
   const MotorId motor{1, 0x11};
-  const auto reply = kDamiao.read_reply(frame, motor, kRanges);
+  const auto reply = kDamiao.read_reply(frame, motor, kMitRanges);
   ASSERT_TRUE(reply);
   EXPECT_STREQ("drive too hot", motor_error_text(reply->error));
   EXPECT_NEAR(0.0, reply->position, 2e-4);
@@ -124,11 +126,11 @@ TEST(MitDialects, DamiaoReplyHasErrorAndTemperatures) {
   EXPECT_EQ(70, reply->rotor_temperature);
   frame.length = 7;
   frame.data[0] = 1;
-  EXPECT_FALSE(kDamiao.read_reply(frame, motor, kRanges));
-  EXPECT_TRUE(kMiniCheetah.read_reply(frame, motor, kRanges));
+  EXPECT_FALSE(kDamiao.read_reply(frame, motor, kMitRanges));
+  EXPECT_TRUE(kMiniCheetah.read_reply(frame, motor, kMitRanges));
   frame.length = 12;
-  EXPECT_FALSE(kDamiao.read_reply(frame, motor, kRanges));
-  EXPECT_FALSE(kMiniCheetah.read_reply(frame, motor, kRanges));
+  EXPECT_FALSE(kDamiao.read_reply(frame, motor, kMitRanges));
+  EXPECT_FALSE(kMiniCheetah.read_reply(frame, motor, kMitRanges));
 }
 
 TEST(MitDialects, RegistersOfDamiao) {
@@ -148,8 +150,8 @@ TEST(MitDialects, RegistersOfDamiao) {
   // What is about a register is no state, whether it was read or written.
   Frame written = answer;
   written.data[2] = 0x55;
-  EXPECT_FALSE(kDamiao.read_reply(answer, motor, kRanges));
-  EXPECT_FALSE(kDamiao.read_reply(written, motor, kRanges));
+  EXPECT_FALSE(kDamiao.read_reply(answer, motor, kMitRanges));
+  EXPECT_FALSE(kDamiao.read_reply(written, motor, kMitRanges));
 }
 
 TEST(SensorFrames, EveryCodeSurvives) {

@@ -8,14 +8,14 @@ namespace gaitd::can {
 namespace {
 
 using Bytes = std::array<uint8_t, 8>;
-constexpr double kTurns = 12.566370614359172;     // rad, +-
-const Ranges kRanges{kTurns, 20, 60, 5000, 100};  // of an RS03
-const MotorId kMotor{1, 0xFD};
+constexpr double kTurns = 12.566370614359172;              // rad, +-
+const Ranges kRobstrideRanges{kTurns, 20, 60, 5000, 100};  // of an RS03
+const MotorId kRobstrideMotor{1, 0xFD};
 
 uint8_t error_of(uint32_t id) {
   Frame frame;
   frame.id = kExtended | id;
-  const auto reply = kRobStride.read_reply(frame, kMotor, kRanges);
+  const auto reply = kRobStride.read_reply(frame, kRobstrideMotor, kRobstrideRanges);
   return reply ? reply->error : 0xFF;
 }
 
@@ -28,12 +28,12 @@ TEST(RobStride, EveryCodeSurvives) {
     command.torque = value(60);
     command.stiffness = from_code(code, 0, 5000, 16);
     command.damping = from_code(code, 0, 100, 16);
-    const Frame frame = kRobStride.command(kMotor, kRanges, command);
+    const Frame frame = kRobStride.command(kRobstrideMotor, kRobstrideRanges, command);
     ASSERT_EQ(kExtended | 0x01000001 | code << 8, frame.id);
     for (int i = 0; i < 4; ++i) {
       ASSERT_EQ(code, static_cast<uint32_t>(frame.data[2 * i] << 8 | frame.data[2 * i + 1]));
     }
-    const auto back = kRobStride.read_command(frame, kRanges);
+    const auto back = kRobStride.read_command(frame, kRobstrideRanges);
     ASSERT_TRUE(back);
     ASSERT_DOUBLE_EQ(command.torque, back->torque);
     ASSERT_DOUBLE_EQ(command.damping, back->damping);
@@ -73,7 +73,7 @@ TEST(RobStride, AReplyHasItsTemperatureInTenths) {
   Frame frame;
   frame.id = kExtended | 0x028001FD;
   frame.data = {0xFF, 0xFF, 0x80, 0x00, 0x00, 0x00, 0x01, 0xC2};
-  const auto reply = kRobStride.read_reply(frame, kMotor, kRanges);
+  const auto reply = kRobStride.read_reply(frame, kRobstrideMotor, kRobstrideRanges);
   ASSERT_TRUE(reply);
   EXPECT_DOUBLE_EQ(kTurns, reply->position);
   EXPECT_NEAR(0.0, reply->velocity, 4e-4);
@@ -85,28 +85,28 @@ TEST(RobStride, AFaultFrameNamesItsFaultAndWarningsAreNone) {
   for (const MotorError error :
        {MotorError::kOverVoltage, MotorError::kRotorHot, MotorError::kOverCurrent,
         MotorError::kOverload, MotorError::kDriveFault}) {
-    const Frame frame = kRobStride.fault(kMotor, error);
-    EXPECT_EQ(error, kRobStride.read_fault(frame, kMotor));
+    const Frame frame = kRobStride.fault(kRobstrideMotor, error);
+    EXPECT_EQ(error, kRobStride.read_fault(frame, kRobstrideMotor));
     EXPECT_FALSE(kRobStride.read_fault(frame, {2, 0xFD}));
-    EXPECT_FALSE(kRobStride.read_reply(frame, kMotor, kRanges));
+    EXPECT_FALSE(kRobStride.read_reply(frame, kRobstrideMotor, kRobstrideRanges));
   }
   Frame phase;
   phase.id = kExtended | 0x150001FD;
   phase.data[2] = 1;
-  EXPECT_EQ(MotorError::kOverCurrent, kRobStride.read_fault(phase, kMotor));
+  EXPECT_EQ(MotorError::kOverCurrent, kRobStride.read_fault(phase, kRobstrideMotor));
   Frame unknown;
   unknown.id = phase.id;
   unknown.data[3] = 0x80;
-  EXPECT_EQ(MotorError::kDriveFault, kRobStride.read_fault(unknown, kMotor));
+  EXPECT_EQ(MotorError::kDriveFault, kRobStride.read_fault(unknown, kRobstrideMotor));
   Frame warning;
   warning.id = kExtended | 0x150001FD;
   warning.data[4] = 1;
-  EXPECT_EQ(MotorError::kOn, kRobStride.read_fault(warning, kMotor));
+  EXPECT_EQ(MotorError::kOn, kRobStride.read_fault(warning, kRobstrideMotor));
 }
 
 TEST(RobStride, ARegisterThatTheMotorDoesNotHaveIsSaidSo) {
   const auto value = kRobStride.read_register_answer(
-      kRobStride.register_answer(kMotor, {1, 0x7028, 0, false}), kMotor);
+      kRobStride.register_answer(kRobstrideMotor, {1, 0x7028, 0, false}), kRobstrideMotor);
   ASSERT_TRUE(value);
   EXPECT_FALSE(value->known);
 }

@@ -41,7 +41,8 @@ json make_wiring(int joints, double data_bitrate) {
   return wiring;
 }
 
-std::string errors_of(const json& wiring, int joints, double period, Wiring* result = nullptr) {
+std::string errors_of_wiring(const json& wiring, int joints, double period,
+                             Wiring* result = nullptr) {
   std::vector<std::string> errors;
   const Wiring read = parse_wiring(wiring.dump(), make_model(joints), period, &errors);
   if (result != nullptr) *result = read;
@@ -74,7 +75,7 @@ TEST(BusLoad, RefusesMoreJointsThanABusCanCarry) {
       // The feet on a bus of their own.
       text["buses"]["feet"] = {{"interface", "can1"}};
       text["feet"]["left"]["bus"] = text["feet"]["right"]["bus"] = "feet";
-      const std::string errors = errors_of(text, joints, row.period, &wiring);
+      const std::string errors = errors_of_wiring(text, joints, row.period, &wiring);
       const bool refused = errors.find("expected a load of at most 80 %") != std::string::npos &&
                            errors.find("can.buses.one") != std::string::npos;
       EXPECT_EQ(joints > row.joints, refused) << joints << " joints: " << errors;
@@ -109,7 +110,7 @@ TEST(Wiring, ReadsDefaultsAndWhatAJointSaysOtherwise) {
                                {"ranges", {{"torque", 33}, {"velocity", 110}}},
                                {"limits", {{"torque", 40}}}});
   Wiring wiring;
-  EXPECT_EQ("", errors_of(text, 2, 0.001, &wiring));
+  EXPECT_EQ("", errors_of_wiring(text, 2, 0.001, &wiring));
   ASSERT_EQ(2u, wiring.motors.size());
   EXPECT_EQ(0x41u, wiring.motors[1].reply_id);
   EXPECT_EQ(8.0, wiring.motors[0].gear);
@@ -129,7 +130,7 @@ TEST(Wiring, ReportsEveryMistakeAtOnce) {
   text["joints"]["j2"]["sign"] = 0;
   text["joints"]["j9"] = text["joints"]["j2"];
   text["feet"].erase("left");
-  const std::string errors = errors_of(text, 3, 0.001);
+  const std::string errors = errors_of_wiring(text, 3, 0.001);
   for (const char* expected :
        {"can.typo", "can.joints.j0.bus: expected one of the buses one",
         "0x003, which is can.joints.j1.id", "can.joints.j2.sign: expected 1 or -1",
@@ -143,18 +144,18 @@ TEST(Wiring, RefusesAJointThatItsMotorCannotShow) {
        std::map<std::string, double>{{"position", 15.0}, {"velocity", 95.0}, {"torque", 9.0}}) {
     json text = make_wiring(1, 5e6);
     text["defaults"]["ranges"][key] = value;
-    EXPECT_NE(std::string::npos, errors_of(text, 1, 0.001).find("ranges." + key)) << key;
+    EXPECT_NE(std::string::npos, errors_of_wiring(text, 1, 0.001).find("ranges." + key)) << key;
   }
   json text = make_wiring(1, 5e6);
   text["joints"].erase("j0");
-  EXPECT_NE(std::string::npos, errors_of(text, 1, 0.001).find("a motor for every joint"));
+  EXPECT_NE(std::string::npos, errors_of_wiring(text, 1, 0.001).find("a motor for every joint"));
 }
 
 TEST(Wiring, RefusesLimitsThatLeaveNoRange) {
   json text = make_wiring(1, 5e6);
   text["joints"]["j0"]["limits"] = {{"position_min", 1.0}, {"position_max", -0.5}};
   EXPECT_NE(std::string::npos,
-            errors_of(text, 1, 0.001)
+            errors_of_wiring(text, 1, 0.001)
                 .find("can.joints.j0.limits.position_min: expected less than position_max"));
 }
 
@@ -162,7 +163,7 @@ TEST(Wiring, RefusesIdentifiersThatRepliesOfOthersHave) {
   json text = make_wiring(1, 5e6);
   text["joints"]["j0"]["reply_id"] = 0;  // of every mini-cheetah motor
   text["feet"]["left"]["id"] = "0x0";
-  const std::string errors = errors_of(text, 1, 0.001);
+  const std::string errors = errors_of_wiring(text, 1, 0.001);
   EXPECT_NE(std::string::npos, errors.find("can.joints.j0.reply_id: expected an identifier 0x001"))
       << errors;
   EXPECT_NE(std::string::npos, errors.find("can.feet.left.id: expected an identifier 0x001"))
@@ -170,7 +171,7 @@ TEST(Wiring, RefusesIdentifiersThatRepliesOfOthersHave) {
   text = make_wiring(1, 5e6);
   text["joints"]["j0"]["dialect"] = "mini_cheetah";
   text["joints"]["j0"]["id"] = "0x101";  // its reply would say 0x01
-  EXPECT_NE(std::string::npos, errors_of(text, 1, 0.001).find("an identifier 0x001..0x0FF"));
+  EXPECT_NE(std::string::npos, errors_of_wiring(text, 1, 0.001).find("an identifier 0x001..0x0FF"));
 }
 
 TEST(Wiring, RobStrideMotorsHaveIdentifiersOfTheirOwnAndNoCanFd) {
@@ -178,42 +179,43 @@ TEST(Wiring, RobStrideMotorsHaveIdentifiersOfTheirOwnAndNoCanFd) {
   text["buses"]["feet"] = {{"interface", "can1"}};
   text["feet"]["left"]["bus"] = text["feet"]["right"]["bus"] = "feet";
   text["defaults"]["dialect"] = "robstride";
-  EXPECT_NE(std::string::npos,
-            errors_of(text, 2, 0.004).find("j0.ranges.stiffness: expected that of the motor"));
+  EXPECT_NE(
+      std::string::npos,
+      errors_of_wiring(text, 2, 0.004).find("j0.ranges.stiffness: expected that of the motor"));
   text["defaults"]["ranges"] = {
       {"position", 20}, {"velocity", 100}, {"torque", 60}, {"stiffness", 5000}, {"damping", 100}};
   text["joints"]["j0"].erase("reply_id");
   text["joints"]["j1"]["reply_id"] = "0xFC";
   text["estop"] = {{"bus", "one"}, {"id", 1}};  // 11 bits: not that of j0
   Wiring wiring;
-  EXPECT_EQ("", errors_of(text, 2, 0.004, &wiring));
+  EXPECT_EQ("", errors_of_wiring(text, 2, 0.004, &wiring));
   EXPECT_EQ(&kRobStride, wiring.motors[0].dialect);
   EXPECT_EQ(0xFDu, wiring.motors[0].reply_id);
   EXPECT_EQ(0xFCu, wiring.motors[1].reply_id);
   EXPECT_NEAR(4 * 160e-6 / 0.004, bus_load(wiring, 1, 0.004), 1e-9);
   text["joints"]["j1"] = {{"bus", "one"}, {"id", "0x80"}, {"reply_id", 3}};
-  std::string errors = errors_of(text, 2, 0.004);
+  std::string errors = errors_of_wiring(text, 2, 0.004);
   EXPECT_NE(std::string::npos, errors.find("j1.id: expected an identifier 0x001..0x07F")) << errors;
   EXPECT_NE(std::string::npos, errors.find("j1.reply_id: expected an identifier 0x080..0x0FD"))
       << errors;
   text["joints"]["j1"] = {{"bus", "one"}, {"id", 1}};
   text["buses"]["one"]["data_bitrate"] = 5e6;
-  errors = errors_of(text, 2, 0.004);
+  errors = errors_of_wiring(text, 2, 0.004);
   EXPECT_NE(std::string::npos, errors.find("0x001, which is can.joints.j0.id")) << errors;
   EXPECT_NE(std::string::npos, errors.find("j0.bus: expected a bus without data_bitrate"))
       << errors;
   text["buses"] = json::object();
-  EXPECT_NE(std::string::npos, errors_of(text, 2, 0.004).find("can.buses: expected 1 to"));
+  EXPECT_NE(std::string::npos, errors_of_wiring(text, 2, 0.004).find("can.buses: expected 1 to"));
 }
 
 TEST(Wiring, AnEstopIsAlwaysWatched) {
   json text = make_wiring(1, 5e6);
   text["estop"] = {{"bus", "one"}, {"id", "0x80"}};
   Wiring wiring;
-  EXPECT_EQ("", errors_of(text, 1, 0.001, &wiring));
+  EXPECT_EQ("", errors_of_wiring(text, 1, 0.001, &wiring));
   EXPECT_EQ(0.1, wiring.heartbeat);
   text["estop"]["heartbeat"] = 0;
-  EXPECT_NE(std::string::npos, errors_of(text, 1, 0.001).find("can.estop.heartbeat"));
+  EXPECT_NE(std::string::npos, errors_of_wiring(text, 1, 0.001).find("can.estop.heartbeat"));
 }
 
 }  // namespace

@@ -13,12 +13,12 @@
 namespace gaitd::unitree {
 namespace {
 
-constexpr int64_t kMs = 1'000'000;
+constexpr int64_t kMillisecond = 1'000'000;
 
 struct Bench {
   StateWatch watch{{(uint64_t{1} << kMotors) - 1, 0.05, 20}};
   LowState message;
-  int64_t now = 1000 * kMs;
+  int64_t now = 1000 * kMillisecond;
 
   Bench() {
     std::memset(&message, 0, sizeof(message));
@@ -32,7 +32,7 @@ struct Bench {
   }
   // A millisecond later.
   bool next() {
-    now += kMs;
+    now += kMillisecond;
     ++message.tick;
     return send();
   }
@@ -86,14 +86,14 @@ TEST(StateWatch, ARepeatedTickIsNoYoungerThanItsTick) {
   Bench b;
   ASSERT_TRUE(b.send());
   const int64_t first = b.now;
-  b.now += kMs / 2;
+  b.now += kMillisecond / 2;
   EXPECT_TRUE(b.send());  // as one in 24 does
   EXPECT_EQ(b.now, b.watch.state().stamp_ns);
   for (int i = 0; i < 60; ++i) {
-    b.now += kMs;
+    b.now += kMillisecond;
     b.send();
   }
-  EXPECT_EQ(first + kMs, b.watch.state().stamp_ns);
+  EXPECT_EQ(first + kMillisecond, b.watch.state().stamp_ns);
   EXPECT_EQ(uint32_t{kHoldSilent}, b.causes());
   EXPECT_EQ(61u, b.status().repeated);
   EXPECT_TRUE(b.next());
@@ -104,9 +104,9 @@ TEST(StateWatch, ARepeatedTickIsNoYoungerThanItsTick) {
 TEST(StateWatch, SilenceIsAFaultOfTheBus) {
   Bench b;
   b.send();
-  b.now += 50 * kMs;
+  b.now += 50 * kMillisecond;
   EXPECT_EQ(0u, b.causes());
-  b.now += kMs;
+  b.now += kMillisecond;
   EXPECT_EQ(uint32_t{kHoldSilent}, b.causes());
   EXPECT_EQ(uint32_t{GAITD_HEALTH_BUS}, b.status().conditions);
   EXPECT_STREQ("the robot is silent: no state on rt/lowstate", b.status().text);

@@ -48,6 +48,7 @@ class ExternalWrench {
   // The feet have force sensors: without them nothing is estimated.
   bool sensed() const { return sensed_; }
   bool tared() const { return tared_; }
+  bool tare_waits() const { return waits_; }  // for rest, or it is being taken
   bool taring() const { return waits_ && time_at_rest_ > 0.0; }
   // A pull is believed in.
   bool pulled() const { return share_ > 0.0; }

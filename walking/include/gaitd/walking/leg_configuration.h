@@ -20,7 +20,8 @@ enum class LegState { kStraighten = 0, kStraight, kCollapsed, kBent, kExtend };
 //               other foot comes down lower or later
 //   bent        start of this leg's swing: picks the foot up
 //   extend      later in this leg's swing: straight, reaching for the ground
-// In walk-bent every state has the bent angle; a leg that carries goes there gently. Knee angles here are positive when bent.
+// In walk-bent every state has the bent angle; a leg that carries goes there gently. Knee angles
+// here are positive when bent.
 class LegConfiguration {
  public:
   // How a knee is drawn to its reference: stiffness (1/s^2), damping (1/s), and a weight that lets

@@ -28,8 +28,14 @@ class Motions {
   const GaitdMotions& state() const { return motions_; }
 
  private:
-  Refusal check_segment(const GaitdMotion& motion, int i, const GaitdGaitState& gait) const;
-  Refusal check_pelvis(const GaitdMotion& motion, const GaitdGaitState& gait) const;
+  // From the way point before, or from where it is told to be now, to way point `i`.
+  Refusal check_segment(const GaitdMotion& motion, int i, const GaitdGaitState& gait,
+                        const GaitdTaskReferences& references) const;
+  // Where the pelvis comes by on its way, which it may begin while it still moves.
+  Refusal check_way(const GaitdMotion& motion, const GaitdGaitState& gait,
+                    const GaitdTaskReferences& references) const;
+  Refusal check_pelvis(const GaitdMotion& motion, const GaitdGaitState& gait,
+                       const GaitdTaskReferences& references) const;
   Refusal check_chest(const GaitdMotion& motion, const GaitdTaskReferences& references) const;
   Refusal check_arm(const JointChain& arm, const GaitdMotion& motion,
                     const GaitdTaskReferences& references) const;
