@@ -45,7 +45,8 @@ expect: {no_fall: true}
 SCENARIO
 }
 
-# wait_until COMMAND...: until it succeeds; false after 1200 attempts, longer than any busy machine takes.
+# wait_until COMMAND...: until it succeeds; gives up after 1200 attempts: a minute at least, more than a busy machine
+# needs.
 wait_until() {
   local attempt
   for ((attempt = 0; attempt < 1200; ++attempt)); do
@@ -98,7 +99,9 @@ interrupt_first_run() {
   local campaign=$!
   plays_or_ended() { pgrep -P "$1" -x gaitctl >/dev/null || ! kill -0 "$1" 2>/dev/null; }
   wait_until plays_or_ended "$campaign" || true
-  kill -INT "$campaign" 2>/dev/null || true
+  # A signal that comes before it listens is lost.
+  has_ended_by_signal() { ! kill -INT "$1" 2>/dev/null; }
+  wait_until has_ended_by_signal "$campaign" || kill -KILL "$campaign"
   wait "$campaign" || true
 }
 

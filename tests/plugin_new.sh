@@ -1,5 +1,5 @@
-# `gaitctl plugin new`: a project for every layer, from every variant; one of them is built, checked
-# and takes over while the robot walks, and the robot walks in a new backend.
+# `gaitctl plugin new`: a project for every layer, from every variant; one of them is built, and its tests pass. That of
+# a backend is built by the test `backends`.
 source "$(dirname "$0")/common.sh"
 cd "$scratch"
 

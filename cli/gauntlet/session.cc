@@ -21,7 +21,7 @@ class Session {
       now_ += what < 4 ? walk() : what < 6 ? drive() : what < 8 ? footstep() : pose();
       if (draws_.whole("mode", 0, 3, act_) == 0) change_mode(begin);
       if (draws_.whole("push", 0, 3, act_) == 0) push(begin);
-      // Half of what follows comes while the robot still walks.
+      // Half of what follows does not wait until this has ended.
       if (draws_.coin("wait", act_)) now_ += draws_.between("rest", 0.0, 3.0, act_);
     }
     std::ranges::stable_sort(said_, {}, &Said::at);

@@ -33,7 +33,7 @@ CommandReply Pipeline::handhold(const Command& command) {
     refusal = walking::refuse(
         "handhold.take: the feet of this robot have no force sensors: the forces on a hand would "
         "be taken for forces on the feet");
-  } else if (external_.taring()) {
+  } else if (external_.tare_waits()) {
     refusal = walking::refuse(
         "handhold.take: what pulls at the robot is being tared, and the hand would be a part of "
         "it; again in two seconds");

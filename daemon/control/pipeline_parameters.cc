@@ -98,8 +98,7 @@ CommandReply Pipeline::set_parameter(const Command& command) {
   return reply;
 }
 
-// Clamps that whoever brings up a robot has lowered. A layer's own limits are those of a variant
-// that somebody tries.
+// The limits that are lowered for a bring-up. What a layer limits by itself is up to its variant.
 walking::Refusal Pipeline::too_weak_to_walk() const {
   for (int i = 0; i < parameters_->size(); ++i) {
     const LiveParameters::Row& row = parameters_->row(i);

@@ -45,7 +45,7 @@ Column pelvis_height(const RunData& run) {
 }
 
 // Ticks with a robot under control, and what becomes of it soon after: one that is laid down later,
-// or has never stood, has not fallen.
+// or has never stood, has not fallen unless the fault `fall` says so.
 std::vector<bool> judged(const RunData& run) {
   std::vector<bool> ticks = run.controlled();
   double since = -std::numeric_limits<double>::infinity();  // s

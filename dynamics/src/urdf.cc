@@ -303,7 +303,7 @@ class TreeBuilder {
     body.mass = merged.mass;
     Vector3d::Map(body.com) = merged.com;
     Matrix3d m = merged.inertia;
-    if (merged.mass > 0 && m.isZero(0)) {
+    if (merged.mass > 0 && m.cwiseAbs().maxCoeff() < kNoInertia * merged.mass) {
       const double radius = std::cbrt(3.0 * merged.mass / (4.0 * M_PI * kWater));
       m = 0.4 * merged.mass * radius * radius * Matrix3d::Identity();
       xml_.add_warning(body_lines_[i],

@@ -15,7 +15,6 @@ namespace gaitd::dynamics {
 namespace {
 
 constexpr double kContinuousLimit = 1e9;  // rad
-constexpr double kNoInertia = 1e-12;      // m^2, over the mass: of a point
 
 Eigen::Vector3d to_vector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 

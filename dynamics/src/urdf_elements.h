@@ -11,6 +11,8 @@
 
 namespace gaitd::dynamics {
 
+inline constexpr double kNoInertia = 1e-12;  // m^2, over the mass: of a point
+
 struct UrdfLinkElement {
   int line = 0;
   std::string name;

@@ -304,7 +304,7 @@ class Robot:
         return dict(self.call("handhold.release", **_given(hand=hand)))
 
     def tare(self) -> Dict[str, Any]:
-        """Takes what seems to pull at the standing robot for nothing: nobody touches it now."""
+        """Takes what seems to pull at the standing robot for nothing: nobody touches it now, nor in the next two seconds."""
         return dict(self.call("tare"))
 
     def push(

@@ -173,7 +173,7 @@ Refusal Motions::check_way(const GaitdMotion& motion, const GaitdGaitState& gait
   for (int k = 1; k <= kSamples; ++k) {
     const PosePath::Sample at = way.at(way.duration() * k / kSamples);
     const Eigen::Vector3d icp = at.position + at.velocity / gait.omega;
-    const Eigen::Vector3d turn = sdk::log_so3(at.orientation);
+    const Eigen::Vector3d turn = sdk::roll_pitch_yaw(at.orientation);
     const bool shifted = !at.position.head<2>().isZero(0.0) || !at.velocity.head<2>().isZero(0.0);
     const bool beside = shifted && stands(gait) &&
                         feet.inside_distance(rest + turned(heading_of(gait), icp.data())) < 0.0;

@@ -105,8 +105,8 @@ Refusal Payload::estimate(int body, const ExternalWrench& external, bool stands)
   }
   if (external.tare_waits()) {
     return refuse(
-        "payload.estimate: a tare is being taken, the load would be in it; put it down, and try "
-        "again when the robot has stood still for two seconds");
+        "payload.estimate: a tare is being taken, and the load would be in it; put it down until "
+        "the robot has stood still for two seconds, then take it up and try again");
   }
   body_ = body;
   begin_round(1);

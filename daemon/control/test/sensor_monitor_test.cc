@@ -22,9 +22,9 @@ using Suspicion = SensorMonitor::Suspicion;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Sensors that never say the same twice.
-class Bench {
+class MonitorBench {
  public:
-  Bench() : monitor(atlas()), data(std::make_unique<TickData>()) {
+  MonitorBench() : monitor(atlas()), data(std::make_unique<TickData>()) {
     GaitdSensors& s = data->readings;
     s.joint_count = atlas().joint_count;
     s.imu_count = 1;
@@ -94,7 +94,7 @@ class Bench {
 };
 
 TEST(SensorMonitor, PassesOnWhatIsCredible) {
-  Bench b;
+  MonitorBench b;
   for (int i = 0; i < 200; ++i) {
     b.run(1);
     EXPECT_EQ(b.data->sensors.joints[3].position, b.data->readings.joints[3].position);
@@ -106,7 +106,7 @@ TEST(SensorMonitor, PassesOnWhatIsCredible) {
 }
 
 TEST(SensorMonitor, HoldsTheLastReadingThroughASpike) {
-  Bench b;
+  MonitorBench b;
   b.run(20);
   const double before = b.data->sensors.imus[0].angular_rate[1];
   b.next();
@@ -125,7 +125,7 @@ TEST(SensorMonitor, HoldsTheLastReadingThroughASpike) {
 }
 
 TEST(SensorMonitor, ALastingFaultGrowsOldUnderItsName) {
-  Bench b;
+  MonitorBench b;
   const int knee = b.joint("l_leg_kny");
   b.run(20);
   for (int i = 0; i < 30; ++i) {
@@ -138,7 +138,7 @@ TEST(SensorMonitor, ALastingFaultGrowsOldUnderItsName) {
 }
 
 TEST(SensorMonitor, BelievesAJumpThatStays) {
-  Bench b;
+  MonitorBench b;
   b.run(20);
   for (int i = 0; i < 5; ++i) {
     b.next();
@@ -149,7 +149,7 @@ TEST(SensorMonitor, BelievesAJumpThatStays) {
 }
 
 TEST(SensorMonitor, NamesASensorThatIsSilent) {
-  Bench b;
+  MonitorBench b;
   b.run(20);
   b.next();
   b.data->readings.feet[1].info.age = 0.05;
@@ -159,7 +159,7 @@ TEST(SensorMonitor, NamesASensorThatIsSilent) {
 }
 
 TEST(SensorMonitor, AnOldImuIsLeftForABetterOne) {
-  Bench b;
+  MonitorBench b;
   b.run(20);
   const auto silent_for = [&b](double second) {
     b.next();
@@ -180,14 +180,14 @@ TEST(SensorMonitor, AnOldImuIsLeftForABetterOne) {
 }
 
 TEST(SensorMonitor, ReadingsThatWereNeverCredibleAreNotValid) {
-  Bench b;
+  MonitorBench b;
   b.data->readings.imus[0].angular_rate[0] = kNan;
   b.check();
   EXPECT_EQ(b.data->sensors.imus[0].info.valid, 0u);
 }
 
 TEST(SensorMonitor, FindsAnImuThatFreezesOnlyByNewFrames) {
-  Bench b;
+  MonitorBench b;
   b.run(20);
   const GaitdImuSensor frozen = b.data->readings.imus[0];
   for (int i = 0; i < 50; ++i) {  // no new frames: late, not frozen
@@ -209,7 +209,7 @@ TEST(SensorMonitor, FindsAnImuThatFreezesOnlyByNewFrames) {
 
 TEST(SensorMonitor, AFootSensorMayRepeatNothingInTheAirButNotUnderLoad) {
   for (const bool carries : {false, true}) {
-    Bench b;
+    MonitorBench b;
     b.run(20);
     b.data->gait.footholds[0].contact = carries ? GAITD_CONTACT_FULL : GAITD_CONTACT_NONE;
     const auto zeros = [&](int ticks) {
@@ -227,7 +227,7 @@ TEST(SensorMonitor, AFootSensorMayRepeatNothingInTheAirButNotUnderLoad) {
 }
 
 TEST(SensorMonitor, AFootThatComesDownLateAndSoftlyHasADeadSensorOnlyIfItStaysThere) {
-  Bench b;
+  MonitorBench b;
   b.run(20);
   b.data->gait.footholds[0].contact = GAITD_CONTACT_NONE;
   b.data->gait.next_side = 0;
@@ -248,7 +248,7 @@ TEST(SensorMonitor, AFootThatComesDownLateAndSoftlyHasADeadSensorOnlyIfItStaysTh
 
 TEST(SensorMonitor, AJointThatIsToldToMoveAndDoesNotIsStuck) {
   for (const bool commanded : {false, true}) {
-    Bench b;
+    MonitorBench b;
     const int knee = b.joint("l_leg_kny");
     b.run(20);
     const double position = b.data->readings.joints[knee].position;
@@ -265,7 +265,7 @@ TEST(SensorMonitor, AJointThatIsToldToMoveAndDoesNotIsStuck) {
 
 // The gait of a robot that tips over one foot still believes in the other one.
 TEST(SensorMonitor, AFootInTheAirIsNotFrozenWhateverTheGaitBelieves) {
-  Bench b;
+  MonitorBench b;
   b.run(20);
   b.lift(GAITD_RIGHT, 0.9, 1000);
   EXPECT_EQ(b.data->sensors.feet[GAITD_RIGHT].info.age, 0.0);
@@ -273,7 +273,7 @@ TEST(SensorMonitor, AFootInTheAirIsNotFrozenWhateverTheGaitBelieves) {
 }
 
 TEST(SensorMonitor, AFootThatHasToCarryAndShowsNothingIsFrozen) {
-  Bench b;
+  MonitorBench b;
   b.run(20);
   b.lift(GAITD_RIGHT, 0.0, 160);
   EXPECT_GT(b.data->sensors.feet[GAITD_RIGHT].info.age, 0.02);
@@ -284,7 +284,7 @@ TEST(SensorMonitor, AFootThatHasToCarryAndShowsNothingIsFrozen) {
 TEST(SensorMonitor, ARobotThatHangsOrLiesHasNoFrozenFeet) {
   for (const SafetyState state : {SafetyState::kDisarmed, SafetyState::kReadying,
                                   SafetyState::kTesting, SafetyState::kFault}) {
-    Bench b;
+    MonitorBench b;
     b.data->safety = state;
     b.run(20);
     b.lift(GAITD_RIGHT, 0.0, 1000);
@@ -295,7 +295,7 @@ TEST(SensorMonitor, ARobotThatHangsOrLiesHasNoFrozenFeet) {
 // In a simulation without noise nothing changes any more once it lies still.
 TEST(SensorMonitor, ARobotAtPerfectRestHasNoFrozenSensors) {
   for (const bool controlled : {false, true}) {
-    Bench b;
+    MonitorBench b;
     b.data->safety = controlled ? SafetyState::kStanding : SafetyState::kDisarmed;
     b.run(20);
     const GaitdSensors rest = b.data->readings;
@@ -314,7 +314,7 @@ TEST(SensorMonitor, ARobotAtPerfectRestHasNoFrozenSensors) {
 }
 
 TEST(SensorMonitor, ALightSlowJointMayBeFlung) {
-  Bench b;
+  MonitorBench b;
   const int neck = b.joint("neck_ay");
   ASSERT_LT(3.0 * atlas().joints[neck].velocity_limit, 28.0);
   b.run(20);
@@ -329,7 +329,7 @@ TEST(SensorMonitor, ALightSlowJointMayBeFlung) {
 
 TEST(SensorMonitor, AJointThatBalanceDoesNotNeedIsDroppedAndStopsNobody) {
   for (const Suspicion how : {Suspicion::kUntrue, Suspicion::kSilent, Suspicion::kStuck}) {
-    Bench b;
+    MonitorBench b;
     const int neck = b.joint("neck_ay");
     b.run(20);
     const double last = b.passed(neck).position;
@@ -365,7 +365,7 @@ TEST(SensorMonitor, AJointThatBalanceDoesNotNeedIsDroppedAndStopsNobody) {
 }
 
 TEST(SensorMonitor, WhoComesUpNeedsEveryJoint) {
-  Bench b;
+  MonitorBench b;
   b.data->safety = SafetyState::kReadying;
   const int neck = b.joint("neck_ay");
   b.run(20);

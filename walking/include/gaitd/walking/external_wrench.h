@@ -49,7 +49,6 @@ class ExternalWrench {
   bool sensed() const { return sensed_; }
   bool tared() const { return tared_; }
   bool tare_waits() const { return waits_; }  // for rest, or it is being taken
-  bool taring() const { return waits_ && time_at_rest_ > 0.0; }
   // A pull is believed in.
   bool pulled() const { return share_ > 0.0; }
   // Moment first, about the CoM, W axes; N m and N. Zero before the tare; pushes are not in it.
