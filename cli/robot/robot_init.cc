@@ -163,7 +163,8 @@ bool guess_robot(const std::string& urdf, const std::string& name,
   for (const std::string& glob : fix) {
     const auto& unused = guess->urdf.unused_fixed;
     if (std::find(unused.begin(), unused.end(), glob) == unused.end()) continue;
-    *error = urdf + ": no joint is called " + glob + " (--fix)";
+    *error = urdf;
+    error->append(": no joint is called ").append(glob).append(" (--fix)");
     return false;
   }
   if (!find_pelvis(text, guess, error)) {
