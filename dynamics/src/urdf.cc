@@ -61,7 +61,7 @@ class TreeBuilder {
     report_loops(root);
     root = without_world(root);
     Isometry3d X_BR = Isometry3d::Identity();
-    if (!root_link.empty() && !place_root(root_link, root, &X_BR)) return;
+    if (!root_link.empty() && !place_root(root_link, &root, &X_BR)) return;
     X_BR = options.R_LB.normalized().inverse() * X_BR;
     walk(root, root_link.empty() ? root : root_link, X_BR);
     finish_bodies();
@@ -72,7 +72,7 @@ class TreeBuilder {
     std::string link;
     int body;  // of the parent link, or of the link itself for the root
     Isometry3d X_BP;
-    const UrdfJointElement* joint;  // null for the root
+    const UrdfJointElement* joint;  // by which it was reached; null for the first
   };
 
   void index_links() {
@@ -182,40 +182,51 @@ class TreeBuilder {
     }
   }
 
-  // Pose of the root in the frame of `name`, which becomes body 0.
-  bool place_root(const std::string& name, const std::string& root, Isometry3d* X_BR) {
+  // From the root of the file to the uppermost link that is fixed to `name`, whose frame becomes
+  // that of body 0, and the pose of that link there.
+  bool place_root(const std::string& name, std::string* root, Isometry3d* X_BR) {
     if (!links_.contains(name)) {
       xml_.add_error(0,
                      "root link " + in_quotes(name) + " does not exist; name a link of the file");
       return false;
     }
     Isometry3d X_RB = Isometry3d::Identity();
+    std::string top = name;  // of the links fixed to it
     std::set<std::string> passed;
-    for (std::string at = name; at != root;) {
+    bool fixed = true;
+    for (std::string at = name; at != *root;) {
       if (!passed.insert(at).second) return false;  // a loop, which was reported
       const auto found = parent_joint_.find(at);
       if (found == parent_joint_.end()) {
         xml_.add_error(links_[at]->line, "root link " + in_quotes(name) +
                                              " is the empty one on which the robot floats, "
                                              "expected " +
-                                             in_quotes(root) + " or a link fixed to it");
+                                             in_quotes(*root) + " or a link of the robot");
         return false;
       }
       const UrdfJointElement& joint = *found->second;
-      if (joint.kind != UrdfJointKind::kFixed) {
-        xml_.add_error(joint.line,
-                       "root link " + in_quotes(name) + " moves against the root " +
-                           in_quotes(root) + " by joint " + in_quotes(joint.name) +
-                           ", expected the root or a link fixed to it; turn the "
-                           "joints between them around in the URDF, so that the pelvis, "
-                           "from which both legs hang, is its root");
-        return false;
-      }
-      X_RB = joint.X_PJ * X_RB;
       at = joint.parent;
+      fixed = fixed && joint.kind == UrdfJointKind::kFixed;
+      if (!fixed) continue;
+      X_RB = joint.X_PJ * X_RB;
+      top = at;
     }
     *X_BR = X_RB.inverse();
+    *root = top;
     return true;
+  }
+
+  // Every joint of a link but the one by which it was reached.
+  std::vector<const UrdfJointElement*> onward(const Visit& visit) {
+    std::vector<const UrdfJointElement*> joints = children_[visit.link];
+    const auto up = parent_joint_.find(visit.link);
+    if (up != parent_joint_.end() && up->second->kind != UrdfJointKind::kFloating) {
+      joints.push_back(up->second);
+      std::sort(joints.begin(), joints.end(),
+                [](const auto* a, const auto* b) { return a->name < b->name; });
+    }
+    std::erase(joints, visit.joint);
+    return joints;
   }
 
   void walk(const std::string& root, const std::string& base_name, const Isometry3d& X_BR) {
@@ -226,17 +237,22 @@ class TreeBuilder {
       stack.pop_back();
       int body = visit.body;
       Isometry3d X_BL = visit.X_BP;
-      if (visit.joint != nullptr) {
-        X_BL = visit.X_BP * visit.joint->X_PJ;
-        if (visit.joint->kind != UrdfJointKind::kFixed) {
-          body = add_joint(*visit.joint, visit.body, X_BL);
+      if (const UrdfJointElement* joint = visit.joint; joint != nullptr) {
+        // Above the pelvis joints are passed from their child to their parent: the same positions
+        // turn about the opposite axis.
+        const bool down = joint->child == visit.link;
+        if (down) X_BL = X_BL * joint->X_PJ;
+        if (joint->kind != UrdfJointKind::kFixed) {
+          body = add_joint(*joint, down, visit.body, X_BL);
           X_BL = Isometry3d::Identity();
         }
+        if (!down) X_BL = X_BL * joint->X_PJ.inverse();
       }
       add_link(*links_[visit.link], body, X_BL);
-      const auto& joints = children_[visit.link];
+      const auto joints = onward(visit);
       for (auto it = joints.rbegin(); it != joints.rend(); ++it) {
-        stack.push_back({(*it)->child, body, X_BL, *it});
+        stack.push_back(
+            {(*it)->parent == visit.link ? (*it)->child : (*it)->parent, body, X_BL, *it});
       }
     }
   }
@@ -253,9 +269,10 @@ class TreeBuilder {
     body.joint = index - 1;
   }
 
-  int add_joint(const UrdfJointElement& from, int parent, const Isometry3d& X_PJ) {
+  int add_joint(const UrdfJointElement& from, bool down, int parent, const Isometry3d& X_PJ) {
     const int body = static_cast<int>(merged_.size());
-    begin_body(from.child, links_[from.child]->line, parent);
+    const std::string& carried = down ? from.child : from.parent;
+    begin_body(carried, links_[carried]->line, parent);
     if (body >= GAITD_MAX_BODIES) return body;
     GaitdJoint& joint = result_.model.joints[body - 1];
     copy_name(from.name, joint.name);
@@ -265,7 +282,7 @@ class TreeBuilder {
     joint.child_body = body;
     Vector3d::Map(joint.origin) = X_PJ.translation();
     copy_rotation(X_PJ.linear(), joint.orientation);
-    Vector3d::Map(joint.axis) = from.axis;
+    Vector3d::Map(joint.axis) = down ? from.axis : Vector3d(-from.axis);
     joint.position_min = from.lower;
     joint.position_max = from.upper;
     joint.velocity_limit = from.velocity;

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "gaitd/dynamics/dynamics.h"
 
@@ -212,6 +214,59 @@ TEST(Urdf, ALinkFixedToTheRootCanBeTheBase) {
   const UrdfLink* base = result.find_link("base");
   EXPECT_NEAR((base->R_BL.inverse() * -base->p_BL - Eigen::Vector3d(0, 0.1, -0.4)).norm(), 0,
               1e-15);
+}
+
+// Of many robots the torso is the root and the pelvis hangs on the waist.
+TEST(Urdf, APelvisThatHangsOnMovingJointsIsTurnedIntoTheRoot) {
+  const std::string slide =
+      "<axis xyz='1 0 1'/><limit lower='-1' upper='2' velocity='3' effort='4'/>";
+  const std::string text =
+      robot(link("torso") + link("head") + link("waist") + link("plate") + link("pelvis") +
+            link("leg") + joint("neck", "revolute", "torso", "head", kLimit) +
+            joint("lift", "prismatic", "torso", "waist", slide) +
+            joint("bolt", "fixed", "waist", "plate") +
+            joint("turn", "revolute", "plate", "pelvis", kLimit, "0.3 0 -0.1") +
+            joint("hip", "revolute", "pelvis", "leg", kLimit));
+  UrdfOptions options;
+  options.root_link = "pelvis";
+  options.R_LB = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ());
+  const UrdfResult from_torso = load_urdf_text(text);
+  const UrdfResult from_pelvis = load_urdf_text(text, "<text>", options);
+  ASSERT_TRUE(from_torso.ok() && from_pelvis.ok()) << all(from_pelvis.errors);
+  const GaitdModel& model = from_pelvis.model;
+  ASSERT_EQ(model.joint_count, 4);
+  EXPECT_STREQ(model.bodies[0].name, "pelvis");
+  EXPECT_STREQ(model.joints[0].name, "hip");
+  EXPECT_STREQ(model.joints[1].name, "turn");
+  EXPECT_STREQ(model.bodies[2].name, "plate");
+  EXPECT_STREQ(model.joints[2].name, "lift");
+  EXPECT_STREQ(model.bodies[3].name, "torso");
+  EXPECT_NEAR(model.total_mass, from_torso.model.total_mass, 1e-12);
+
+  // At the same positions of the same joints all links stand to each other as before.
+  const auto poses_of_links = [](const UrdfResult& result) {
+    Eigen::VectorXd q(result.model.joint_count);
+    for (int i = 0; i < q.size(); ++i) {
+      const std::string name = result.model.joints[i].name;
+      q[i] = name == "neck" ? 0.4 : name == "lift" ? -0.3 : name == "turn" ? 0.7 : -0.5;
+    }
+    Kinematics kinematics(result.model);
+    kinematics.update(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(),
+                      dynamics::Vector6d::Zero(), q, Eigen::VectorXd::Zero(q.size()));
+    std::map<std::string, Eigen::Isometry3d> poses;
+    for (const UrdfLink& link : result.links) {
+      poses[link.name] = kinematics.X_WB(link.body) * Eigen::Translation3d(link.p_BL) * link.R_BL;
+    }
+    return std::pair(poses, Eigen::Vector3d(poses["leg"].inverse() * kinematics.com()));
+  };
+  const auto [expected, com] = poses_of_links(from_torso);
+  const auto [got, com_got] = poses_of_links(from_pelvis);
+  for (const auto& [name, pose] : got) {
+    EXPECT_TRUE((got.at("leg").inverse() * pose)
+                    .isApprox(expected.at("leg").inverse() * expected.at(name), 1e-12))
+        << name;
+  }
+  EXPECT_LT((com - com_got).norm(), 1e-12);
 }
 
 TEST(Urdf, ContinuousJointsHaveNoStopsAndDampingIsKept) {

@@ -12,8 +12,8 @@
 namespace gaitd::dynamics {
 
 struct UrdfOptions {
-  // Link whose frame becomes the frame of body 0 (the pelvis). It must be the root of the tree or
-  // be fixed to it. Empty: the root.
+  // Link whose frame becomes the frame of body 0 (the pelvis). Joints between it and the root of the
+  // file are turned around: they carry the parent instead of the child. Empty: the root.
   std::string root_link;
   // Axes of body 0 in those of that link: for a pelvis whose x axis does not point forward.
   Eigen::Quaterniond R_LB = Eigen::Quaterniond::Identity();
@@ -46,9 +46,10 @@ struct UrdfResult {
 };
 
 // Reads the file at `path`. Joints are numbered depth-first from the root, the joints of one link
-// in alphabetical order; body i + 1 is the child of joint i and its frame is the joint frame at
-// position zero. Revolute, continuous (limits +-1e9 rad), prismatic and fixed joints are taken, and
-// a floating one between an empty root and the robot. Joints with <mimic> are fixed.
+// in alphabetical order; body i + 1 is what joint i carries and its frame is the joint frame at
+// position zero (of a joint that was turned around: of its child link). Revolute, continuous
+// (limits +-1e9 rad), prismatic and fixed joints are taken, and a floating one between an empty
+// root and the robot. Joints with <mimic> are fixed.
 // Never throws on a bad file: every problem becomes a text in `errors` that says where (file and
 // line), what was found, what was expected and what to do. Allocates; not for the real-time path.
 UrdfResult load_urdf(const std::string& path, const UrdfOptions& options = {});
