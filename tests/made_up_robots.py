@@ -4,7 +4,8 @@ Sizes of 0.3 to 1.2 of a human of 1.8 m, hips of every order and tilted, soles o
 cylinders and meshes (STL in both forms, OBJ, COLLADA, in collisions or only in visuals), IMUs in
 pelvis and chest or nowhere, and the oddities of descriptions on the net: joints that mimic, drives
 without effort, a floating world, a pelvis that looks elsewhere, links with axes of their own, toes,
-inertias that rounding made impossible, names that say nothing.
+inertias that no body has, names that say nothing, a root that is the chest, joints without limits,
+feet without shapes.
 """
 import argparse
 import math
@@ -48,8 +49,8 @@ AXES = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1]}
 class Robot:
     """Links are placed with all axes parallel; `axes` of a link may then be turned."""
 
-    def __init__(self, name, size=1.0, seen=None):
-        self.name, self.size, self.seen = name, size, seen or {}
+    def __init__(self, name, size=1.0, seen=None, limits=True):
+        self.name, self.size, self.seen, self.limits = name, size, seen or {}, limits
         self.parts = []
         self.axes = {}
 
@@ -82,7 +83,9 @@ class Robot:
         if axis[0] == "-":
             direction = [-a for a in direction]
         limit = f'<limit lower="{limits[0]}" upper="{limits[1]}"'
-        if effort is not None:
+        if not self.limits:
+            limit = "<limit"
+        elif effort is not None:
             limit += f' effort="{effort * s**4:.6g}" velocity="{12 / math.sqrt(s):.5g}"'
         moves = f'<axis xyz="{text(direction)}"/>{limit}/>{more}' if kind == "revolute" else ""
         rotation = self.axes[child]
@@ -452,6 +455,34 @@ def skewed(folder):
     r.write(folder)
 
 
+def rooted(folder):
+    """The chest is the root; the pelvis hangs on the waist, by a link without mass."""
+    r = Robot("rooted", 0.65)
+    r.link("chest", 26.0, [0, 0, 0.2], [0.25, 0.36, 0.5])
+    imu(r, "chest", [0, 0, 0.1])
+    r.empty("waist_cross")
+    r.joint("waist_yaw", "chest", "waist_cross", [0, 0, -0.1], "z", (-0.6, 0.6), 250.0)
+    pelvis(r)
+    r.joint("waist_pitch", "waist_cross", "pelvis", [0, 0, -0.06], "y", (-0.6, 0.6), 250.0)
+    for side in ("left", "right"):
+        leg(r, side, "yxz", sole=sole_of(r, box_sole))
+        arm(r, side)
+    r.write(folder)
+
+
+def bare(folder):
+    """No joint has limits, no foot a shape, and an inertia is one that no body has."""
+    r = Robot("bare", 0.45, limits=False)
+    pelvis(r)
+    torso(r, waist="z")
+    r.link("head", 3.0, [0, 0, 0.08], [0.15, 0.15, 0.2], inertia=[0.0003, 0.0004, 0.0014])
+    r.joint("neck", "chest", "head", [0, 0, 0.5], "z")
+    for side in ("left", "right"):
+        leg(r, side, "zxy", sole=lambda link, y: "")
+        arm(r, side)
+    r.write(folder)
+
+
 def five_joints(name, width):
     """Legs of five joints: nothing rolls the feet, which are bars."""
     def make(folder):
@@ -468,7 +499,7 @@ def five_joints(name, width):
 
 
 ROBOTS = [tiny, spheres, sideways, tilted, toes, backwards, nameless, twisted, crouched,
-          skewed, five_joints("narrow", 0.047), five_joints("wide", 0.12)]
+          skewed, rooted, bare, five_joints("narrow", 0.047), five_joints("wide", 0.12)]
 
 
 def main():

@@ -1,14 +1,19 @@
-# Ten made-up humanoids, as different as published ones are, are described by `gaitctl robot init`
+# Twelve made-up humanoids, as different as published ones are, are described by `gaitctl robot init`
 # alone and walk, without an edit.
 source "$(dirname "$0")/common.sh"
 
-robots=(tiny spheres sideways tilted toes backwards nameless twisted crouched skewed)
+robots=(tiny spheres sideways tilted toes backwards nameless twisted crouched skewed rooted bare)
 python3 "$GAITD_SOURCE/tests/made_up_robots.py" "$scratch/urdf"
+
+expect 1 gaitctl robot init "$scratch/urdf/bare/bare.urdf" -o "$scratch/bare" 2>"$scratch/bare.txt"
+grep -q 'no shape to find the sole from.*--sole LENGTH' "$scratch/bare.txt" || fail "bare: $(cat "$scratch/bare.txt")"
 
 for name in "${robots[@]}"; do
   folder=$scratch/$name
+  told=()
+  [[ $name == bare ]] && told=(--sole 0.108,0.054,0.0405,0.0225)
   start=$(date +%s%N)
-  expect 0 gaitctl robot init "$scratch/urdf/$name/$name.urdf" -o "$folder" >"$folder.txt"
+  expect 0 gaitctl robot init "$scratch/urdf/$name/$name.urdf" -o "$folder" "${told[@]}" >"$folder.txt"
   took=$((($(date +%s%N) - start) / 1000000))
   ((took <= 5000)) || fail "$name: robot init took $took ms, expected at most 5000"
   for file in robot.yaml stand.yaml walk.yaml posture.svg; do
@@ -25,7 +30,13 @@ grep -q 'link: torso_imu\|link: chest' "$scratch/spheres/robot.yaml" || fail "sp
 grep -q 'left_finger_2_joint  # mimics' "$scratch/spheres/robot.yaml" || fail "spheres: mimic not fixed"
 grep -q 'left_toe  # a toe' "$scratch/toes/robot.yaml" || fail "toes: not fixed"
 grep -q 'neck  # the URDF gives no effort' "$scratch/toes/robot.yaml" || fail "toes: neck not fixed"
+grep -q 'pelvis: pelvis' "$scratch/rooted/robot.yaml" || fail "rooted: the pelvis is not body 0"
+grep -q 'left_knee: {effort: .*, velocity: .*, range: \[' "$scratch/bare/robot.yaml" || fail "bare: no drive_limits"
 grep -q 'left_ft of the URDF' "$scratch/tilted/robot.yaml" || fail "tilted: force sensor not found"
+sed '/^  left_knee: {effort/d' "$scratch/bare/robot.yaml" >"$scratch/bare/less.yaml"
+expect 1 gaitd --robot "$scratch/bare/less.yaml" --check-config >"$scratch/less.txt" 2>&1
+grep -q 'drive_limits: expected effort and velocity of left_knee, which the URDF does not give' "$scratch/less.txt" ||
+  fail "bare: $(cat "$scratch/less.txt")"
 
 # What is there already stays.
 expect 1 gaitctl robot init "$scratch/urdf/tiny/tiny.urdf" -o "$scratch/tiny" 2>/dev/null
@@ -44,4 +55,4 @@ for name in "${robots[@]}"; do
   fi
 done
 ((walked == ${#robots[@]})) || fail "$walked of ${#robots[@]} robots walk as they were described"
-printf '%d of 10 robots walk as they were described\n' "$walked"
+printf '%d of 12 robots walk as they were described\n' "$walked"

@@ -32,7 +32,7 @@ Findings check_reach(const GaitdModel& model) {
         {"reach", Severity::kProblem,
          format("the origin of the pelvis is %.3f m above the soles, where legs are %.3f m long",
                 height, length),
-         "give the link from which the legs hang a frame of its own near the hips (in the URDF)"}};
+         "put the origin of the pelvis near the hips: `pelvis: {link, xyz}` in robot.yaml"}};
   }
   const bool bent = reserve > kLeastBend * length;
   return {{"reach", bent ? Severity::kOk : Severity::kWarning,

@@ -10,10 +10,10 @@ namespace gaitd::porting {
 std::vector<std::pair<std::string, std::string>> describe_robot(const std::string& urdf,
                                                                 const std::string& named,
                                                                 const std::string& name,
-                                                                const std::vector<std::string>& fix,
+                                                                const Told& told,
                                                                 std::string* error) {
   Guess guess;
-  if (!guess_robot(urdf, name, fix, &guess, error)) return {};
+  if (!guess_robot(urdf, name, told, &guess, error)) return {};
   return {{"robot.yaml", robot_yaml(guess, named)},
           {"stand.yaml", stand_scenario(guess)},
           {"walk.yaml", walk_scenario(guess)},

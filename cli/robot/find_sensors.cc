@@ -87,7 +87,7 @@ FrameGuess find_imu(const Guess& guess) {
   }
   if (best > 0) return imu;
   imu.link = model.bodies[0].name;
-  imu.X_LF.linear() = guess.options.R_LB.toRotationMatrix();
+  imu.X_LF = guess.options.X_LB();
   imu.why = {"The URDF names none: proposed at the origin of the pelvis. Say where it is."};
   return imu;
 }

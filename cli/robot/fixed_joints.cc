@@ -66,12 +66,12 @@ std::vector<FixedGuess> joints_to_fix(const dynamics::UrdfOutline& outline) {
       fixed.push_back({joint.name, "mimics another joint"});
     } else if (is_finger(joint)) {
       fixed.push_back({joint.name, "named like a finger or a part of the face"});
-    } else if (!joint.has_effort) {
-      fixed.push_back({joint.name, "the URDF gives no effort or no velocity of its drive"});
-    } else if (!joint.has_range) {
-      fixed.push_back({joint.name, "the URDF gives no range or no axis"});
     } else if (without_mass.count(joint.child) > 0) {
       fixed.push_back({joint.name, "nothing that it moves has a mass"});
+    } else if (!joint.has_effort) {
+      fixed.push_back({joint.name, "the URDF gives no effort or no velocity of its drive", true});
+    } else if (!joint.has_range) {
+      fixed.push_back({joint.name, "the URDF gives no range or no axis", true});
     }
   }
   fix_mirrors(outline, &fixed);

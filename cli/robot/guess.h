@@ -38,6 +38,24 @@ struct SoleGuess {
 struct FixedGuess {
   std::string joint;
   std::string why;
+  bool lacks_limits = false;  // the URDF gives no effort, velocity or range
+};
+
+// What a person knows better than the URDF.
+struct Told {
+  std::vector<std::string> fix;  // joints, by name or glob, that do not move
+  // m: length and width of a sole, the last joint of the leg above it, and its middle ahead of that
+  // joint. Empty: the shapes of the foot show it.
+  std::vector<double> sole;
+};
+
+// What the URDF does not say of a drive; 0: it does.
+struct DriveLimitGuess {
+  std::string joint;
+  double effort = 0.0;               // N m
+  double velocity = 0.0;             // rad/s
+  std::array<double, 2> range = {};  // rad
+  bool has_range = false;
 };
 
 // What the commanded gait takes from the size of the robot.
@@ -67,6 +85,8 @@ struct Guess {
   std::array<FrameGuess, 2> force_sensors;
   FrameGuess imu;
   Reasons posture_why;
+  std::vector<DriveLimitGuess> drive_limits;
+  Reasons drive_limits_why;
   Proportions proportions;
   Reasons proportions_why;
 };

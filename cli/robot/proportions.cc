@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gaitd/walking/swing_limits.h"
+
 namespace gaitd::porting {
 namespace {
 
@@ -14,6 +16,7 @@ constexpr double kTransfer = 0.3;      // s
 constexpr double kLength = 0.25;       // m
 constexpr double kSwingHeight = 0.13;  // m
 constexpr double kLikeAtlas = 0.25;    // of the scale
+constexpr double kSlowest = 4.0;       // of the swing by scale
 
 struct Scaled {
   const char* name;
@@ -27,6 +30,23 @@ constexpr Scaled kScaled[] = {{"step_adjuster.margin", 0.01, 1.0},
 double rounded(double value) {
   const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
   return std::round(value / unit) * unit;
+}
+
+// s, of the swing of a first step, or longer where hip and knee are too slow for that.
+double possible_swing(const GaitdModel& model, const Proportions& p) {
+  const walking::SwingLimits limits(model);
+  const double aside = 0.5 * model.nominal_foot_separation;
+  GaitdPose stance{{0.0, -aside, 0.0}, {0.0, 0.0, 0.0, 1.0}};
+  GaitdPose from{{-p.length, aside, 0.0}, {0.0, 0.0, 0.0, 1.0}};
+  GaitdFootstep step{};
+  step.side = GAITD_LEFT;
+  step.pose = {{p.length, aside, 0.0}, {0.0, 0.0, 0.0, 1.0}};
+  step.swing_height = p.swing_height;
+  for (step.swing_duration = p.swing; step.swing_duration < kSlowest * p.swing;
+       step.swing_duration *= 1.05) {
+    if (!limits.check(step, stance, from, 1).refused()) break;
+  }
+  return step.swing_duration;
 }
 
 }  // namespace
@@ -45,6 +65,13 @@ void find_proportions(Guess* guess) {
       format("Scaled from Atlas, whose centre of mass is %.2f m high: here %.2f m, so lengths are "
              "%.2f and times %.2f times as large.",
              kComHeight, height, p.scale, time));
+  const double swing = possible_swing(model, p);
+  if (swing <= p.swing) return;
+  const double slower = swing / p.swing;
+  p.swing = rounded(swing);
+  p.transfer = rounded(slower * p.transfer);
+  guess->proportions_why.push_back(
+      format("Hip or knee are slower than that: times are %.2f times longer.", slower));
 }
 
 std::vector<std::pair<std::string, double>> scaled_parameters(const Proportions& proportions) {

@@ -29,7 +29,7 @@ struct RobotArguments {
   std::string urdf;
   std::string folder;
   std::string name;
-  std::vector<std::string> fix;
+  porting::Told told;
   bool force = false;
 };
 
@@ -78,7 +78,7 @@ int init(const Context& context, const RobotArguments& arguments) {
   std::string error;
   const std::string name = arguments.name.empty() ? name_of(arguments.urdf) : arguments.name;
   const auto files = porting::describe_robot(arguments.urdf, from_folder(arguments.urdf, folder),
-                                             name, arguments.fix, &error);
+                                             name, arguments.told, &error);
   waiting.reset();
   if (files.empty()) return fail(context, kFailed, "robot init", error);
   const std::string failed = write_robot(folder, files);
@@ -130,10 +130,19 @@ void add_robot_command(CLI::App* app, Context* context) {
                        : std::string();
           },
           ""));
-  command->add_option("--fix", arguments->fix, "Joints, by name or glob, that do not move")
+  command->add_option("--fix", arguments->told.fix, "Joints, by name or glob, that do not move")
       ->type_name("GLOB")
       ->expected(1)
       ->take_all();
+  command
+      ->add_option(
+          "--sole", arguments->told.sole,
+          "Sole of each foot in m, where its shapes do not show it: the last joint of the leg "
+          "is HEIGHT above the ground, and the middle of the sole AHEAD of it")
+      ->type_name("LENGTH,WIDTH,HEIGHT,AHEAD")
+      ->delimiter(',')
+      ->expected(4)
+      ->check(CLI::Range(-2.0, 2.0));
   command->add_flag("--force", arguments->force, "Write over files that are there");
   command->callback([context, arguments] {
     context->action = [context, arguments] { return init(*context, *arguments); };

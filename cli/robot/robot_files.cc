@@ -121,6 +121,23 @@ void write_legs(const Guess& guess, Writer* out) {
   }
 }
 
+void write_drive_limits(const Guess& guess, Writer* out) {
+  if (guess.drive_limits.empty()) return;
+  out->line("");
+  out->comment(guess.drive_limits_why);
+  out->line("drive_limits:");
+  for (const DriveLimitGuess& limit : guess.drive_limits) {
+    std::string text;
+    const auto add = [&](const std::string& entry) { text += (text.empty() ? "" : ", ") + entry; };
+    if (limit.effort > 0.0) add("effort: " + number(limit.effort));
+    if (limit.velocity > 0.0) add("velocity: " + number(limit.velocity));
+    if (limit.has_range) {
+      add("range: [" + number(limit.range[0]) + ", " + number(limit.range[1]) + "]");
+    }
+    out->line("  " + quoted(limit.joint) + ": {" + text + "}");
+  }
+}
+
 void write_parameters(const Guess& guess, Writer* out) {
   const Proportions& p = guess.proportions;
   const double time = std::sqrt(p.scale);
@@ -156,8 +173,11 @@ std::string robot_yaml(const Guess& guess, const std::string& urdf) {
   out.comment(guess.pelvis_why);
   const std::string pelvis = quoted(model.bodies[0].name);
   const Eigen::Matrix3d R = guess.options.R_LB.toRotationMatrix();
-  out.line(R.isIdentity(1e-9) ? "pelvis: " + pelvis
-                              : "pelvis: {link: " + pelvis + ", rpy: " + rpy_text(R) + "}");
+  const Eigen::Vector3d& origin = guess.options.p_LB;
+  const std::string xyz = origin.isZero(0.0) ? "" : ", xyz: " + vector_text(origin);
+  const std::string rpy = R.isIdentity(1e-9) ? "" : ", rpy: " + rpy_text(R);
+  out.line("pelvis: " +
+           (xyz.empty() && rpy.empty() ? pelvis : "{link: " + pelvis + xyz + rpy + "}"));
   out.comment(guess.chest_why);
   if (!guess.chest.empty()) out.line("chest: " + quoted(guess.chest));
   if (!guess.fixed.empty()) {
@@ -187,6 +207,7 @@ std::string robot_yaml(const Guess& guess, const std::string& urdf) {
   out.comment(
       {"Reflected inertia of the drives by joint or glob, kg m^2. A URDF does not say it."});
   out.line("rotor_inertia: {\"*\": 0.0}");
+  write_drive_limits(guess, &out);
   write_parameters(guess, &out);
   return out.text();
 }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <set>
 
+#include "cli/robot/drive_limits.h"
 #include "cli/robot/find_legs.h"
 #include "cli/robot/find_sensors.h"
 #include "cli/robot/fixed_joints.h"
@@ -18,6 +20,7 @@ namespace {
 using Eigen::Vector3d;
 
 bool load(const std::string& text, Guess* guess, std::string* error) {
+  guess->options.limits_required = false;
   guess->options.fixed.clear();
   for (const FixedGuess& fixed : guess->fixed) guess->options.fixed.push_back(fixed.joint);
   guess->urdf = dynamics::load_urdf_text(text, guess->urdf_file, guess->options);
@@ -58,7 +61,27 @@ std::string link_above(const Guess& guess, const LegPair& pair) {
   return guess.urdf.model.bodies[pair.pelvis].name;
 }
 
+// From the origin of the pelvis to the middle of the hips, m, if that is more than half a leg; or
+// zero.
+Vector3d from_hips(const Guess& guess) {
+  const auto poses = body_poses(guess.urdf.model, zero_position(guess.urdf.model));
+  Vector3d middle = Vector3d::Zero();
+  double length = 0.0;
+  for (const LegGuess& leg : guess.legs) {
+    const Vector3d hip = poses[static_cast<std::size_t>(leg.joints.front()) + 1].translation();
+    middle += 0.5 * hip;
+    length +=
+        0.5 * (hip - poses[static_cast<std::size_t>(leg.joints.back()) + 1].translation()).norm();
+  }
+  return middle.norm() > 0.5 * length ? middle : Vector3d::Zero();
+}
+
 bool find_pelvis(const std::string& text, Guess* guess, std::string* error) {
+  guess->options.root_link.clear();
+  guess->options.R_LB.setIdentity();
+  guess->options.p_LB.setZero();
+  guess->pelvis_why.clear();
+  for (LegGuess& leg : guess->legs) leg = {};
   LegPair pair;
   if (!find_legs(guess->urdf.model, &pair, error)) return false;
   // Toes may be several, beside or behind each other.
@@ -102,10 +125,27 @@ bool find_pelvis(const std::string& text, Guess* guess, std::string* error) {
       }
     }
   }
-  return true;
+  // Some frames lie on the ground, or where the designer began to draw.
+  const Vector3d far = from_hips(*guess);
+  if (far.isZero(0.0)) return true;
+  guess->options.p_LB = R * far;
+  guess->pelvis_why.push_back(
+      format("Its frame lies %.2f m from the hips: the origin is put between them.", far.norm()));
+  return load(text, guess, error);
 }
 
-bool find_feet(Guess* guess, std::string* error) {
+// The corners of the sole that somebody told, in the frame of the foot; R: from axes of the pelvis.
+std::vector<ShapePoint> told_corners(const std::vector<double>& sole, const Eigen::Matrix3d& R) {
+  std::vector<ShapePoint> points;
+  for (const double x : {-0.5, 0.5}) {
+    for (const double y : {-0.5, 0.5}) {
+      points.push_back({R * Vector3d(x * sole[0] + sole[3], y * sole[1], -sole[2])});
+    }
+  }
+  return points;
+}
+
+bool find_feet(const Told& told, Guess* guess, std::string* error) {
   const auto poses = body_poses(guess->urdf.model, zero_position(guess->urdf.model));
   for (std::size_t side = 0; side < 2; ++side) {
     LegGuess& leg = guess->legs[side];
@@ -113,14 +153,19 @@ bool find_feet(Guess* guess, std::string* error) {
     const int foot = leg.joints.back() + 1;
     SoleGuess& sole = guess->soles[side];
     sole.frame.link = guess->urdf.model.bodies[foot].name;
-    const std::vector<ShapePoint> points = shape_points(*guess, foot, &sole.frame.why);
     const Eigen::Matrix3d R = poses[static_cast<std::size_t>(foot)].linear().transpose();
+    const std::vector<ShapePoint> points = told.sole.empty()
+                                               ? shape_points(*guess, foot, &sole.frame.why)
+                                               : told_corners(told.sole, R);
+    if (!told.sole.empty()) sole.frame.why.emplace_back("As told by --sole.");
     if (points.empty() || !find_sole(points, -R.col(2), R.col(0), &sole, error)) {
       std::string why;
       for (const std::string& reason : sole.frame.why) why += " " + reason;
-      *error = "foot " + sole.frame.link + ": " +
-               (points.empty() ? "no shape to find the sole from" : *error) + "." + why +
-               " Give it a <collision> with a box of its sole";
+      *error =
+          "foot " + sole.frame.link + ": " +
+          (points.empty() ? "no shape to find the sole from" : *error) + "." + why +
+          " Measure it: --sole LENGTH,WIDTH,HEIGHT,AHEAD in m, the height of the last joint of the "
+          "leg above the ground, and how far the middle of the sole lies ahead of it";
       return false;
     }
     GaitdFoot& out = guess->model.feet[side];
@@ -144,37 +189,60 @@ bool find_feet(Guess* guess, std::string* error) {
   return true;
 }
 
+// Where legs are not found without them, joints without effort, velocity or range may be their
+// drives: only those that legs do not have stay fixed.
+bool find_pelvis_without_limits(const std::string& text, Guess* guess, std::string* error) {
+  const std::vector<FixedGuess> before = guess->fixed;
+  std::erase_if(guess->fixed, [](const FixedGuess& fixed) { return fixed.lacks_limits; });
+  if (guess->fixed.size() == before.size()) return false;
+  if (!load(text, guess, error) || !find_pelvis(text, guess, error)) return false;
+  std::set<std::string> legs;
+  for (const LegGuess& leg : guess->legs) {
+    for (const int joint : leg.joints) legs.insert(guess->urdf.model.joints[joint].name);
+  }
+  for (const FixedGuess& fixed : before) {
+    if (fixed.lacks_limits && !legs.contains(fixed.joint)) guess->fixed.push_back(fixed);
+  }
+  guess->options = {};
+  return load(text, guess, error) && find_pelvis(text, guess, error);
+}
+
 }  // namespace
 
-bool guess_robot(const std::string& urdf, const std::string& name,
-                 const std::vector<std::string>& fix, Guess* guess, std::string* error) {
+bool guess_robot(const std::string& urdf, const std::string& name, const Told& told, Guess* guess,
+                 std::string* error) {
   guess->urdf_file = urdf;
   guess->name = name;
   std::string text;
   if (!dynamics::read_urdf_text(urdf, &text, error)) return false;
   guess->outline = dynamics::read_urdf_outline(text);
   guess->fixed = joints_to_fix(guess->outline);
-  for (const std::string& glob : fix) guess->fixed.push_back({glob, "as told by --fix"});
+  if (!told.sole.empty() && !(told.sole[0] > 0 && told.sole[1] > 0 && told.sole[2] >= 0)) {
+    *error = "--sole: expected a length and a width above 0, and a height";
+    return false;
+  }
+  for (const std::string& glob : told.fix) guess->fixed.push_back({glob, "as told by --fix"});
   if (!load(text, guess, error)) {
     *error +=
         "\nwhat of it walking does not need, `--fix GLOB` leaves out: joints that do not move";
     return false;
   }
-  for (const std::string& glob : fix) {
+  for (const std::string& glob : told.fix) {
     const auto& unused = guess->urdf.unused_fixed;
     if (std::find(unused.begin(), unused.end(), glob) == unused.end()) continue;
     *error = urdf;
     error->append(": no joint is called ").append(glob).append(" (--fix)");
     return false;
   }
-  if (!find_pelvis(text, guess, error)) {
+  std::string again;
+  if (!find_pelvis(text, guess, error) && !find_pelvis_without_limits(text, guess, &again)) {
     const std::string lacking = joints_without_limits(guess->outline);
     if (!lacking.empty())
       *error += "; these lack effort, velocity or range and were left out: " + lacking;
-    *error = urdf + ": " + *error;
+    *error = urdf + ": " + *error + (again.empty() ? "" : "\nwith them: " + again);
     return false;
   }
-  const bool stands = find_feet(guess, error);
+  const bool stands = find_feet(told, guess, error);
   if (stands) {
     guess->chest = find_chest(*guess, &guess->chest_why);
     guess->imu = find_imu(*guess);
@@ -190,6 +258,7 @@ bool guess_robot(const std::string& urdf, const std::string& name,
     *error = urdf + ": " + *error;
     return false;
   }
+  guess_drive_limits(guess);
   find_proportions(guess);
   return true;
 }

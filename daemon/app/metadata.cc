@@ -46,6 +46,8 @@ void add_robot_metadata(const Robot& robot, LogMetadata* metadata) {
   const Eigen::Quaterniond& axes = robot.urdf_options.R_LB;
   (*metadata)["pelvis"] = model.bodies[0].name;
   (*metadata)["pelvis_axes"] = json({axes.x(), axes.y(), axes.z(), axes.w()}).dump();
+  const Eigen::Vector3d& origin = robot.urdf_options.p_LB;
+  (*metadata)["pelvis_origin"] = json({origin.x(), origin.y(), origin.z()}).dump();
   (*metadata)["fixed_joints"] = json(robot.urdf_options.fixed).dump();
   (*metadata)["soles"] = soles.dump();
   (*metadata)["joints"] = joints.dump();

@@ -150,6 +150,7 @@ void read_pelvis(MapReader* root, dynamics::UrdfOptions* options) {
   std::array<double, 3> rpy{};
   map.numbers("rpy", rpy, kAngle);
   options->R_LB = from_rpy(rpy);
+  map.numbers("xyz", std::span(options->p_LB.data(), 3), {-10.0, 10.0, "m"});
   map.finish();
 }
 
@@ -171,6 +172,7 @@ dynamics::UrdfResult load_urdf_of(MapReader* root, const std::string& file, cons
                                   Robot* robot, Issues* issues) {
   const auto urdf = root->text("urdf");
   dynamics::UrdfOptions& options = robot->urdf_options;
+  options.limits_required = false;  // drive_limits has what the file lacks
   read_pelvis(root, &options);
   const std::vector<NodePtr> fixed = read_fixed(root, &options);
   dynamics::UrdfResult result;

@@ -331,7 +331,8 @@ void RobotGeometry::read_joint_values(MapReader map, const Bounds& bounds, doubl
   }
 }
 
-// What a drive gives, where the URDF tells the limit of the joint. More than that is a mistake.
+// What a drive gives, where the URDF tells the limit of the joint: more than that is a mistake.
+// Where it tells none this is the only place.
 void RobotGeometry::read_drive_limits(MapReader map) {
   const GaitdModel urdf = *model_;
   for (const Node::Entry& entry : map.entries()) {
@@ -339,6 +340,12 @@ void RobotGeometry::read_drive_limits(MapReader map) {
     MapReader limits(entry.value, path, issues_);
     const auto effort = limits.number("effort", {1e-3, 1e6, "N m"});
     const auto velocity = limits.number("velocity", {1e-3, 1e4, "rad/s"});
+    std::array<double, 2> range{};
+    const bool has_range = limits.numbers("range", range, kAngle);
+    if (has_range && !(range[0] < range[1])) {
+      limits.fail("range", "the lower end before the upper one",
+                  printed(range[0]) + " and " + printed(range[1]), "");
+    }
     limits.finish();
     for (const int index : joints_like(entry, path)) {
       GaitdJoint& joint = model_->joints[index];
@@ -355,7 +362,21 @@ void RobotGeometry::read_drive_limits(MapReader map) {
       };
       take("effort", effort, urdf.joints[index].effort_limit, &joint.effort_limit);
       take("velocity", velocity, urdf.joints[index].velocity_limit, &joint.velocity_limit);
+      if (!has_range) continue;
+      joint.position_min = std::max(range[0], urdf.joints[index].position_min);
+      joint.position_max = std::min(range[1], urdf.joints[index].position_max);
+      if (joint.position_min < joint.position_max) continue;
+      limits.fail("range", "one within that of the URDF for " + std::string(joint.name),
+                  printed(range[0]) + " and " + printed(range[1]), "");
     }
+  }
+  for (int i = 0; urdf_->ok() && i < model_->joint_count; ++i) {
+    const GaitdJoint& joint = model_->joints[i];
+    if (std::max(joint.effort_limit, joint.velocity_limit) < dynamics::kNoUrdfLimit) continue;
+    issues_->add(
+        map.where(joint.name), "drive_limits",
+        "effort and velocity of " + std::string(joint.name) + ", which the URDF does not give",
+        "none", "write what its drive can do, or make the joint fixed");
   }
 }
 

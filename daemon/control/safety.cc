@@ -88,12 +88,21 @@ bool Safety::update(double dt, const TickData& d, bool walking) {
   return false;
 }
 
+// Ankles may be too weak for their stiffness by effort to hold the weight above them: it topples.
+double Safety::holding_effort(int joint) const {
+  for (const GaitdLeg& leg : model_.legs) {
+    if (joint != leg.hip_pitch && joint != leg.knee && joint != leg.ankle_pitch) continue;
+    return kReadyEffort * model_.total_mass * model_.gravity * model_.nominal_com_height;
+  }
+  return 0.0;
+}
+
 void Safety::hold(GaitdJointCommands& commands) const {
   const double s = std::min(1.0, time_in_state_ / p_[P::kReadyDuration]);
   const double smooth = s * s * (3.0 - 2.0 * s);
   for (int i = 0; i < model_.joint_count; ++i) {
     GaitdJointCommand& c = commands.joints[i];
-    const double effort = model_.joints[i].effort_limit;
+    const double effort = std::max(model_.joints[i].effort_limit, holding_effort(i));
     c = {};
     c.mode = GAITD_JOINT_MODE_TORQUE;
     c.position = start_position_[i] + smooth * (model_.nominal_position[i] - start_position_[i]);

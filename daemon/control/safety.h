@@ -61,7 +61,11 @@ class Safety {
   static constexpr double kReadyLoad = 0.6;  // weights, on both feet together before standing
   // s, damping of the joints while readying over their stiffness.
   static constexpr double kReadyDamping = 1.0 / 32.0;
+  // Of weight times height: what a joint that pitches counts for at least while readying. By the
+  // default stiffness legs are 1.2 times as stiff as an upright robot needs.
+  static constexpr double kReadyEffort = 0.22;
 
+  double holding_effort(int joint) const;
   void fall_back(double dt, TickData& data);
   void hold(GaitdJointCommands& commands) const;
   void damp(int joint, GaitdJointCommands& commands) const;

@@ -14,10 +14,10 @@ bool is_number(const json& value) { return value.is_number(); }
 
 }  // namespace
 
-RobotMotion::RobotMotion(const dynamics::UrdfResult& robot, const Eigen::Quaterniond& R_LB,
+RobotMotion::RobotMotion(const dynamics::UrdfResult& robot, const Eigen::Isometry3d& X_LB,
                          std::string urdf)
     : model_(robot.model),
-      R_LB_(R_LB),
+      X_LB_(X_LB),
       links_(robot.links),
       urdf_(std::move(urdf)),
       kinematics_(model_),
@@ -26,8 +26,8 @@ RobotMotion::RobotMotion(const dynamics::UrdfResult& robot, const Eigen::Quatern
       torque_(position_) {
   for (dynamics::UrdfLink& link : links_) {
     if (link.body != 0) continue;
-    link.p_BL = R_LB_ * link.p_BL;
-    link.R_BL = R_LB_ * link.R_BL;
+    link.p_BL = X_LB_ * link.p_BL;
+    link.R_BL = X_LB_.linear() * link.R_BL;
   }
 }
 
@@ -35,6 +35,7 @@ std::unique_ptr<RobotMotion> RobotMotion::load(const std::map<std::string, std::
   const auto urdf = metadata.find("robot_urdf");
   if (urdf == metadata.end()) return nullptr;
   dynamics::UrdfOptions options;
+  options.limits_required = false;  // robot.yaml has them
   if (const auto pelvis = metadata.find("pelvis"); pelvis != metadata.end()) {
     options.root_link = pelvis->second;
   }
@@ -42,7 +43,7 @@ std::unique_ptr<RobotMotion> RobotMotion::load(const std::map<std::string, std::
     const auto text = metadata.find(key);
     return text == metadata.end() ? json() : json::parse(text->second, nullptr, false);
   };
-  // Logs from before robot.yaml had them lack both.
+  // Logs from before robot.yaml had them lack these.
   const json axes = list("pelvis_axes");
   if (axes.is_array() && axes.size() == 4 && std::ranges::all_of(axes, is_number)) {
     const Eigen::Quaterniond R_LB(axes[3].get<double>(), axes[0].get<double>(),
@@ -50,12 +51,16 @@ std::unique_ptr<RobotMotion> RobotMotion::load(const std::map<std::string, std::
     if (!(R_LB.norm() > 0.5)) return nullptr;
     options.R_LB = R_LB.normalized();
   }
+  const json origin = list("pelvis_origin");
+  if (origin.is_array() && origin.size() == 3 && std::ranges::all_of(origin, is_number)) {
+    options.p_LB = {origin[0].get<double>(), origin[1].get<double>(), origin[2].get<double>()};
+  }
   for (const json& joint : list("fixed_joints")) {
     if (joint.is_string()) options.fixed.push_back(joint.get<std::string>());
   }
   const dynamics::UrdfResult robot = dynamics::load_urdf_text(urdf->second, "the log", options);
   if (!robot.ok()) return nullptr;
-  return std::unique_ptr<RobotMotion>(new RobotMotion(robot, options.R_LB, urdf->second));
+  return std::unique_ptr<RobotMotion>(new RobotMotion(robot, options.X_LB(), urdf->second));
 }
 
 std::unique_ptr<RobotMotion> RobotMotion::create(const std::map<std::string, std::string>& metadata,

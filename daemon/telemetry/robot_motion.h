@@ -41,7 +41,7 @@ class RobotMotion {
 
   // ---- Of the tick that was read last.
   // Pose of the link of the pelvis in the world.
-  Eigen::Isometry3d X_WP() const { return kinematics_.X_WB(0) * R_LB_.inverse(); }
+  Eigen::Isometry3d X_WP() const { return kinematics_.X_WB(0) * X_LB_.inverse(); }
   // Pose of the link of a body in that of its parent, of the pelvis in the world.
   Eigen::Isometry3d X_parent(int body) const;
   // Pose of one of links() in the world.
@@ -51,7 +51,7 @@ class RobotMotion {
   const Eigen::VectorXd& torque() const { return torque_; }      // N m or N, measured
 
  private:
-  RobotMotion(const dynamics::UrdfResult& robot, const Eigen::Quaterniond& R_LB, std::string urdf);
+  RobotMotion(const dynamics::UrdfResult& robot, const Eigen::Isometry3d& X_LB, std::string urdf);
   bool find_signals(const SignalTable& table);
   void update(std::span<const double, 6> pelvis);
 
@@ -59,7 +59,7 @@ class RobotMotion {
     int position = -1, velocity = -1, torque = -1;
   };
   GaitdModel model_;
-  Eigen::Quaterniond R_LB_;  // axes of body 0 in the link of the pelvis
+  Eigen::Isometry3d X_LB_;  // body 0 in the link of the pelvis
   std::vector<dynamics::UrdfLink> links_;
   std::string urdf_;
   dynamics::Kinematics kinematics_;

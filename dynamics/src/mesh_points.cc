@@ -5,9 +5,12 @@
 #include <cctype>
 #include <charconv>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "collada.h"
 #include "gaitd/sdk/bounds.h"
@@ -76,6 +79,23 @@ void read_lines(std::string_view text, std::string_view word, Points* points) {
   }
 }
 
+// Of <package>/<file>, where ROS 1 and ROS 2 look for packages.
+fs::path in_ros_packages(const fs::path& inside) {
+  for (const auto& [variable, share] :
+       {std::pair("ROS_PACKAGE_PATH", ""), std::pair("AMENT_PREFIX_PATH", "share")}) {
+    const char* list = std::getenv(variable);
+    std::istringstream folders(list == nullptr ? "" : list);
+    for (std::string folder; std::getline(folders, folder, ':');) {
+      if (folder.empty()) continue;
+      for (const fs::path& path :
+           {fs::path(folder) / share / inside, fs::path(folder).parent_path() / inside}) {
+        if (is_file(path)) return path;
+      }
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 fs::path find_mesh(const fs::path& urdf, const std::string& name) {
@@ -99,7 +119,7 @@ fs::path find_mesh(const fs::path& urdf, const std::string& name) {
     }
     above = above.parent_path();
   }
-  return {};
+  return in_ros_packages(inside);
 }
 
 bool read_mesh_points(const fs::path& file, Points* points, std::string* error) {

@@ -164,7 +164,7 @@ bool make_physical(Eigen::Matrix3d* inertia) {
   const Eigen::Vector3d moments = solver.eigenvalues();
   if (!(moments[2] > 0)) return false;
   const Eigen::Vector3d extents = Eigen::Vector3d::Constant(0.5 * moments.sum()) - moments;
-  if (extents.minCoeff() < -kRounding * moments[2]) return false;
+  if (!(moments[0] > 0) && extents.minCoeff() < -kRounding * moments[2]) return false;
   const Eigen::Vector3d possible = extents.cwiseMax(1e-6 * moments[2]);
   const Eigen::Vector3d nearest = Eigen::Vector3d::Constant(possible.sum()) - possible;
   *inertia = solver.eigenvectors() * nearest.asDiagonal() * solver.eigenvectors().transpose();

@@ -21,10 +21,7 @@ using Eigen::Vector3d;
 
 constexpr double kStandardGravity = 9.81;
 constexpr double kWater = 1000.0;  // kg/m^3
-
-void copy_name(const std::string& from, char (&to)[GAITD_NAME_SIZE]) {
-  std::strncpy(to, from.c_str(), GAITD_NAME_SIZE - 1);
-}
+constexpr double kCross = 0.01;    // kg, of a link between two joints that was given no mass
 
 void copy_rotation(const Matrix3d& from, double (&to)[4]) {
   Eigen::Vector4d::Map(to) = Eigen::Quaterniond(from).normalized().coeffs();
@@ -62,7 +59,7 @@ class TreeBuilder {
     root = without_world(root);
     Isometry3d X_BR = Isometry3d::Identity();
     if (!root_link.empty() && !place_root(root_link, &root, &X_BR)) return;
-    X_BR = options.R_LB.normalized().inverse() * X_BR;
+    X_BR = options.X_LB().inverse() * X_BR;
     walk(root, root_link.empty() ? root : root_link, X_BR);
     finish_bodies();
   }
@@ -257,6 +254,16 @@ class TreeBuilder {
     }
   }
 
+  void take_name(const std::string& kind, const std::string& from, int line,
+                 char (&to)[GAITD_NAME_SIZE]) {
+    if (from.size() >= GAITD_NAME_SIZE) {
+      xml_.add_error(line, kind + ": name " + in_quotes(from) + " has " +
+                               std::to_string(from.size()) + " characters, expected " +
+                               std::to_string(GAITD_NAME_SIZE - 1) + " at most; shorten it");
+    }
+    std::strncpy(to, from.c_str(), GAITD_NAME_SIZE - 1);
+  }
+
   void begin_body(const std::string& name, int line, int parent) {
     const int index = static_cast<int>(merged_.size());
     merged_.emplace_back();
@@ -264,7 +271,7 @@ class TreeBuilder {
     body_lines_.push_back(line);
     if (index >= GAITD_MAX_BODIES) return;
     GaitdBody& body = result_.model.bodies[index];
-    copy_name(name, body.name);
+    take_name("link", name, line, body.name);
     body.parent = parent;
     body.joint = index - 1;
   }
@@ -275,7 +282,7 @@ class TreeBuilder {
     begin_body(carried, links_[carried]->line, parent);
     if (body >= GAITD_MAX_BODIES) return body;
     GaitdJoint& joint = result_.model.joints[body - 1];
-    copy_name(from.name, joint.name);
+    take_name("joint", from.name, from.line, joint.name);
     joint.type =
         from.kind == UrdfJointKind::kPrismatic ? GAITD_JOINT_PRISMATIC : GAITD_JOINT_REVOLUTE;
     joint.parent_body = parent;
@@ -313,18 +320,31 @@ class TreeBuilder {
     for (int i = 0; i <= joints; ++i) finish_body(i);
   }
 
+  bool carries_mass(int body) const {
+    for (int i = body + 1; i < result_.model.body_count; ++i) {
+      int at = i;
+      while (at > body) at = result_.model.bodies[at].parent;
+      if (at == body && merged_[i].mass > 0) return true;
+    }
+    return false;
+  }
+
   void finish_body(int i) {
-    const MergedMass& merged = merged_[i];
+    MergedMass& merged = merged_[i];
     GaitdBody& body = result_.model.bodies[i];
     const std::string owner = "link " + in_quotes(body_names_[i]);
+    const bool cross = merged.mass <= 0 && i > 0 && carries_mass(i);
+    if (cross) merged.mass = kCross;
     body.mass = merged.mass;
     Vector3d::Map(body.com) = merged.com;
     Matrix3d m = merged.inertia;
     if (merged.mass > 0 && m.cwiseAbs().maxCoeff() < kNoInertia * merged.mass) {
       const double radius = std::cbrt(3.0 * merged.mass / (4.0 * M_PI * kWater));
       m = 0.4 * merged.mass * radius * radius * Matrix3d::Identity();
-      xml_.add_warning(body_lines_[i],
-                       owner + ": a mass without an inertia; that of a ball of water is taken");
+      xml_.add_warning(
+          body_lines_[i],
+          owner + (cross ? " moves without a mass; that of a ball of water of 10 g is taken"
+                         : ": a mass without an inertia; that of a ball of water is taken"));
     }
     // A rod is possible as a part, but not as a body that moves by itself.
     if (!check_inertia(m, false).empty() && make_physical(&m)) {
@@ -375,8 +395,8 @@ UrdfResult load_urdf_text(const std::string& text, const std::string& source,
   result.model.size = sizeof(GaitdModel);
   result.model.gravity = kStandardGravity;
   XmlReader xml(source, &result.errors, &result.warnings);
-  const UrdfElements elements = read_urdf_elements(text, options.fixed, &xml, &result.unused_fixed);
-  copy_name(elements.robot_name, result.model.name);
+  const UrdfElements elements = read_urdf_elements(text, options, &xml, &result.unused_fixed);
+  std::strncpy(result.model.name, elements.robot_name.c_str(), GAITD_NAME_SIZE - 1);
   if (!elements.links.empty()) TreeBuilder(elements, &xml, &result).build(options);
   if (result.ok()) {
     for (const std::string& error : check_model(result.model)) xml.add_error(0, error);

@@ -14,8 +14,6 @@
 namespace gaitd::dynamics {
 namespace {
 
-constexpr double kContinuousLimit = 1e9;  // rad
-
 Eigen::Vector3d to_vector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
 Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
@@ -25,8 +23,11 @@ Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
 
 class ElementReader {
  public:
-  ElementReader(const std::vector<std::string>& fixed, XmlReader* xml)
-      : fixed_(fixed), used_(fixed.size(), false), xml_(*xml) {}
+  ElementReader(const UrdfOptions& options, XmlReader* xml)
+      : fixed_(options.fixed),
+        limits_required_(options.limits_required),
+        used_(fixed_.size(), false),
+        xml_(*xml) {}
 
   std::vector<std::string> unused() const {
     std::vector<std::string> names;
@@ -59,7 +60,7 @@ class ElementReader {
 
  private:
   void read_robot(const TiXmlElement& robot) {
-    elements_.robot_name = name_of(robot, "robot");
+    elements_.robot_name = xml_.text(robot, "name", "robot");
     // Its macros leave names and figures open: they would all be errors.
     for (const TiXmlElement* e = robot.FirstChildElement(); e; e = e->NextSiblingElement()) {
       if (!std::string_view(e->Value()).starts_with("xacro:")) continue;
@@ -77,21 +78,10 @@ class ElementReader {
       xml_.add_error(robot.Row(), "has no <link>, expected at least one");
   }
 
-  std::string name_of(const TiXmlElement& element, const std::string& owner) {
-    std::string name = xml_.text(element, "name", owner);
-    if (name.size() >= GAITD_NAME_SIZE) {
-      xml_.add_error(element.Row(), owner + ": name " + in_quotes(name) + " has " +
-                                        std::to_string(name.size()) + " characters, expected " +
-                                        std::to_string(GAITD_NAME_SIZE - 1) +
-                                        " at most; shorten it");
-    }
-    return name;
-  }
-
   void read_link(const TiXmlElement& element) {
     UrdfLinkElement link;
     link.line = element.Row();
-    link.name = name_of(element, "link");
+    link.name = xml_.text(element, "name", "link");
     const std::string owner = "link " + in_quotes(link.name);
     if (const TiXmlElement* inertial = element.FirstChildElement("inertial")) {
       read_inertial(*inertial, owner, &link);
@@ -105,10 +95,9 @@ class ElementReader {
     const std::size_t errors = xml_.error_count();
     const TiXmlElement* mass = inertial.FirstChildElement("mass");
     const TiXmlElement* inertia = inertial.FirstChildElement("inertia");
-    if (mass == nullptr || inertia == nullptr) {
-      xml_.add_error(inertial.Row(), owner + ": <inertial> has no <" +
-                                         (mass == nullptr ? "mass" : "inertia") +
-                                         ">; add it or drop <inertial>");
+    if (mass == nullptr) {
+      xml_.add_error(inertial.Row(),
+                     owner + ": <inertial> has no <mass>; add it or drop <inertial>");
     }
     const urdf::Inertial from = parse_inertial(inertial, owner, &xml_);
     const Eigen::Isometry3d X_LC = to_isometry(from.origin);
@@ -116,8 +105,11 @@ class ElementReader {
     m << from.ixx, from.ixy, from.ixz, from.ixy, from.iyy, from.iyz, from.ixz, from.iyz, from.izz;
     link->com = X_LC.translation();
     link->mass = from.mass;
+    if (inertia == nullptr) m.setZero();  // a point
     link->inertia = X_LC.linear() * m * X_LC.linear().transpose();
-    if (xml_.error_count() == errors) check_mass(*mass, *inertia, m, owner, link);
+    if (xml_.error_count() == errors) {
+      check_mass(*mass, inertia == nullptr ? *mass : *inertia, m, owner, link);
+    }
     if (xml_.error_count() == errors) return;
     link->mass = 1;
     link->inertia.setIdentity();
@@ -152,7 +144,7 @@ class ElementReader {
   void read_joint(const TiXmlElement& element) {
     UrdfJointElement joint;
     joint.line = element.Row();
-    joint.name = name_of(element, "joint");
+    joint.name = xml_.text(element, "name", "joint");
     const std::string owner = "joint " + in_quotes(joint.name);
     joint.parent = link_of(element, "parent", owner);
     joint.child = link_of(element, "child", owner);
@@ -239,7 +231,12 @@ class ElementReader {
                      owner + ": damping is " + to_text(joint->damping) + ", expected 0 or above");
     }
     const TiXmlElement* limit = element.FirstChildElement("limit");
-    if (limit == nullptr) {
+    joint->lower = -kNoUrdfLimit;
+    joint->upper = kNoUrdfLimit;
+    if (limit == nullptr && !limits_required_) {
+      joint->velocity = joint->effort = kNoUrdfLimit;
+      if (!continuous) warn_of_range(joint->line, owner);
+    } else if (limit == nullptr) {
       xml_.add_error(joint->line, owner + ": has no <limit>; give " +
                                       (continuous ? "velocity and effort"
                                                   : "lower, upper, velocity and effort"));
@@ -252,8 +249,13 @@ class ElementReader {
                   bool continuous, UrdfJointElement* joint) {
     joint->velocity = positive_limit(line, "velocity", limits.velocity, owner);
     joint->effort = positive_limit(line, "effort", limits.effort, owner);
-    joint->lower = continuous ? -kContinuousLimit : limits.lower;
-    joint->upper = continuous ? kContinuousLimit : limits.upper;
+    if (continuous) return;
+    if (!limits_required_ && limits.lower == limits.upper) {
+      warn_of_range(line, owner);
+      return;
+    }
+    joint->lower = limits.lower;
+    joint->upper = limits.upper;
     if (!(joint->lower < joint->upper)) {
       xml_.add_error(line, owner + ": <limit> is lower " + to_text(joint->lower) + ", upper " +
                                to_text(joint->upper) +
@@ -261,7 +263,12 @@ class ElementReader {
     }
   }
 
+  void warn_of_range(int line, const std::string& owner) {
+    xml_.add_warning(line, owner + ": <limit> gives no range; it is taken for one without end");
+  }
+
   double positive_limit(int line, const char* what, double value, const std::string& owner) {
+    if (value == 0 && !limits_required_) return kNoUrdfLimit;
     if (!(value > 0)) {
       xml_.add_error(line, owner + ": the " + what + " limit is " + to_text(value) +
                                ", expected above 0; give what the drive can do");
@@ -270,6 +277,7 @@ class ElementReader {
   }
 
   const std::vector<std::string>& fixed_;
+  bool limits_required_;
   std::vector<bool> used_;  // of fixed_
   XmlReader& xml_;
   UrdfElements elements_;
@@ -277,9 +285,9 @@ class ElementReader {
 
 }  // namespace
 
-UrdfElements read_urdf_elements(const std::string& text, const std::vector<std::string>& fixed,
+UrdfElements read_urdf_elements(const std::string& text, const UrdfOptions& options,
                                 XmlReader* reader, std::vector<std::string>* unused) {
-  ElementReader elements(fixed, reader);
+  ElementReader elements(options, reader);
   UrdfElements read = elements.read(text);
   if (!read.links.empty()) *unused = elements.unused();
   return read;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gaitd/dynamics/urdf.h"
 #include "xml_reader.h"
 
 namespace gaitd::dynamics {
@@ -45,9 +46,9 @@ struct UrdfElements {
 };
 
 // Everything wrong with single elements goes to `reader`; what hangs together wrongly does not.
-// Joints that match `fixed`, names or globs, and those with <mimic> come out as kFixed, whatever
-// their limits are. `unused` gets those of `fixed` that match none.
-UrdfElements read_urdf_elements(const std::string& text, const std::vector<std::string>& fixed,
+// Joints that match `options.fixed`, names or globs, and those with <mimic> come out as kFixed,
+// whatever their limits are. `unused` gets those of `options.fixed` that match none.
+UrdfElements read_urdf_elements(const std::string& text, const UrdfOptions& options,
                                 XmlReader* reader, std::vector<std::string>* unused);
 
 }  // namespace gaitd::dynamics

@@ -50,15 +50,17 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& text, std::string* fault)
   return fault->empty() ? model : nullptr;  // urdfdom goes on after some faults
 }
 
-// Text of the element without its children. Products of inertia that are not there are zero, which
-// urdfdom does not know.
+// Text of the element without its children. Products of inertia and limits that are not there are
+// zero, which urdfdom does not know.
 std::string print(TiXmlElement element) {
   element.Clear();
-  for (const char* product : {"ixy", "ixz", "iyz"}) {
-    if (element.ValueStr() == "inertia" && !element.Attribute(product)) {
-      element.SetAttribute(product, "0");
+  const auto fill = [&](const char* tag, std::initializer_list<const char*> names) {
+    for (const char* name : names) {
+      if (element.ValueStr() == tag && !element.Attribute(name)) element.SetAttribute(name, "0");
     }
-  }
+  };
+  fill("inertia", {"ixy", "ixz", "iyz"});
+  fill("limit", {"effort", "velocity"});
   TiXmlPrinter printer;
   element.Accept(&printer);
   return printer.Str();

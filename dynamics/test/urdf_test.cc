@@ -162,30 +162,67 @@ TEST(Urdf, TakesAPelvisThatLooksElsewhere) {
   EXPECT_NEAR(result.model.joints[0].origin[1], 0.0, 1e-12);
 }
 
-TEST(Urdf, MovesARoundedInertiaToTheNearestPossibleOne) {
-  const std::string rod =
-      "<link name='a'><inertial><mass value='1'/><inertia ixx='0.02' iyy='0.02' izz='0.041'/>"
-      "</inertial></link>";
-  const UrdfResult result = load_urdf_text(robot(rod), "t");
-  ASSERT_TRUE(result.ok()) << all(result.errors);
-  ASSERT_EQ(result.warnings.size(), 1u);
-  EXPECT_NEAR(result.model.bodies[0].inertia[5], 0.041, 1e-6);
-  EXPECT_GE(result.model.bodies[0].inertia[0] + result.model.bodies[0].inertia[3],
-            result.model.bodies[0].inertia[5]);
+TEST(Urdf, MovesAnImpossibleInertiaToTheNearestPossibleOne) {
+  for (const double most : {0.041, 0.06}) {  // rounded; wrong, as some published ones are
+    const std::string part =
+        "<link name='a'><inertial><mass value='1'/><inertia ixx='0.02' iyy='0.02' izz='" +
+        std::to_string(most) + "'/></inertial></link>";
+    const UrdfResult result = load_urdf_text(robot(part), "t");
+    ASSERT_TRUE(result.ok()) << all(result.errors);
+    ASSERT_EQ(result.warnings.size(), 1u);
+    EXPECT_NE(result.warnings[0].find("sum of the two others"), std::string::npos);
+    const double* inertia = result.model.bodies[0].inertia;
+    EXPECT_NEAR(inertia[5], most, 1e-6);
+    EXPECT_NEAR(inertia[0], 0.5 * most, 1e-5);
+    EXPECT_GE(inertia[0] + inertia[3], inertia[5]);
+  }
 }
 
 TEST(Urdf, TakesAMassWithoutAnInertiaForABallOfWater) {
-  for (const char* zero : {"0", "-2.4e-35"}) {
-    const UrdfResult result = load_urdf_text(
-        robot(std::string("<link name='a'><inertial><mass value='4.19'/><inertia ixx='0' iyy='") +
-              zero + "' izz='0'/></inertial></link>"),
-        "t");
+  for (const char* inertia :
+       {"<inertia ixx='0' iyy='0' izz='0'/>", "<inertia ixx='0' iyy='-2.4e-35' izz='0'/>", ""}) {
+    const UrdfResult result =
+        load_urdf_text(robot(std::string("<link name='a'><inertial><mass value='4.19'/>") +
+                             inertia + "</inertial></link>"),
+                       "t");
     ASSERT_TRUE(result.ok()) << all(result.errors);
     ASSERT_EQ(result.warnings.size(), 1u);
     for (const int moment : {0, 3, 5}) {
       EXPECT_NEAR(result.model.bodies[0].inertia[moment], 0.4 * 4.19 * 0.01, 1e-4);
     }
   }
+}
+
+TEST(Urdf, ALinkBetweenTwoJointsMayLackAMass) {
+  const UrdfResult result = load_urdf_text(robot(link("a") + "<link name='cross'/>" + link("b") +
+                                                 joint("roll", "revolute", "a", "cross", kLimit) +
+                                                 joint("pitch", "revolute", "cross", "b", kLimit)),
+                                           "t");
+  ASSERT_TRUE(result.ok()) << all(result.errors);
+  EXPECT_NE(
+      all(result.warnings).find("'cross' moves without a mass; that of a ball of water of 10 g"),
+      std::string::npos)
+      << all(result.warnings);
+  EXPECT_EQ(result.warnings.size(), 1u);
+  EXPECT_EQ(result.model.bodies[1].mass, 0.01);
+  EXPECT_GT(result.model.bodies[1].inertia[0], 0.0);
+}
+
+TEST(Urdf, LimitsMayBeLeftToWhoeverKnowsThem) {
+  const std::string text = robot(
+      link("a") + link("b") + link("c") + link("d") +
+      joint("bare", "revolute", "a", "b", "<limit/>") + joint("none", "revolute", "b", "c", "") +
+      joint("range", "revolute", "c", "d", "<limit lower='-1' upper='2'/>"));
+  UrdfOptions options;
+  EXPECT_EQ(load_urdf_text(text, "t", options).errors.size(), 6u);
+  options.limits_required = false;
+  const UrdfResult result = load_urdf_text(text, "t", options);
+  ASSERT_TRUE(result.ok()) << all(result.errors);
+  EXPECT_EQ(result.warnings.size(), 2u) << all(result.warnings);
+  EXPECT_EQ(result.model.joints[0].effort_limit, kNoUrdfLimit);
+  EXPECT_EQ(result.model.joints[1].velocity_limit, kNoUrdfLimit);
+  EXPECT_EQ(result.model.joints[1].position_max, kNoUrdfLimit);
+  EXPECT_EQ(result.model.joints[2].position_max, 2.0);
 }
 
 TEST(Urdf, FloatsOnAnEmptyWorld) {

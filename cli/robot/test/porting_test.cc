@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -235,6 +236,17 @@ TEST(MeshPoints, AreReadFromEachFormatWithinTheFolders) {
   EXPECT_TRUE(read("../bad.stl").empty());
   EXPECT_TRUE(read("package://../../etc/passwd").empty());
   EXPECT_TRUE(read("http://example.com/a.stl").empty());
+  // Where ROS finds packages.
+  std::filesystem::create_directories(folder / "ros" / "share" / "robot_meshes");
+  std::filesystem::rename(folder / "a.obj", folder / "ros" / "share" / "robot_meshes" / "b.obj");
+  EXPECT_TRUE(read("package://robot_meshes/b.obj").empty());
+  setenv("AMENT_PREFIX_PATH", ("/nowhere:" + (folder / "ros").string()).c_str(), 1);
+  EXPECT_EQ(read("package://robot_meshes/b.obj").size(), 2u);
+  EXPECT_TRUE(read("package://../share/robot_meshes/b.obj").empty());
+  unsetenv("AMENT_PREFIX_PATH");
+  setenv("ROS_PACKAGE_PATH", (folder / "ros" / "share").c_str(), 1);
+  EXPECT_EQ(read("package://robot_meshes/b.obj").size(), 2u);
+  unsetenv("ROS_PACKAGE_PATH");
   std::filesystem::remove_all(folder);
 }
 

@@ -264,6 +264,13 @@ TEST(Robot, TakesLimitsOfDrivesBelowThoseOfTheUrdf) {
                "890, got 891");
   EXPECT_ERROR(inertia, inertia + "\ndrive_limits: {l_knee: {effort: 5}}",
                "drive_limits.l_knee: expected a joint of the URDF or a glob");
+  EXPECT_EQ(errors_with(inertia, inertia + "\ndrive_limits: {l_leg_kny: {range: [0.1, 2]}}"), "");
+  EXPECT_ERROR(
+      inertia, inertia + "\ndrive_limits: {l_leg_kny: {range: [2, 1]}}",
+      "drive_limits.l_leg_kny.range: expected the lower end before the upper one, got 2 and "
+      "1");
+  EXPECT_ERROR(inertia, inertia + "\ndrive_limits: {l_leg_kny: {range: [3, 4]}}",
+               "drive_limits.l_leg_kny.range: expected one within that of the URDF for l_leg_kny");
 }
 
 TEST(Robot, NamesTheUnknownLinkAndJoint) {

@@ -11,8 +11,9 @@
 namespace gaitd::dynamics {
 
 // The file that the name of a mesh in the URDF at `urdf` means; empty if there is none. A name
-// with package:// or model:// is searched in the folders above the URDF, others are relative to it.
-// Nothing is fetched from anywhere else.
+// with package:// or model:// is searched in the folders above the URDF, then where
+// ROS_PACKAGE_PATH and AMENT_PREFIX_PATH lead; others are relative to the URDF. Nothing is fetched
+// from anywhere else.
 std::filesystem::path find_mesh(const std::filesystem::path& urdf, const std::string& name);
 
 // Corners of a mesh (STL in either form, OBJ, COLLADA) in its own frame and unit, m when it says

@@ -12,14 +12,23 @@
 namespace gaitd::dynamics {
 
 struct UrdfOptions {
-  // Link whose frame becomes the frame of body 0 (the pelvis). Joints between it and the root of the
-  // file are turned around: they carry the parent instead of the child. Empty: the root.
+  // Link whose frame becomes the frame of body 0 (the pelvis). Joints between it and the root of
+  // the file are turned around: they carry the parent instead of the child. Empty: the root.
   std::string root_link;
-  // Axes of body 0 in those of that link: for a pelvis whose x axis does not point forward.
+  // Axes and origin (m) of body 0 in that link: for one whose x axis does not point forward, or
+  // whose frame lies far from the hips.
   Eigen::Quaterniond R_LB = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d p_LB = Eigen::Vector3d::Zero();
+  Eigen::Isometry3d X_LB() const { return Eigen::Translation3d(p_LB) * R_LB.normalized(); }
   // Joints, names or globs, that count as fixed: at zero, or where their range is nearest to it.
   std::vector<std::string> fixed;
+  // Whether a moving joint without effort, velocity or range is an error. If not, it gets
+  // kNoUrdfLimit: whoever asks knows them from elsewhere.
+  bool limits_required = true;
 };
+
+// N m, rad/s and rad: of what the file does not limit, as the range of a continuous joint.
+inline constexpr double kNoUrdfLimit = 1e9;
 
 // Where a link of the file went. Links on fixed joints are merged into the body that carries them.
 struct UrdfLink {
@@ -37,7 +46,7 @@ struct UrdfResult {
   std::vector<UrdfLink> links;      // every link of the file, in the order of the bodies
   std::vector<std::string> errors;  // everything that is wrong with the file, not only the first
   // What was taken differently from how it stands there: joints that mimic another one are fixed,
-  // inertias that rounding made impossible are moved to the nearest possible one.
+  // inertias that no rigid body has are moved to the nearest possible one.
   std::vector<std::string> warnings;
   std::vector<std::string> unused_fixed;  // entries of UrdfOptions::fixed that no joint matches
 
