@@ -240,9 +240,10 @@ nlohmann::json Application::backend_config() {
   return config;
 }
 
-bool Application::load_backend() {
+bool Application::load_backend(const ProvenLibraries& proven) {
   Refusal refusal;
-  backend_ = LoadedBackend::load({backend_file_, &robot_->model, true, {}, log_plugin}, &refusal);
+  backend_ = LoadedBackend::load(
+      {backend_file_, &robot_->model, true, {.proven = &proven}, log_plugin}, &refusal);
   if (backend_ == nullptr) {
     spdlog::error("{}", refusal.text());
     return false;
@@ -262,12 +263,20 @@ bool Application::load_backend() {
   return true;
 }
 
+bool Application::load_plugins(LayerRequests requests) {
+  std::vector<std::filesystem::path> files = {backend_file_};
+  for (const LoadedLayer::Request& request : requests) files.push_back(request.path);
+  const ProvenLibraries proven(files, robot_->model);
+  for (LoadedLayer::Request& request : requests) request.probe_options.proven = &proven;
+  return load_layers(requests) && load_backend(proven);
+}
+
 bool Application::prepare() {
   Issues issues;
   read_configuration(&issues);
   const LayerRequests requests = choose_layers(&issues);
   report_issues(issues);
-  if (!issues.ok() || !load_layers(requests) || !load_backend()) return false;
+  if (!issues.ok() || !load_plugins(requests)) return false;
   if (options_.check_config) return true;
   return start_telemetry() && start_server();
 }

@@ -63,12 +63,13 @@ class Application {
   void read_backend(Issues* issues);
   Profile profile() const;
   LayerRequests choose_layers(Issues* issues);
+  bool load_plugins(LayerRequests requests);
   bool load_layers(const LayerRequests& requests);
   nlohmann::json backend_config();
   bool arms_itself() const;
   GaitdStart start_pose() const;
   std::string backend_scope() const;
-  bool load_backend();
+  bool load_backend(const ProvenLibraries& proven);
   bool start_telemetry();
   void prepare_swaps();
   void read_height_map(Issues* issues);

@@ -47,7 +47,11 @@ const char* command_note(const Command& command, SafetyState state, const GaitdG
     case CommandType::kReset:
       return state == SafetyState::kFault ? nullptr : "nothing to reset: no fault is latched";
     case CommandType::kMode:
-      if (gait.phase == GAITD_PHASE_STAND) return nullptr;
+      if (gait.phase == GAITD_PHASE_STAND) {
+        return command.mode == GAITD_MODE_STAND && gait.footstep_count > 0
+                   ? "the footsteps that waited for `gaitctl resume` are dropped"
+                   : nullptr;
+      }
       return command.mode == GAITD_MODE_STAND ? "walking: it stops first"
                                               : "walking: from the next step on";
     case CommandType::kWalk:

@@ -273,6 +273,7 @@ CommandReply Pipeline::execute(const Command& command) {
       note = "nobody may touch the robot for the next second at rest";
       break;
     case CommandType::kPayload:
+      if (payload_.estimating()) note = "the weighing that went on is given up";
       refusal = payload(command.payload);
       if (command.payload.action == PayloadAction::kEstimate) {
         note = "weighed for four seconds at rest; `gaitctl status` shows the load";

@@ -14,6 +14,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <deque>
 
 #include "daemon/host/child_side.h"
 #include "daemon/host/file_descriptor.h"
@@ -37,8 +38,8 @@ bool share_model(const GaitdModel& model, FileDescriptor* fd) {
          lseek(fd->get(), 0, SEEK_SET) == 0;
 }
 
-int spawn_child(const ChildRequest& request, int model_fd, int report_fd, int library_fd,
-                pid_t* pid) {
+int spawn_child(const ChildRequest& request, int model_fd, int report_fd,
+                const std::deque<FileDescriptor>& libraries, pid_t* pid) {
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
   posix_spawn_file_actions_init(&actions);
@@ -47,7 +48,10 @@ int spawn_child(const ChildRequest& request, int model_fd, int report_fd, int li
   // the caller moved them there.
   posix_spawn_file_actions_adddup2(&actions, model_fd, kChildModelFd);
   posix_spawn_file_actions_adddup2(&actions, report_fd, kChildReportFd);
-  if (library_fd >= 0) posix_spawn_file_actions_adddup2(&actions, library_fd, kChildLibraryFd);
+  for (std::size_t i = 0; i < libraries.size(); ++i) {
+    posix_spawn_file_actions_adddup2(&actions, libraries[i].get(),
+                                     kChildLibraryFd + static_cast<int>(i));
+  }
   sigset_t none;
   sigset_t all;
   sigemptyset(&none);
@@ -165,19 +169,20 @@ ChildEnd run_child(const ChildRequest& request) {
   if (pipe2(ends, O_CLOEXEC) != 0) return no_child("pipe", errno);
   FileDescriptor report_read(ends[0]);
   FileDescriptor report_write(ends[1]);
-  const auto high = [](int fd) { return fcntl(fd, F_DUPFD_CLOEXEC, kChildLibraryFd + 1); };
+  const int above = kChildLibraryFd + static_cast<int>(request.library_fds.size());
+  const auto high = [above](int fd) { return fcntl(fd, F_DUPFD_CLOEXEC, above); };
   const FileDescriptor high_model(high(model_fd.get()));
   FileDescriptor high_report(high(report_write.get()));
-  const FileDescriptor high_library(request.library_fd < 0 ? -1 : high(request.library_fd));
-  if (high_model.get() < 0 || high_report.get() < 0 ||
-      (request.library_fd >= 0 && high_library.get() < 0)) {
-    return no_child("dup", errno);
+  if (high_model.get() < 0 || high_report.get() < 0) return no_child("dup", errno);
+  std::deque<FileDescriptor> libraries;
+  for (const int fd : request.library_fds) {
+    libraries.emplace_back(high(fd));
+    if (libraries.back().get() < 0) return no_child("dup", errno);
   }
 
   pid_t pid = -1;
   const Patience patience{Clock::now() + request.timeout, request.cancel};
-  const int error =
-      spawn_child(request, high_model.get(), high_report.get(), high_library.get(), &pid);
+  const int error = spawn_child(request, high_model.get(), high_report.get(), libraries, &pid);
   if (error != 0) return no_child("start of " + request.executable.string(), error);
   report_write.reset();
   high_report.reset();

@@ -17,7 +17,7 @@ struct ChildRequest {
   std::filesystem::path executable = "/proc/self/exe";
   std::vector<std::string> arguments;
   const GaitdModel* model = nullptr;          ///< handed to the child
-  int library_fd = -1;                        ///< handed to the child, if not negative
+  std::vector<int> library_fds;               ///< handed to the child
   std::chrono::milliseconds timeout{10000};   ///< wall time until it is killed
   const std::atomic<bool>* cancel = nullptr;  ///< true ends the child within 50 ms
 };

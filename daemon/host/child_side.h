@@ -7,13 +7,13 @@
 
 namespace gaitd::daemon {
 
-// What run_child() and its child agree on: the model is readable on kChildModelFd, the library, if
-// one was handed over, on kChildLibraryFd, and the child writes lines to kChildReportFd:
+// What run_child() and its child agree on: the model is readable on kChildModelFd, libraries that
+// were handed over on kChildLibraryFd and above, and the child writes lines to kChildReportFd:
 // "error <text>" before it gives up, "done" when all went well.
 inline constexpr int kChildModelFd = 3;
 inline constexpr int kChildReportFd = 4;
 inline constexpr int kChildLibraryFd = 5;
-inline constexpr const char* kChildLibraryPath = "/proc/self/fd/5";
+inline constexpr const char* kChildLibraryPath = "/proc/self/fd/5";  // of the first
 
 /// For the start of a child in which a crash is expected: no core file, no handler of a sanitizer,
 /// and no life after the parent.

@@ -68,8 +68,9 @@ std::unique_ptr<LibraryImage> LibraryImage::map(const PluginFile& file, const Ga
     if (!copy) return nullptr;
     image.reset(new LibraryImage(std::move(*copy)));
   }
-  const bool sound =
-      probe_options == nullptr || probe(image->copy_.fd(), model, refusal, *probe_options);
+  const bool proven = probe_options == nullptr ||
+                      (probe_options->proven != nullptr && probe_options->proven->hold(file));
+  const bool sound = proven || probe(image->copy_.fd(), model, refusal, *probe_options);
   if (sound && (image->handle_ != nullptr || image->open(file, refusal))) return image;
   if (image->handle_ == nullptr && image->is_mapped()) {
     keep(std::move(image));  // half initialised

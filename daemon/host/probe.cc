@@ -3,9 +3,12 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "daemon/host/child_process.h"
 #include "daemon/host/child_side.h"
@@ -16,7 +19,9 @@ namespace {
 
 // Every program that can probe can be the child as well, whatever its main() does.
 __attribute__((constructor)) void become_probe_child(int argc, char** argv, char**) {
-  if (argc == 3 && std::strcmp(argv[1], kProbeArgument) == 0) _exit(run_probe_child(argv[2]));
+  if (argc >= 3 && std::strcmp(argv[1], kProbeArgument) == 0) {
+    _exit(run_probe_child(argv + 2, argc - 2));
+  }
 }
 
 void judge(const ChildEnd& end, Refusal* refusal) {
@@ -41,7 +46,7 @@ bool probe(int library_fd, const GaitdModel& model, Refusal* refusal, const Prob
   const ChildEnd end = run_child({.executable = options.executable,
                                   .arguments = {kProbeArgument, kChildLibraryPath},
                                   .model = &model,
-                                  .library_fd = library_fd,
+                                  .library_fds = {library_fd},
                                   .timeout = options.timeout,
                                   .cancel = options.cancel});
   if (!end.start_error.empty()) {
@@ -51,6 +56,31 @@ bool probe(int library_fd, const GaitdModel& model, Refusal* refusal, const Prob
   }
   judge(end, refusal);
   return refusal->reasons.size() == before;
+}
+
+ProvenLibraries::ProvenLibraries(const std::vector<std::filesystem::path>& paths,
+                                 const GaitdModel& model) {
+  Refusal unused;
+  ChildRequest request{.arguments = {kProbeArgument}, .model = &model};
+  for (const std::filesystem::path& path : paths) {
+    const std::optional<PluginFile> file = read_plugin_file(path, std::nullopt, &unused);
+    std::optional<StagedCopy> copy = file ? StagedCopy::create(*file, &unused) : std::nullopt;
+    if (!copy) continue;
+    const int fd = kChildLibraryFd + static_cast<int>(copies_.size());
+    request.arguments.push_back("/proc/self/fd/" + std::to_string(fd));
+    request.library_fds.push_back(copy->fd());
+    copies_.push_back(std::move(*copy));
+  }
+  if (copies_.empty()) return;
+  const ChildEnd end = run_child(request);
+  const bool all =
+      end.start_error.empty() && end.abnormal_end().empty() && end.last("error ").empty();
+  if (!all) copies_.clear();
+}
+
+bool ProvenLibraries::hold(const PluginFile& file) const {
+  return std::any_of(copies_.begin(), copies_.end(),
+                     [&](const StagedCopy& copy) { return copy.holds(file.bytes); });
 }
 
 }  // namespace gaitd::daemon

@@ -45,36 +45,40 @@ bool try_layer(void* library, const GaitdHost& host, const GaitdPluginDescriptor
   return true;
 }
 
+bool try_library(const char* path, const GaitdModel& model) {
+  std::string error;
+  report_line("step load");
+  void* library = open_library(path, &error);
+  if (library == nullptr) {
+    report_line("error " + error);
+    return false;
+  }
+  const auto* descriptor =
+      static_cast<const GaitdPluginDescriptor*>(dlsym(library, GAITD_PLUGIN_SYMBOL));
+  if (descriptor == nullptr) {
+    report_line("error no symbol " GAITD_PLUGIN_SYMBOL);
+    return false;
+  }
+  std::string log;
+  const GaitdHost host{sizeof(GaitdHost), GAITD_ABI_MAJOR, &log, &remember_log};
+  const bool good = descriptor->layer == GAITD_LAYER_BACKEND
+                        ? try_backend(library, host, &error)
+                        : try_layer(library, host, *descriptor, model, &error);
+  if (!good) report_line("error " + error + (log.empty() ? "" : " (it logged: " + log + ")"));
+  return good;
+}
+
 }  // namespace
 
-int run_probe_child(const char* library_path) {
+int run_probe_child(const char* const* libraries, int count) {
   expect_the_worst();
   const auto model = std::make_unique<GaitdModel>();
   if (!read_model(model.get())) {
     report_line("error the model of the robot did not reach the child");
     return 1;
   }
-  std::string error;
-  report_line("step load");
-  void* library = open_library(library_path, &error);
-  if (library == nullptr) {
-    report_line("error " + error);
-    return 1;
-  }
-  const auto* descriptor =
-      static_cast<const GaitdPluginDescriptor*>(dlsym(library, GAITD_PLUGIN_SYMBOL));
-  if (descriptor == nullptr) {
-    report_line("error no symbol " GAITD_PLUGIN_SYMBOL);
-    return 1;
-  }
-  std::string log;
-  const GaitdHost host{sizeof(GaitdHost), GAITD_ABI_MAJOR, &log, &remember_log};
-  const bool good = descriptor->layer == GAITD_LAYER_BACKEND
-                        ? try_backend(library, host, &error)
-                        : try_layer(library, host, *descriptor, *model, &error);
-  if (!good) {
-    report_line("error " + error + (log.empty() ? "" : " (it logged: " + log + ")"));
-    return 1;
+  for (int i = 0; i < count; ++i) {
+    if (!try_library(libraries[i], *model)) return 1;
   }
   report_line("done");
   return 0;

@@ -290,6 +290,9 @@ Refusal GaitMachine::stop() {
     return {};
   }
   const GaitdFootstep current = queue_[0];
+  // What the feet were commanded to pass over is still there.
+  const double height =
+      std::max(current.swing_height, queue_.size() > 1 ? queue_[1].swing_height : 0.0);
   keep_first(kept);
   GaitdFootstep step = closing_step(stance, side);
   GaitdPose standing = state_.footholds[side].pose;
@@ -302,6 +305,7 @@ Refusal GaitMachine::stop() {
   }
   step.swing_duration = current.swing_duration;
   step.transfer_duration = current.transfer_duration;
+  step.swing_height = height;
   complete(step);
   queue_.push(step);
   publish_footsteps();

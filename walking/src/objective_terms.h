@@ -30,6 +30,14 @@ inline void leave_roll_free(const Eigen::Quaterniond& sole, GaitdTask& task) {
   task.row_mask &= ~kRollRow;
 }
 
+inline double heading(const GaitdPose& pose) {
+  return sdk::yaw_of(sdk::quaternion(pose.orientation));
+}
+
+inline double mean_heading(double a, double b) {
+  return a + 0.5 * std::remainder(b - a, 2.0 * M_PI);
+}
+
 inline Eigen::Vector3d rotation_error(const Eigen::Quaterniond& goal,
                                       const Eigen::Quaterniond& now) {
   return sdk::log_so3(goal * now.conjugate());

@@ -22,9 +22,10 @@ using sdk::view;
 // finds no ground.
 constexpr double kHeightRate = 2.3;
 constexpr double kDescentRate = 5.4;
-constexpr double kLevelRate = 1.0;    // 1/s, with which a walk levels the pelvis
-constexpr double kShortestLeg = 0.3;  // of its length
-constexpr double kShortStep = 0.2;    // leg lengths: a leg reaches so far with its sole flat
+constexpr double kLevelRate = 1.0;     // 1/s, with which a walk levels the pelvis
+constexpr double kLowestStand = 0.75;  // of the nominal height, also with a pose that lowers it
+constexpr double kShortestLeg = 0.3;   // of its length
+constexpr double kShortStep = 0.2;     // leg lengths: a leg reaches so far with its sole flat
 // Of the tasks: the height and the pelvis come to rest without an overshoot.
 constexpr double kHeightDamping = 1.0;
 constexpr double kTrunkDamping = 0.8;
@@ -40,10 +41,6 @@ constexpr double kReachShare = 0.9;
 constexpr double kReachDrop = 0.1;
 constexpr double kAnkleMargin = 0.05;  // rad, before the stop of an ankle whose knee bends
 constexpr double kYawRate = 6.0;       // 1/s, of the reference filter of the heading
-
-double heading(const GaitdPose& pose) { return sdk::yaw_of(sdk::quaternion(pose.orientation)); }
-
-double mean_heading(double a, double b) { return a + 0.5 * std::remainder(b - a, 2.0 * M_PI); }
 
 // Heading that the body turns to: half-way between the feet it will stand on next.
 double heading_target(const GaitdGaitState& gait) {
@@ -164,7 +161,8 @@ void ObjectiveBuilder::update_momentum(double dt, const GaitdRobotState& robot,
                        .trailing_share = kReachShare,
                        .nominal_separation = model_.nominal_foot_separation,
                        .largest_drop = kReachDrop * model_.nominal_com_height};
-  out.height_target = com_height_target(gait, reach) + references_.com_shift[2];
+  const double room = std::min(0.0, kLowestStand * model_.nominal_com_height - standing);
+  out.height_target = com_height_target(gait, reach) + std::max(references_.com_shift[2], room);
   const bool straight = gait.mode == GAITD_MODE_WALK_STRAIGHT;
   bool descends = false;
   if (gait.phase == GAITD_PHASE_SWING && !straight) {

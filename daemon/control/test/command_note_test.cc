@@ -41,6 +41,10 @@ TEST(CommandNote, SaysWhatWaits) {
     EXPECT_NE(note(type, kStanding, GAITD_PHASE_STAND, 1).find("resume"), std::string::npos);
   }
   EXPECT_NE(note(CommandType::kMode, kWalking, GAITD_PHASE_SWING), "");
+  // To the mode stand, which is that of the command here.
+  EXPECT_NE(note(CommandType::kMode, kStanding, GAITD_PHASE_STAND, 1, 3).find("dropped"),
+            std::string::npos);
+  EXPECT_EQ(note(CommandType::kMode, kStanding), "");
 }
 
 TEST(CommandNote, IsSilentWhereTheNameOfTheCommandSaysItAll) {

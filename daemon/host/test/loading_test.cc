@@ -284,5 +284,29 @@ TEST_F(Loading, ABackendBuiltBeforeHealthWasAddedHasNone) {
   EXPECT_EQ(backend->instance().vtable->health, nullptr);
 }
 
+TEST_F(Loading, LibrariesThatSurviveOneChildTogetherAreProven) {
+  const auto holds = [](const ProvenLibraries& proven, const std::string& name) {
+    Refusal unused;
+    const auto file = read_plugin_file(plugin_path(name), GAITD_LAYER_TOE_OFF, &unused);
+    return file && proven.hold(*file);
+  };
+  const ProvenLibraries good({plugin_path("good"), "/nowhere/plugin.so"}, *model_);
+  EXPECT_TRUE(holds(good, "good"));
+  EXPECT_FALSE(holds(good, "crash_in_init"));
+  const ProvenLibraries bad({plugin_path("good"), plugin_path("crash_in_init")}, *model_);
+  EXPECT_FALSE(holds(bad, "good"));
+
+  // Of a proven one no child is started; of others it is.
+  LoadedLayer::Request request;
+  request.path = plugin_path("good");
+  request.layer = GAITD_LAYER_TOE_OFF;
+  request.model = model_.get();
+  request.probe_options.executable = "/nowhere/gaitd";
+  request.probe_options.proven = &good;
+  EXPECT_TRUE(LoadedLayer::load(request, &refusal_)) << refusal_.text();
+  request.probe_options.proven = &bad;
+  EXPECT_FALSE(LoadedLayer::load(request, &refusal_));
+}
+
 }  // namespace
 }  // namespace gaitd::daemon
