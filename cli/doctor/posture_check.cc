@@ -8,6 +8,8 @@
 #include "cli/doctor/robot_doctor.h"
 #include "daemon/config/leg_kinematics.h"
 #include "gaitd/dynamics/dynamics.h"
+#include "gaitd/dynamics/kinematics.h"
+#include "gaitd/sdk/views.h"
 #include "gaitd/walking/polygon.h"
 
 namespace gaitd::doctor {
@@ -133,12 +135,52 @@ Findings check_torques(const GaitdModel& model) {
                  "effort limits in the URDF"}};
 }
 
+// The CoP of a robot on one leg goes no further from an axis of the ankle than its effort holds.
+Findings check_ankles(const GaitdModel& model) {
+  dynamics::Kinematics kinematics(model);
+  kinematics.update(Vector3d::Zero(), Eigen::Quaterniond::Identity(), dynamics::Vector6d::Zero(),
+                    Eigen::Map<const Eigen::VectorXd>(model.nominal_position, model.joint_count),
+                    Eigen::VectorXd::Zero(model.joint_count));
+  double most = 0.0;
+  double of_sole = 0.0;
+  double of_ankle = 0.0;
+  const char* joint = "";
+  for (int side = 0; side < GAITD_MAX_FEET; ++side) {
+    const GaitdFrame& sole = model.feet[side].sole;
+    const Eigen::Isometry3d X_WS = kinematics.X_WB(sole.body) *
+                                   Eigen::Translation3d(sdk::view(sole.origin)) *
+                                   sdk::quaternion(sole.orientation);
+    const int axes[] = {model.legs[side].ankle_pitch, model.legs[side].ankle_roll};
+    for (int axis = 0; axis < 2; ++axis) {
+      if (axes[axis] < 0) continue;
+      const GaitdJoint& ankle = model.joints[axes[axis]];
+      const double at = (X_WS.inverse() * kinematics.p_WB(ankle.child_body))[axis];
+      const double reach = ankle.effort_limit / (model.total_mass * model.gravity);
+      for (int p = 0; p < model.feet[side].point_count; ++p) {
+        const double far = std::abs(model.feet[side].points[p][axis] - at);
+        if (far - reach <= most) continue;
+        most = far - reach;
+        of_sole = far;
+        of_ankle = reach;
+        joint = ankle.name;
+      }
+    }
+  }
+  if (most <= 0.0) return {};
+  return {{"ankles", Severity::kWarning,
+           format("on one leg, %s holds the centre of pressure %.0f mm from its axis with all its "
+                  "effort; the sole goes on to %.0f mm",
+                  joint, 1e3 * of_ankle, 1e3 * of_sole),
+           "the gait counts on the whole sole: cut its outline in robot.yaml to 0.9 of what the "
+           "ankle holds, with the frame in the middle"}};
+}
+
 }  // namespace
 
 Findings check_posture(const GaitdModel& model) {
   Findings all;
-  for (const Findings& some :
-       {check_reach(model), check_stops(model), check_icp(model), check_torques(model)}) {
+  for (const Findings& some : {check_reach(model), check_stops(model), check_icp(model),
+                               check_torques(model), check_ankles(model)}) {
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;

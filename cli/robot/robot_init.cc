@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "cli/robot/ankle_reach.h"
 #include "cli/robot/drive_limits.h"
 #include "cli/robot/find_legs.h"
 #include "cli/robot/find_sensors.h"
@@ -168,6 +169,7 @@ bool find_feet(const Told& told, Guess* guess, std::string* error) {
           "leg above the ground, and how far the middle of the sole lies ahead of it";
       return false;
     }
+    cut_to_ankle(*guess, static_cast<int>(side), &sole);
     GaitdFoot& out = guess->model.feet[side];
     fill_frame(*guess, sole.frame, side == 0 ? "left_sole" : "right_sole", &out.sole);
     out.body = foot;
