@@ -14,21 +14,28 @@ bool is_number(const json& value) { return value.is_number(); }
 
 }  // namespace
 
-RobotMotion::RobotMotion(const dynamics::UrdfResult& robot, const Eigen::Isometry3d& X_LB,
-                         std::string urdf)
+RobotMotion::RobotMotion(const dynamics::UrdfResult& robot, std::string urdf)
     : model_(robot.model),
-      X_LB_(X_LB),
+      X_BL_(static_cast<std::size_t>(model_.body_count), Eigen::Isometry3d::Identity()),
       links_(robot.links),
       urdf_(std::move(urdf)),
       kinematics_(model_),
       position_(Eigen::VectorXd::Zero(model_.joint_count)),
       velocity_(position_),
       torque_(position_) {
-  for (dynamics::UrdfLink& link : links_) {
-    if (link.body != 0) continue;
-    link.p_BL = X_LB_ * link.p_BL;
-    link.R_BL = X_LB_.linear() * link.R_BL;
+  for (const dynamics::UrdfLink& link : links_) {
+    if (link.name != model_.bodies[link.body].name) continue;
+    X_BL_[static_cast<std::size_t>(link.body)] = Eigen::Translation3d(link.p_BL) * link.R_BL;
   }
+  for (dynamics::UrdfLink& link : links_) {
+    const Eigen::Isometry3d X_LB = X_BL_[static_cast<std::size_t>(link.body)].inverse();
+    link.p_BL = X_LB * link.p_BL;
+    link.R_BL = X_LB.linear() * link.R_BL;
+  }
+}
+
+Eigen::Isometry3d RobotMotion::X_WL(int body) const {
+  return kinematics_.X_WB(body) * X_BL_[static_cast<std::size_t>(body)];
 }
 
 std::unique_ptr<RobotMotion> RobotMotion::load(const std::map<std::string, std::string>& metadata) {
@@ -60,7 +67,7 @@ std::unique_ptr<RobotMotion> RobotMotion::load(const std::map<std::string, std::
   }
   const dynamics::UrdfResult robot = dynamics::load_urdf_text(urdf->second, "the log", options);
   if (!robot.ok()) return nullptr;
-  return std::unique_ptr<RobotMotion>(new RobotMotion(robot, options.X_LB(), urdf->second));
+  return std::unique_ptr<RobotMotion>(new RobotMotion(robot, urdf->second));
 }
 
 std::unique_ptr<RobotMotion> RobotMotion::create(const std::map<std::string, std::string>& metadata,
@@ -115,12 +122,11 @@ void RobotMotion::update(std::span<const double, 6> pelvis) {
 Eigen::Isometry3d RobotMotion::X_parent(int body) const {
   const int parent = model_.bodies[body].parent;
   if (parent < 0) return X_WP();
-  return (parent == 0 ? X_WP() : kinematics_.X_WB(parent)).inverse() * kinematics_.X_WB(body);
+  return X_WL(parent).inverse() * X_WL(body);
 }
 
 Eigen::Isometry3d RobotMotion::X_link(const dynamics::UrdfLink& link) const {
-  const Eigen::Isometry3d X_WB = link.body == 0 ? X_WP() : kinematics_.X_WB(link.body);
-  return X_WB * Eigen::Translation3d(link.p_BL) * link.R_BL;
+  return X_WL(link.body) * Eigen::Translation3d(link.p_BL) * link.R_BL;
 }
 
 }  // namespace gaitd::daemon

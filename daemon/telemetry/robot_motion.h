@@ -17,7 +17,8 @@
 namespace gaitd::daemon {
 
 // Where the bodies of the robot are by the signals of a tick, for those who show it: the frames are
-// those of the links of the URDF, also where robot.yaml gives the pelvis other axes.
+// those of the links of the URDF, also where robot.yaml gives the pelvis another frame or turns joints
+// around.
 class RobotMotion {
  public:
   // `metadata` of a log, which holds the URDF. Null where there is no robot in it, or the table
@@ -41,7 +42,7 @@ class RobotMotion {
 
   // ---- Of the tick that was read last.
   // Pose of the link of the pelvis in the world.
-  Eigen::Isometry3d X_WP() const { return kinematics_.X_WB(0) * X_LB_.inverse(); }
+  Eigen::Isometry3d X_WP() const { return X_WL(0); }
   // Pose of the link of a body in that of its parent, of the pelvis in the world.
   Eigen::Isometry3d X_parent(int body) const;
   // Pose of one of links() in the world.
@@ -51,7 +52,9 @@ class RobotMotion {
   const Eigen::VectorXd& torque() const { return torque_; }      // N m or N, measured
 
  private:
-  RobotMotion(const dynamics::UrdfResult& robot, const Eigen::Isometry3d& X_LB, std::string urdf);
+  RobotMotion(const dynamics::UrdfResult& robot, std::string urdf);
+  // Pose of the link that a body is called after.
+  Eigen::Isometry3d X_WL(int body) const;
   bool find_signals(const SignalTable& table);
   void update(std::span<const double, 6> pelvis);
 
@@ -59,7 +62,7 @@ class RobotMotion {
     int position = -1, velocity = -1, torque = -1;
   };
   GaitdModel model_;
-  Eigen::Isometry3d X_LB_;  // body 0 in the link of the pelvis
+  std::vector<Eigen::Isometry3d> X_BL_;  // by body, of the link that it is called after
   std::vector<dynamics::UrdfLink> links_;
   std::string urdf_;
   dynamics::Kinematics kinematics_;

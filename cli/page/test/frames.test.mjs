@@ -58,4 +58,22 @@ test('the pelvis of robot.yaml is at the origin, its x forward', {skip}, async (
   assert.deepEqual(await placed(turned, [0, 1, 0]), [1, 0, -0.5]);
   assert.deepEqual(await placed(turned, [0, 0, 0], 'base_footprint'), [0, 0, -1]);
   assert.deepEqual(await placed(undefined, [0, 0, 0]), [0, 0, 0.5]);
+  assert.deepEqual(await placed({link: 'pelvis', xyz: [0, 0, -0.5]}, [0, 0, 0]), [0, 0, 0]);
+});
+
+test('a pelvis below a joint that moves stays at the origin', {skip}, async () => {
+  const {pelvisMoves, rootAtPelvis} = await import('../src/shared/frames.js');
+  const [{Vector3}] = packages;
+  const robot = await made(), moved = new Set(['hip']);
+  assert.ok(pelvisMoves(robot, {link: 'leg'}, moved));
+  assert.ok(!pelvisMoves(robot, 'pelvis', moved));
+  for (const angle of [0, Math.PI / 2]) {
+    robot.joints.hip.setJointValue(angle);
+    rootAtPelvis(robot, 'leg');
+    robot.updateMatrixWorld(true);
+    const at = (link, point) => robot.links[link].localToWorld(new Vector3(...point)).toArray()
+        .map((v) => Math.round(1e6 * v) / 1e6 + 0);
+    assert.deepEqual(at('leg', [0.2, 0, 0]), [0.2, 0, 0]);
+    assert.deepEqual(at('pelvis', [1, 0, 0]), angle === 0 ? [1, 0, 0.5] : [0, -1, 0.5]);
+  }
 });

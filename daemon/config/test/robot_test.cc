@@ -349,6 +349,7 @@ TEST(Robot, FixesJointsAndTurnsThePelvis) {
   EXPECT_EQ(errors_of_robot(text), "");
   EXPECT_ERROR("chest: utorso", "chest: utorso\nfixed: [l_thumb]",
                "fixed: expected a joint of the URDF or a glob (*_finger_*), got l_thumb");
+  EXPECT_EQ(errors_of_robot(replaced(text, "rpy: [0, 0, 0]}", "xyz: [0, 0, 0.1]}")), "");
   // The soles follow the frame of the pelvis.
   EXPECT_ERROR("pelvis: pelvis", "pelvis: {link: pelvis, rpy: [0, 0, 1.5708]}",
                "level soles that point forward");

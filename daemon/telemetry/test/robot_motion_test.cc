@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace gaitd::daemon {
@@ -57,6 +58,32 @@ TEST(RobotMotion, FramesAreThoseOfTheLinksWhateverAxesThePelvisHas) {
       << "in the link, as the file has it";
   EXPECT_TRUE(leg.linear().isIdentity(1e-12)) << leg.linear();
   EXPECT_LT((X_WP * leg.translation() - Eigen::Vector3d(1, 1.9, 2.5)).norm(), 1e-12);
+}
+
+// The root of the file is the chest; body 0 is the pelvis, with an origin of its own.
+TEST(RobotMotion, FramesAreThoseOfTheLinksAlsoAboveATurnedJoint) {
+  const std::string urdf = "<robot name='made'>" + link("chest") + link("head") + link("pelvis") +
+                           joint("neck", "fixed", "chest", "head", "0 0 0.5", "") +
+                           joint("waist", "revolute", "chest", "pelvis", "0.1 0 -0.3",
+                                 "<limit lower='-2' upper='2' velocity='1' effort='1'/>") +
+                           "</robot>";
+  const auto motion =
+      RobotMotion::load({{"robot_urdf", urdf}, {"pelvis", "pelvis"}, {"pelvis_origin", "[0, 0, 0.2]"}});
+  ASSERT_NE(motion, nullptr);
+  const std::array pelvis = {0.0, 0.0, 1.2, 0.0, 0.0, 0.0};  // of body 0
+  motion->place(pelvis, std::array{M_PI_2});
+  EXPECT_TRUE(motion->X_WP().translation().isApprox(Eigen::Vector3d(0, 0, 1.0)));
+  for (const dynamics::UrdfLink& one : motion->links()) {
+    const Eigen::Isometry3d X = motion->X_link(one);
+    // The pelvis is turned by a quarter to the left against the chest, so that looks to its right.
+    const Eigen::Vector3d expected = one.name == "pelvis"  ? Eigen::Vector3d(0, 0, 1.0)
+                                     : one.name == "chest" ? Eigen::Vector3d(0, 0.1, 1.3)
+                                                           : Eigen::Vector3d(0, 0.1, 1.8);
+    EXPECT_LT((X.translation() - expected).norm(), 1e-12)
+        << one.name << ": " << X.translation().transpose();
+  }
+  const Eigen::Isometry3d chest = motion->X_WP() * motion->X_parent(1);
+  EXPECT_LT((chest.translation() - Eigen::Vector3d(0, 0.1, 1.3)).norm(), 1e-12);
 }
 
 TEST(RobotMotion, WhatIsFixedIsWhereGaitdTakesItToBe) {

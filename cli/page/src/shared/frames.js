@@ -17,11 +17,20 @@ export function fixJoints(robot, moved) {
 }
 
 // Puts the robot so that the body whose pose is in the signals is at the origin: `pelvis` of robot.yaml, a link or
-// {link, rpy}, the axes x forward, y left, z up in it. Whatever the file begins with may be elsewhere.
+// {link, xyz, rpy}, the axes x forward, y left, z up in it. Whatever the file begins with may be elsewhere.
 export function rootAtPelvis(robot, pelvis) {
-  const {link, rpy = [0, 0, 0]} = typeof pelvis === 'object' && pelvis ? pelvis : {link: pelvis};
+  const {link, xyz = [0, 0, 0], rpy = [0, 0, 0]} = typeof pelvis === 'object' && pelvis ? pelvis : {link: pelvis};
   robot.updateMatrixWorld(true);
   const body = new THREE.Matrix4().makeRotationFromEuler(new THREE.Euler(...rpy.map(Number), 'ZYX'));
-  body.premultiply((robot.links[link] ?? robot).matrixWorld);
-  robot.applyMatrix4(body.invert());
+  body.setPosition(...xyz.map(Number));
+  body.premultiply((robot.links[link] ?? robot).matrixWorld).premultiply(robot.matrixWorld.clone().invert());
+  body.invert().decompose(robot.position, robot.quaternion, robot.scale);
+}
+
+// Whether joints of `moved`, names, lie between the pelvis and what the file begins with: the robot is put at its
+// pelvis again whenever they move.
+export function pelvisMoves(robot, pelvis, moved) {
+  let at = robot.links[typeof pelvis === 'object' && pelvis ? pelvis.link : pelvis] ?? robot;
+  for (; at && at !== robot; at = at.parent) if (moved.has(at.urdfName) && at.isURDFJoint) return true;
+  return false;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import * as THREE from 'three';
 import URDFLoader from 'urdf-loader';
-import {fixJoints, rootAtPelvis} from './frames.js';
+import {fixJoints, pelvisMoves, rootAtPelvis} from './frames.js';
 import {addSticks, isBare} from './sticks.js';
 
 export function material(color, opacity = 1) {
@@ -46,8 +46,10 @@ export class Robot {
         .map((joint) => ({joint, signal: `joint/${joint.urdfName}/position`,
                           get column() { return log.column(this.signal); }}))
         .filter(({signal}) => log.has(signal));
-    fixJoints(robot, new Set(this.joints.map(({joint}) => joint.urdfName)));
+    const moved = new Set(this.joints.map(({joint}) => joint.urdfName));
+    fixJoints(robot, moved);
     rootAtPelvis(robot, log.robot?.pelvis);
+    if (pelvisMoves(robot, log.robot?.pelvis, moved)) this.rootAgain = () => rootAtPelvis(robot, log.robot.pelvis);
     this.pelvis.add(robot);
   }
 
@@ -57,6 +59,7 @@ export class Robot {
     pelvis.position.set(...log.point(from, row));
     pelvis.rotation.set(...['roll', 'pitch', 'yaw'].map((a) => log.value(`${from}/${a}`, row)), 'ZYX');
     for (const {joint, signal} of this.joints) joint.setJointValue(log.value(signal, row));
+    this.rootAgain?.();
   }
 
   // The orientation of a link in the world, likewise.
