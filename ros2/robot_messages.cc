@@ -189,8 +189,10 @@ bool RobotMessages::read(std::span<const double> values, Stamp stamp) {
   const Eigen::Vector3d& p = X_WP.translation();
   const Eigen::Quaterniond R_WP(X_WP.linear());
   odometry_.pose.pose = {{p.x(), p.y(), p.z()}, quaternion(R_WP)};
-  odometry_.twist.twist.linear = vector(R_WP.conjugate() * pick(values, velocity_));
-  odometry_.twist.twist.angular = vector(R_WP.conjugate() * pick(values, angular_velocity_));
+  const Eigen::Vector3d w = pick(values, angular_velocity_);
+  const Eigen::Vector3d v = pick(values, velocity_) + w.cross(p - motion_->p_W0());
+  odometry_.twist.twist.linear = vector(R_WP.conjugate() * v);
+  odometry_.twist.twist.angular = vector(R_WP.conjugate() * w);
   for (std::size_t side = 0; side < feet_.size(); ++side) {
     const Eigen::Quaterniond R_SW = rotation(pick(values, feet_[side].rpy)).conjugate();
     wrenches_[side].wrench.force = vector(R_SW * pick(values, feet_[side].force));

@@ -15,6 +15,7 @@
 namespace gaitd::doctor {
 namespace {
 
+constexpr double kBeyondAnkle = 1.25;  // of what an ankle holds, from which a sole is too large
 constexpr double kNearStop = 0.05;     // rad
 constexpr double kLeastBend = 0.01;    // of the leg length
 constexpr double kLowestPelvis = 0.4;  // of the leg length: it tells a fall by its height
@@ -158,7 +159,7 @@ Findings check_ankles(const GaitdModel& model) {
       const double reach = ankle.effort_limit / (model.total_mass * model.gravity);
       for (int p = 0; p < model.feet[side].point_count; ++p) {
         const double far = std::abs(model.feet[side].points[p][axis] - at);
-        if (far - reach <= most) continue;
+        if (far <= kBeyondAnkle * reach || far - reach <= most) continue;
         most = far - reach;
         of_sole = far;
         of_ankle = reach;

@@ -10,10 +10,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kAnkleShare = 0.9;   // of its effort: friction and acceleration need the rest
-constexpr double kNoAnkle = 3.0;  // an effort over weight times m of leg that no ankle has
-constexpr double kCut = 0.003;        // m, less is left alone
-constexpr double kLeastSole = 4e-5;   // m^2, of what is left
+constexpr double kAnkleShare = 0.9;  // of its effort: friction and acceleration need the rest
+constexpr double kCut = 0.003;       // m, less is left alone
+constexpr double kLeastSole = 4e-5;  // m^2, of what is left
 
 // Of a convex outline, the part with p[axis] * sign <= limit.
 std::vector<Vector2d> cut(const std::vector<Vector2d>& outline, int axis, double sign,
@@ -42,33 +41,25 @@ void cut_to_ankle(const Guess& guess, int side, SoleGuess* sole) {
   const Eigen::Isometry3d X_WS = at(leg.joints.back()) * sole->frame.X_LF;
   const double weight = model.total_mass * model.gravity;
   std::vector<Vector2d> outline = sole->outline;
+  Reasons why;
   const auto hold = [&](int joint, int axis, const char* where) {
-    if (joint < 0 || model.joints[joint].effort_limit > kNoAnkle * weight) return;
+    if (joint < 0) return;
     const double reach = kAnkleShare * model.joints[joint].effort_limit / weight;
     const double middle = (X_WS.inverse() * at(joint).translation())[axis];
     double beyond = 0.0;
     for (const Vector2d& p : outline) beyond = std::max(beyond, std::abs(p[axis] - middle) - reach);
     if (beyond < kCut) return;
     outline = cut(cut(outline, axis, 1.0, middle + reach), axis, -1.0, reach - middle);
-    sole->frame.why.push_back(
+    why.push_back(
         format("Cut: with %.0f %% of its effort %s holds the whole robot %.0f mm %s its axis.",
                100.0 * kAnkleShare, model.joints[joint].name, 1e3 * reach, where));
   };
   hold(leg.ankle_pitch, 0, "ahead of and behind");
   hold(leg.ankle_roll, 1, "to both sides of");
   outline = convex_hull(outline);
-  if (outline.size() < 3 || outline.size() > 7 || polygon_area(outline) < kLeastSole) return;
-  Vector2d least = outline[0];
-  Vector2d most = outline[0];
-  for (const Vector2d& p : outline) {
-    least = least.cwiseMin(p);
-    most = most.cwiseMax(p);
-  }
-  const Vector2d middle = 0.5 * (least + most);
-  for (Vector2d& p : outline) p -= middle;
-  sole->outline = outline;
-  sole->frame.X_LF.translation() +=
-      sole->frame.X_LF.linear() * Eigen::Vector3d(middle.x(), middle.y(), 0.0);
+  if (why.empty() || outline.size() < 3 || polygon_area(outline) < kLeastSole) return;
+  set_outline(std::move(outline), sole);
+  sole->frame.why.insert(sole->frame.why.end(), why.begin(), why.end());
 }
 
 }  // namespace gaitd::porting

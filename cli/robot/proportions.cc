@@ -17,6 +17,8 @@ constexpr double kLength = 0.25;       // m
 constexpr double kSwingHeight = 0.13;  // m
 constexpr double kLikeAtlas = 0.25;    // of the scale
 constexpr double kSlowest = 4.0;       // of the swing by scale
+constexpr double kAnyTime = 60.0;      // s, in which a swing asks for no speed
+constexpr int kTries = 8;
 
 struct Scaled {
   const char* name;
@@ -32,21 +34,17 @@ double rounded(double value) {
   return std::round(value / unit) * unit;
 }
 
-// s, of the swing of a first step, or longer where hip and knee are too slow for that.
-double possible_swing(const GaitdModel& model, const Proportions& p) {
-  const walking::SwingLimits limits(model);
+// Whether hip and knee can take a first step in a swing of so long (s).
+bool can_step(const GaitdModel& model, const Proportions& p, double swing) {
   const double aside = 0.5 * model.nominal_foot_separation;
-  GaitdPose stance{{0.0, -aside, 0.0}, {0.0, 0.0, 0.0, 1.0}};
-  GaitdPose from{{-p.length, aside, 0.0}, {0.0, 0.0, 0.0, 1.0}};
+  const GaitdPose stance{{0.0, -aside, 0.0}, {0.0, 0.0, 0.0, 1.0}};
+  const GaitdPose from{{-p.length, aside, 0.0}, {0.0, 0.0, 0.0, 1.0}};
   GaitdFootstep step{};
   step.side = GAITD_LEFT;
   step.pose = {{p.length, aside, 0.0}, {0.0, 0.0, 0.0, 1.0}};
   step.swing_height = p.swing_height;
-  for (step.swing_duration = p.swing; step.swing_duration < kSlowest * p.swing;
-       step.swing_duration *= 1.05) {
-    if (!limits.check(step, stance, from, 1).refused()) break;
-  }
-  return step.swing_duration;
+  step.swing_duration = swing;
+  return !walking::SwingLimits(model).check(step, stance, from, 1).refused();
 }
 
 }  // namespace
@@ -65,13 +63,18 @@ void find_proportions(Guess* guess) {
       format("Scaled from Atlas, whose centre of mass is %.2f m high: here %.2f m, so lengths are "
              "%.2f and times %.2f times as large.",
              kComHeight, height, p.scale, time));
-  const double swing = possible_swing(model, p);
-  if (swing <= p.swing) return;
-  const double slower = swing / p.swing;
-  p.swing = rounded(swing);
+  for (int i = 0; i < kTries && !can_step(model, p, kAnyTime); ++i) {
+    p.swing_height = rounded(0.8 * p.swing_height);
+    if (i == 0) guess->proportions_why.emplace_back("Knees fold no further: feet are lifted less.");
+  }
+  double slower = 1.0;
+  while (slower < kSlowest && !can_step(model, p, slower * p.swing)) slower *= 1.05;
+  if (slower == 1.0) return;
+  p.swing = rounded(slower * p.swing);
   p.transfer = rounded(slower * p.transfer);
   guess->proportions_why.push_back(
-      format("Hip or knee are slower than that: times are %.2f times longer.", slower));
+      format("Hip or knee are slower than that: times are %.2f times longer%s.", slower,
+             can_step(model, p, p.swing) ? "" : ", and still too short"));
 }
 
 std::vector<std::pair<std::string, double>> scaled_parameters(const Proportions& proportions) {

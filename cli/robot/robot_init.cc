@@ -2,6 +2,7 @@
 #include "cli/robot/robot_init.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <set>
@@ -219,7 +220,8 @@ bool guess_robot(const std::string& urdf, const std::string& name, const Told& t
   if (!dynamics::read_urdf_text(urdf, &text, error)) return false;
   guess->outline = dynamics::read_urdf_outline(text);
   guess->fixed = joints_to_fix(guess->outline);
-  if (!told.sole.empty() && !(told.sole[0] > 0 && told.sole[1] > 0 && told.sole[2] >= 0)) {
+  if (!told.sole.empty() &&
+      !(told.sole[0] > 0 && told.sole[1] > 0 && told.sole[2] >= 0 && std::isfinite(told.sole[3]))) {
     *error = "--sole: expected a length and a width above 0, and a height";
     return false;
   }

@@ -190,6 +190,26 @@ double polygon_area(const std::vector<Vector2d>& points) {
   return area;
 }
 
+void set_outline(std::vector<Vector2d> outline, SoleGuess* sole) {
+  std::vector<double> flat;
+  for (const Vector2d& p : outline) flat.insert(flat.end(), {p.x(), p.y()});
+  daemon::reduce_outline(kMostCorners, &flat);
+  outline.clear();
+  for (std::size_t i = 0; i < flat.size(); i += 2) outline.emplace_back(flat[i], flat[i + 1]);
+  Vector2d least = outline[0];
+  Vector2d most = outline[0];
+  for (const Vector2d& p : outline) {
+    least = least.cwiseMin(p);
+    most = most.cwiseMax(p);
+  }
+  const Vector2d middle = 0.5 * (least + most);
+  const Eigen::Matrix3d& R = sole->frame.X_LF.linear();
+  sole->frame.X_LF.translation() += R.col(0) * middle.x() + R.col(1) * middle.y();
+  // Convex as it is written, too.
+  for (Vector2d& p : outline) p = ((p - middle) / kWritten).array().round().matrix() * kWritten;
+  sole->outline = convex_hull(std::move(outline));
+}
+
 bool find_sole(const std::vector<ShapePoint>& points, const Vector3d& down, const Vector3d& forward,
                SoleGuess* sole, std::string* error) {
   // As the foot hangs, as its link lies or as its shapes do: whichever shows the larger flat part.
@@ -235,29 +255,15 @@ bool find_sole(const std::vector<ShapePoint>& points, const Vector3d& down, cons
   std::vector<Vector2d> hull = hull_along(low, R.col(0), R.col(1));
   drop_straight(&hull);
   const std::size_t corners = hull.size();
-  std::vector<double> flat_points;
-  for (const Vector2d& p : hull) flat_points.insert(flat_points.end(), {p.x(), p.y()});
-  daemon::reduce_outline(kMostCorners, &flat_points);
-  hull.clear();
-  for (std::size_t i = 0; i < flat_points.size(); i += 2) {
-    hull.emplace_back(flat_points[i], flat_points[i + 1]);
-  }
-  Vector2d least = hull[0];
-  Vector2d most = hull[0];
-  for (const Vector2d& p : hull) {
-    least = least.cwiseMin(p);
-    most = most.cwiseMax(p);
-  }
-  const Vector2d middle = 0.5 * (least + most);
   double bottom = -1e9;
   for (const ShapePoint& point : points) bottom = std::max(bottom, depth(point, best));
   sole->frame.X_LF.linear() = R;
-  sole->frame.X_LF.translation() = R.col(0) * middle.x() + R.col(1) * middle.y() + best * bottom;
-  // Convex as it is written, too.
-  for (Vector2d& p : hull) p = ((p - middle) / kWritten).array().round().matrix() * kWritten;
-  sole->outline = convex_hull(std::move(hull));
+  sole->frame.X_LF.translation() = best * bottom;
+  set_outline(std::move(hull), sole);
+  Vector2d size = Vector2d::Zero();
+  for (const Vector2d& p : sole->outline) size = size.cwiseMax(2.0 * p);
   sole->frame.why.push_back(format("The lowest corners, %.0f mm long and %.0f mm wide%s.",
-                                   1e3 * (most.x() - least.x()), 1e3 * (most.y() - least.y()),
+                                   1e3 * size.x(), 1e3 * size.y(),
                                    corners > kMostCorners ? ", outline reduced to 7 points" : ""));
   return true;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "cli/robot/guess.h"
 
@@ -24,6 +25,10 @@ std::vector<ShapePoint> shape_points(const Guess& guess, int body, Reasons* why)
 // in `error` if nothing is flat.
 bool find_sole(const std::vector<ShapePoint>& points, const Eigen::Vector3d& down,
                const Eigen::Vector3d& forward, SoleGuess* sole, std::string* error);
+
+// Takes a convex outline, in the frame of `sole`, as it can be written: of few corners, about the
+// middle, to which the frame moves.
+void set_outline(std::vector<Eigen::Vector2d> outline, SoleGuess* sole);
 
 // Convex hull, counter-clockwise.
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points);

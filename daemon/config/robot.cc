@@ -265,6 +265,7 @@ std::optional<Robot> read_robot(const NodePtr& document, const std::string& file
   geometry.read_hands(&root);
   geometry.read_capsules(&root);
   geometry.read_legs(&root);
+  geometry.read_drive_limits(root.map("drive_limits"));
   geometry.read_posture(&root);
   std::array<double, GAITD_MAX_JOINTS> rotor_inertia{};
   geometry.read_joint_values(root.map("rotor_inertia"), {0.0, 100.0, "kg m^2"},
@@ -272,7 +273,6 @@ std::optional<Robot> read_robot(const NodePtr& document, const std::string& file
   for (int i = 0; i < robot.model.joint_count; ++i) {
     robot.model.joints[i].rotor_inertia = rotor_inertia[i];
   }
-  geometry.read_drive_limits(root.map("drive_limits"));
   read_parameters(root.map("parameters"), SettingSource::kRobot, settings, &found);
   read_profiles(root.map("profiles"), profile, &geometry, settings, &robot);
   robot.can = root.node("can");

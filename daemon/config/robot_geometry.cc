@@ -306,7 +306,7 @@ void RobotGeometry::read_posture(MapReader* root) {
     const GaitdJoint& j = model_->joints[index];
     if (*value < j.position_min || *value > j.position_max) {
       posture.fail(entry.key, "a position " + limits_text(j), describe(*entry.value),
-                   "choose one inside the limits of the URDF");
+                   "choose one inside the limits of the URDF and of drive_limits");
     }
   }
   for (int i = 0; i < model_->joint_count; ++i) {
@@ -335,16 +335,18 @@ void RobotGeometry::read_joint_values(MapReader map, const Bounds& bounds, doubl
 // Where it tells none this is the only place.
 void RobotGeometry::read_drive_limits(MapReader map) {
   const GaitdModel urdf = *model_;
+  std::vector<std::string> without_range = urdf_->joints_without_range;
   for (const Node::Entry& entry : map.entries()) {
     const std::string path = map.path_of(entry.key);
     MapReader limits(entry.value, path, issues_);
     const auto effort = limits.number("effort", {1e-3, 1e6, "N m"});
     const auto velocity = limits.number("velocity", {1e-3, 1e4, "rad/s"});
     std::array<double, 2> range{};
-    const bool has_range = limits.numbers("range", range, kAngle);
+    bool has_range = limits.numbers("range", range, kRange);
     if (has_range && !(range[0] < range[1])) {
       limits.fail("range", "the lower end before the upper one",
                   printed(range[0]) + " and " + printed(range[1]), "");
+      has_range = false;
     }
     limits.finish();
     for (const int index : joints_like(entry, path)) {
@@ -363,21 +365,30 @@ void RobotGeometry::read_drive_limits(MapReader map) {
       take("effort", effort, urdf.joints[index].effort_limit, &joint.effort_limit);
       take("velocity", velocity, urdf.joints[index].velocity_limit, &joint.velocity_limit);
       if (!has_range) continue;
-      joint.position_min = std::max(range[0], urdf.joints[index].position_min);
-      joint.position_max = std::min(range[1], urdf.joints[index].position_max);
-      if (joint.position_min < joint.position_max) continue;
-      limits.fail("range", "one within that of the URDF for " + std::string(joint.name),
-                  printed(range[0]) + " and " + printed(range[1]), "");
+      std::erase(without_range, joint.name);
+      const GaitdJoint& most = urdf.joints[index];
+      if (range[0] >= most.position_min && range[1] <= most.position_max) {
+        joint.position_min = range[0];
+        joint.position_max = range[1];
+      } else {
+        limits.fail("range",
+                    "one within that of the URDF for " + std::string(joint.name) + ", " +
+                        printed(most.position_min) + " to " + printed(most.position_max),
+                    printed(range[0]) + " to " + printed(range[1]), "");
+      }
     }
   }
+  const auto lacks = [&](const std::string& joint, const char* what) {
+    issues_->add(map.where(joint), "drive_limits",
+                 std::string(what) + " of " + joint + ", which the URDF does not give", "none",
+                 "write what its drive can do, or make the joint fixed");
+  };
   for (int i = 0; urdf_->ok() && i < model_->joint_count; ++i) {
     const GaitdJoint& joint = model_->joints[i];
     if (std::max(joint.effort_limit, joint.velocity_limit) < dynamics::kNoUrdfLimit) continue;
-    issues_->add(
-        map.where(joint.name), "drive_limits",
-        "effort and velocity of " + std::string(joint.name) + ", which the URDF does not give",
-        "none", "write what its drive can do, or make the joint fixed");
+    lacks(joint.name, "effort and velocity");
   }
+  for (const std::string& joint : without_range) lacks(joint, "the range");
 }
 
 }  // namespace gaitd::daemon

@@ -112,7 +112,8 @@ void ControlLoop::take_plan() {
     note_goto(goto_.message());
   } else if (step != GotoTask::Step::kWait) {
     reply.accepted = step == GotoTask::Step::kDone;
-    const bool waits = reply.accepted && pipeline_->gait().state().paused != 0;
+    const GaitdGaitState& gait = pipeline_->gait().state();
+    const bool waits = reply.accepted && gait.paused != 0 && gait.footstep_count > 0;
     std::snprintf(reply.message.data(), reply.message.size(), "%s%s", goto_.message(),
                   waits ? "; paused: the footsteps wait for `gaitctl resume`" : "");
     tell_goto(goto_.command(), goto_.from_client(), reply);

@@ -88,11 +88,18 @@ bool Safety::update(double dt, const TickData& d, bool walking) {
   return false;
 }
 
-// Ankles may be too weak for their stiffness by effort to hold the weight above them: it topples.
+// What joints that pitch count for at least, N m. Ankle, knee and hip in a row hold the weight
+// above them like springs; where their stiffness by effort is too little for that the robot
+// topples.
 double Safety::holding_effort(int joint) const {
   for (const GaitdLeg& leg : model_.legs) {
-    if (joint != leg.hip_pitch && joint != leg.knee && joint != leg.ankle_pitch) continue;
-    return kReadyEffort * model_.total_mass * model_.gravity * model_.nominal_com_height;
+    const std::array<int, 3> pitches = {leg.hip_pitch, leg.knee, leg.ankle_pitch};
+    if (std::find(pitches.begin(), pitches.end(), joint) == pitches.end()) continue;
+    const double least =
+        kReadyEffort * model_.total_mass * model_.gravity * model_.nominal_com_height;
+    double give = 0.0;
+    for (const int i : pitches) give += least / model_.joints[i].effort_limit;
+    return give > 3.0 ? least : 0.0;
   }
   return 0.0;
 }

@@ -61,8 +61,8 @@ class Safety {
   static constexpr double kReadyLoad = 0.6;  // weights, on both feet together before standing
   // s, damping of the joints while readying over their stiffness.
   static constexpr double kReadyDamping = 1.0 / 32.0;
-  // Of weight times height: what a joint that pitches counts for at least while readying. By the
-  // default stiffness legs are 1.2 times as stiff as an upright robot needs.
+  // Of weight times height: with so much at ankle, knee and hip, and the default stiffness, two
+  // legs are 1.2 times as stiff as a robot needs to stay upright.
   static constexpr double kReadyEffort = 0.22;
 
   double holding_effort(int joint) const;

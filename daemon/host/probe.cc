@@ -73,8 +73,8 @@ ProvenLibraries::ProvenLibraries(const std::vector<std::filesystem::path>& paths
   }
   if (copies_.empty()) return;
   const ChildEnd end = run_child(request);
-  const bool all =
-      end.start_error.empty() && end.abnormal_end().empty() && end.last("error ").empty();
+  const bool all = end.last("survived ") == request.arguments.back() && end.start_error.empty() &&
+                   end.abnormal_end().empty() && end.last("error ").empty();
   if (!all) copies_.clear();
 }
 

@@ -79,6 +79,7 @@ int run_probe_child(const char* const* libraries, int count) {
   }
   for (int i = 0; i < count; ++i) {
     if (!try_library(libraries[i], *model)) return 1;
+    report_line(std::string("survived ") + libraries[i]);
   }
   report_line("done");
   return 0;

@@ -4,7 +4,8 @@
 namespace gaitd::daemon {
 
 // The child of probe() is started as `<program> kProbeArgument <library>...`. Besides what
-// child_side.h says it writes "step <name>" before each step.
+// child_side.h says it writes "step <name>" before each step and "survived <library>" after all of
+// one.
 inline constexpr const char* kProbeArgument = "--gaitd-probe-plugin";
 
 /// Runs the child to its end and returns its exit code. `count` paths of libraries.

@@ -17,8 +17,8 @@
 namespace gaitd::daemon {
 
 // Where the bodies of the robot are by the signals of a tick, for those who show it: the frames are
-// those of the links of the URDF, also where robot.yaml gives the pelvis another frame or turns joints
-// around.
+// those of the links of the URDF, also where robot.yaml gives the pelvis another frame or turns
+// joints around.
 class RobotMotion {
  public:
   // `metadata` of a log, which holds the URDF. Null where there is no robot in it, or the table
@@ -43,6 +43,8 @@ class RobotMotion {
   // ---- Of the tick that was read last.
   // Pose of the link of the pelvis in the world.
   Eigen::Isometry3d X_WP() const { return X_WL(0); }
+  // m, origin of body 0 in the world, whose velocity is in the signals.
+  Eigen::Vector3d p_W0() const { return kinematics_.p_WB(0); }
   // Pose of the link of a body in that of its parent, of the pelvis in the world.
   Eigen::Isometry3d X_parent(int body) const;
   // Pose of one of links() in the world.

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "gaitd/dynamics/model_check.h"
+#include "merged_mass.h"
 #include "urdf_elements.h"
 #include "xml_reader.h"
 
@@ -26,23 +27,6 @@ constexpr double kCross = 0.01;    // kg, of a link between two joints that was 
 void copy_rotation(const Matrix3d& from, double (&to)[4]) {
   Eigen::Vector4d::Map(to) = Eigen::Quaterniond(from).normalized().coeffs();
 }
-
-// Adds a rigid part to a body; all three quantities of both in the axes of the body.
-struct MergedMass {
-  double mass = 0;
-  Vector3d com = Vector3d::Zero();
-  Matrix3d inertia = Matrix3d::Zero();  // about com
-
-  void add(double part_mass, const Vector3d& part_com, const Matrix3d& part_inertia) {
-    if (part_mass <= 0) return;
-    const double total = mass + part_mass;
-    const Vector3d d = part_com - com;
-    inertia += part_inertia + (mass * part_mass / total) *
-                                  (d.squaredNorm() * Matrix3d::Identity() - d * d.transpose());
-    com += (part_mass / total) * d;
-    mass = total;
-  }
-};
 
 class TreeBuilder {
  public:
@@ -290,6 +274,7 @@ class TreeBuilder {
     Vector3d::Map(joint.origin) = X_PJ.translation();
     copy_rotation(X_PJ.linear(), joint.orientation);
     Vector3d::Map(joint.axis) = down ? from.axis : Vector3d(-from.axis);
+    if (from.lacks_range) result_.joints_without_range.push_back(from.name);
     joint.position_min = from.lower;
     joint.position_max = from.upper;
     joint.velocity_limit = from.velocity;

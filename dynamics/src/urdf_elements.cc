@@ -235,12 +235,15 @@ class ElementReader {
     joint->upper = kNoUrdfLimit;
     if (limit == nullptr && !limits_required_) {
       joint->velocity = joint->effort = kNoUrdfLimit;
-      if (!continuous) warn_of_range(joint->line, owner);
+      joint->lacks_range = !continuous;
     } else if (limit == nullptr) {
       xml_.add_error(joint->line, owner + ": has no <limit>; give " +
                                       (continuous ? "velocity and effort"
                                                   : "lower, upper, velocity and effort"));
     } else if (from.limits != nullptr) {
+      const bool ranged =
+          limit->Attribute("lower") != nullptr || limit->Attribute("upper") != nullptr;
+      joint->lacks_range = !limits_required_ && !continuous && !ranged;
       read_limit(limit->Row(), *from.limits, owner, continuous, joint);
     }
   }
@@ -249,11 +252,7 @@ class ElementReader {
                   bool continuous, UrdfJointElement* joint) {
     joint->velocity = positive_limit(line, "velocity", limits.velocity, owner);
     joint->effort = positive_limit(line, "effort", limits.effort, owner);
-    if (continuous) return;
-    if (!limits_required_ && limits.lower == limits.upper) {
-      warn_of_range(line, owner);
-      return;
-    }
+    if (continuous || joint->lacks_range) return;
     joint->lower = limits.lower;
     joint->upper = limits.upper;
     if (!(joint->lower < joint->upper)) {
@@ -261,10 +260,6 @@ class ElementReader {
                                to_text(joint->upper) +
                                ", expected lower < upper; give the range of the joint");
     }
-  }
-
-  void warn_of_range(int line, const std::string& owner) {
-    xml_.add_warning(line, owner + ": <limit> gives no range; it is taken for one without end");
   }
 
   double positive_limit(int line, const char* what, double value, const std::string& owner) {

@@ -32,6 +32,7 @@ struct UrdfJointElement {
   UrdfJointKind kind = UrdfJointKind::kFixed;
   Eigen::Isometry3d X_PJ = Eigen::Isometry3d::Identity();  // of a locked one at its position
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  bool lacks_range = false;  // of one that has stops
   double lower = 0;
   double upper = 0;
   double velocity = 0;

@@ -218,7 +218,7 @@ TEST(Urdf, LimitsMayBeLeftToWhoeverKnowsThem) {
   options.limits_required = false;
   const UrdfResult result = load_urdf_text(text, "t", options);
   ASSERT_TRUE(result.ok()) << all(result.errors);
-  EXPECT_EQ(result.warnings.size(), 2u) << all(result.warnings);
+  EXPECT_EQ(all(result.joints_without_range), "bare\nnone\n");
   EXPECT_EQ(result.model.joints[0].effort_limit, kNoUrdfLimit);
   EXPECT_EQ(result.model.joints[1].velocity_limit, kNoUrdfLimit);
   EXPECT_EQ(result.model.joints[1].position_max, kNoUrdfLimit);

@@ -289,10 +289,8 @@ Refusal GaitMachine::stop() {
     changed();
     return {};
   }
-  const GaitdFootstep current = queue_[0];
-  // What the feet were commanded to pass over is still there.
-  const double height =
-      std::max(current.swing_height, queue_.size() > 1 ? queue_[1].swing_height : 0.0);
+  // Of the step that the closing foot was to take: what it passes over is still there.
+  const GaitdFootstep passed = queue_[std::min(kept, queue_.size() - 1)];
   keep_first(kept);
   GaitdFootstep step = closing_step(stance, side);
   GaitdPose standing = state_.footholds[side].pose;
@@ -303,9 +301,9 @@ Refusal GaitMachine::stop() {
     changed();
     return {};
   }
-  step.swing_duration = current.swing_duration;
-  step.transfer_duration = current.transfer_duration;
-  step.swing_height = height;
+  step.swing_duration = passed.swing_duration;
+  step.transfer_duration = passed.transfer_duration;
+  step.swing_height = passed.swing_height;
   complete(step);
   queue_.push(step);
   publish_footsteps();

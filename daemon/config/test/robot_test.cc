@@ -271,6 +271,8 @@ TEST(Robot, TakesLimitsOfDrivesBelowThoseOfTheUrdf) {
       "1");
   EXPECT_ERROR(inertia, inertia + "\ndrive_limits: {l_leg_kny: {range: [3, 4]}}",
                "drive_limits.l_leg_kny.range: expected one within that of the URDF for l_leg_kny");
+  EXPECT_ERROR(inertia, inertia + "\ndrive_limits: {l_leg_kny: {range: [0.6, 2]}}",
+               "posture.l_leg_kny");
 }
 
 TEST(Robot, NamesTheUnknownLinkAndJoint) {
