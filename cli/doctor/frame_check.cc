@@ -12,6 +12,7 @@
 namespace gaitd::doctor {
 namespace {
 
+constexpr double kBehindAnkle = 0.005;   // m
 constexpr double kMirror = 0.01;         // m
 constexpr double kMassShare = 0.05;      // of the mass of a leg link
 constexpr double kUpright = 0.5;         // rad
@@ -90,8 +91,10 @@ class Frames {
       warn(format("the %s sole: its x axis does not point forward", name),
            "rpy of sole in robot.yaml; x of the pelvis is forward");
     }
-    const Vector3d ankle = kinematics_.p_WB(foot.body);
-    if ((origin(foot.sole) - ankle).dot(sole.col(0)) < 0.0) {
+    const int pitch = model_.legs[side].ankle_pitch;
+    const Vector3d ankle =
+        kinematics_.p_WB(pitch < 0 ? foot.body : model_.joints[pitch].child_body);
+    if ((origin(foot.sole) - ankle).dot(sole.col(0)) < -kBehindAnkle) {
       warn(format("the %s sole lies behind its ankle", name),
            "feet are longer in front: is the sole frame, or the robot, turned around?");
     }

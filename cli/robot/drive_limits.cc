@@ -48,7 +48,7 @@ void guess_drive_limits(Guess* guess) {
       if (joint.effort_limit > kPlaceholder * moment) {
         joint.effort_limit = limit.effort = two_digits(effort_share(leg, index) * moment);
       }
-      if (joint.velocity_limit > kMostVelocity) {
+      if (joint.velocity_limit >= kMostVelocity) {
         joint.velocity_limit = limit.velocity = velocity;
       }
       if (joint.position_max >= dynamics::kNoUrdfLimit) {
@@ -62,6 +62,9 @@ void guess_drive_limits(Guess* guess) {
         }
         joint.position_min = limit.range[0];
         joint.position_max = limit.range[1];
+      } else if (range_of_continuous(*guess, joint.name) != nullptr) {
+        limit.has_range = true;
+        limit.range = {joint.position_min, joint.position_max};
       }
       if (limit.effort > 0.0 || limit.velocity > 0.0 || limit.has_range) {
         guess->drive_limits.push_back(limit);

@@ -17,6 +17,7 @@ constexpr int kMostLegJoints = 12;
 constexpr double kSymmetric = 0.2;   // of the distances between the two chains
 constexpr double kPitches = 0.6;     // part of an axis along y
 constexpr double kSameAxis = 0.035;  // rad
+constexpr double kParallel = 0.99;   // cosine
 
 std::vector<int> chain_to(const GaitdModel& model, int body) {
   std::vector<int> joints;
@@ -51,18 +52,38 @@ double name_hint(const GaitdModel& model, const std::vector<int>& joints) {
   return hint / static_cast<double>(joints.size());
 }
 
-// 0 for mirror images: what of the distances from one chain to the other is not along one line.
-double asymmetry(const Poses& poses, const std::vector<int>& a, const std::vector<int>& b) {
-  Vector3d line = Vector3d::Zero();
+// From a joint of one leg to its mirror. Where along its axis a joint has its origin is up to
+// whoever drew it, unless the axis lies along `line`.
+Vector3d apart(const GaitdModel& model, const Poses& poses, int a, int b, const Vector3d& line) {
+  const Vector3d d = poses[a + 1].translation() - poses[b + 1].translation();
+  const Vector3d axis = joint_axis(model, poses, a);
+  const bool parallel = std::abs(axis.dot(joint_axis(model, poses, b))) > kParallel;
+  return !parallel || std::abs(axis.dot(line)) > kPitches ? d : Vector3d(d - axis * axis.dot(d));
+}
+
+// From one chain to its mirror, of length 1; zero if they are at the same place.
+Vector3d line_between(const GaitdModel& model, const Poses& poses, const std::vector<int>& a,
+                      const std::vector<int>& b) {
+  Vector3d raw = Vector3d::Zero();
   for (std::size_t i = 0; i < a.size(); ++i) {
-    line += poses[a[i] + 1].translation() - poses[b[i] + 1].translation();
+    raw += poses[a[i] + 1].translation() - poses[b[i] + 1].translation();
   }
-  if (line.norm() < 1e-3) return 1.0;
-  line.normalize();
+  if (raw.norm() < 1e-3) return Vector3d::Zero();
+  raw.normalize();
+  Vector3d line = Vector3d::Zero();
+  for (std::size_t i = 0; i < a.size(); ++i) line += apart(model, poses, a[i], b[i], raw);
+  return line.norm() < 1e-3 ? raw : Vector3d(line.normalized());
+}
+
+// 0 for mirror images: what of the distances from one chain to the other is not along one line.
+double asymmetry(const GaitdModel& model, const Poses& poses, const std::vector<int>& a,
+                 const std::vector<int>& b) {
+  const Vector3d line = line_between(model, poses, a, b);
+  if (line.isZero(0.0)) return 1.0;
   double along = 0.0;
   double across = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const Vector3d d = poses[a[i] + 1].translation() - poses[b[i] + 1].translation();
+    const Vector3d d = apart(model, poses, a[i], b[i], line);
     along += std::abs(d.dot(line));
     across += (d - line * d.dot(line)).norm();
   }
@@ -72,12 +93,13 @@ double asymmetry(const Poses& poses, const std::vector<int>& a, const std::vecto
 std::string side_of(const GaitdModel& model, const std::vector<int>& joints) {
   int votes = 0;
   for (const int joint : joints) {
-    const std::string name = lower_case(model.joints[joint].name);
+    const std::string name = lower_case(spaced(model.joints[joint].name));
     const auto says = [&](const char* word, char letter) {
       return name.find(word) != std::string::npos ||
              name.starts_with(std::string(1, letter) + "_") ||
              name.ends_with(std::string("_") + letter) ||
-             name.find(std::string("_") + letter + "_") != std::string::npos;
+             name.find(std::string("_") + letter + "_") != std::string::npos ||
+             name.find(letter + std::string("leg")) != std::string::npos;
     };
     if (says("left", 'l')) ++votes;
     if (says("right", 'r')) --votes;
@@ -92,12 +114,36 @@ Vector3d snapped(const Vector3d& v) {
 }
 
 // From one leg to the other, of length 1.
-Vector3d across(const Poses& poses, const LegPair& pair) {
-  Vector3d sum = Vector3d::Zero();
-  for (std::size_t i = 0; i < pair.joints[0].size(); ++i) {
-    sum += poses[pair.joints[0][i] + 1].translation() - poses[pair.joints[1][i] + 1].translation();
+Vector3d across(const GaitdModel& model, const Poses& poses, const LegPair& pair) {
+  return line_between(model, poses, pair.joints[0], pair.joints[1]);
+}
+
+// The joint that bends a leg most in the middle, of those that pitch.
+int knee_of(const GaitdModel& model, const Poses& poses, const std::vector<int>& joints,
+            const Vector3d& lateral) {
+  const Vector3d hip = poses[joints.front() + 1].translation();
+  const Vector3d ankle = poses[joints.back() + 1].translation();
+  int knee = -1;
+  double best = 0.25 * (hip - ankle).norm();
+  for (const int joint : joints) {
+    if (std::abs(joint_axis(model, poses, joint).dot(lateral)) < kPitches) continue;
+    const Vector3d at = poses[joint + 1].translation();
+    const double middle = std::min((at - hip).norm(), (at - ankle).norm());
+    if (middle <= best) continue;
+    best = middle;
+    knee = joint;
   }
-  return sum.normalized();
+  return knee;
+}
+
+// The last joint of a leg that pitches: where others have their origin along their axes says
+// little.
+int last_pitch(const GaitdModel& model, const Poses& poses, const std::vector<int>& joints,
+               const Vector3d& lateral) {
+  const auto last = std::find_if(joints.rbegin(), joints.rend(), [&](int joint) {
+    return std::abs(joint_axis(model, poses, joint).dot(lateral)) >= kPitches;
+  });
+  return last == joints.rend() ? joints.back() : *last;
 }
 
 }  // namespace
@@ -122,7 +168,7 @@ bool find_legs(const GaitdModel& model, LegPair* pair, std::string* error) {
       const std::vector<int> left(a.begin() + static_cast<std::ptrdiff_t>(common), a.end());
       const std::vector<int> right(b.begin() + static_cast<std::ptrdiff_t>(common), b.end());
       if (left.size() != right.size() || left.size() > kMostLegJoints) continue;
-      if (asymmetry(poses, left, right) > kSymmetric) continue;
+      if (asymmetry(model, poses, left, right) > kSymmetric) continue;
       const double masses[] = {mass_of(model, left), mass_of(model, right)};
       if (std::abs(masses[0] - masses[1]) > 0.2 * (masses[0] + masses[1])) continue;
       const double names = name_hint(model, left) + name_hint(model, right);
@@ -150,7 +196,8 @@ std::vector<int> find_toes(const GaitdModel& model, const LegPair& pair) {
     const int last = joints.back();
     // The sixth joint of a leg rolls its foot.
     const Vector3d axis = joint_axis(model, poses, last);
-    if (joints.size() == kLegJoints && std::abs(axis.dot(across(poses, pair))) < kPitches) continue;
+    if (joints.size() == kLegJoints && std::abs(axis.dot(across(model, poses, pair))) < kPitches)
+      continue;
     const double leg = length_of(poses, joints);
     const double mass = model.bodies[last + 1].mass;
     const double foot = model.bodies[model.joints[last].parent_body].mass;
@@ -173,7 +220,7 @@ Eigen::Matrix3d find_directions(const GaitdModel& model, const LegPair& pair,
   }
   // The legs mirror each other, so the line from one to the other is exact; where they hang from
   // the pelvis, up is the axis of the pelvis that is nearest.
-  Vector3d lateral = to_pelvis * across(poses, pair);
+  Vector3d lateral = to_pelvis * across(model, poses, pair);
   const double turned = std::acos(std::min(1.0, lateral.dot(snapped(lateral))));
   if (turned < kSameAxis) {
     lateral = snapped(lateral);
@@ -191,7 +238,8 @@ Eigen::Matrix3d find_directions(const GaitdModel& model, const LegPair& pair,
   double knees = 0.0;
   for (std::size_t side = 0; side < 2; ++side) {
     const std::vector<int>& joints = pair.joints[side];
-    const Vector3d ankle = poses[joints.back() + 1].translation();
+    const Vector3d to_side = poses[pair.pelvis].linear() * lateral;
+    const Vector3d ankle = poses[last_pitch(model, poses, joints, to_side) + 1].translation();
     double front = -1e9;
     double back = 1e9;
     for (const Vector3d& point : foot_points[side]) {
@@ -200,18 +248,15 @@ Eigen::Matrix3d find_directions(const GaitdModel& model, const LegPair& pair,
       back = std::min(back, (to_pelvis * p).dot(forward));
     }
     if (front > back) toes += 2.0 * (front + back) / (front - back);
-    for (const int joint : joints) {
-      const GaitdJoint& j = model.joints[joint];
-      const Vector3d axis = joint_axis(model, poses, joint);
-      const Vector3d arm = ankle - poses[joint + 1].translation();
-      const double range = j.position_max + j.position_min;
-      const bool in_the_middle = arm.norm() > 0.25 * length_of(poses, joints) &&
-                                 arm.norm() < 0.75 * length_of(poses, joints);
-      if (std::abs((to_pelvis * axis).dot(lateral)) < kPitches || !in_the_middle) continue;
-      if (std::abs(range) < 0.5) continue;
-      const double moved = (to_pelvis * axis.cross(arm)).dot(forward) * range;
-      knees += moved < 0 ? 0.5 : -0.5;
-    }
+    const int knee = knee_of(model, poses, joints, to_side);
+    if (knee < 0) continue;
+    const GaitdJoint& j = model.joints[knee];
+    const double range = j.position_max + j.position_min;
+    const Vector3d arm = ankle - poses[knee + 1].translation();
+    const double moved =
+        (to_pelvis * joint_axis(model, poses, knee).cross(arm)).dot(forward) * range;
+    if (std::abs(range) < 0.5 || std::abs(moved) < 0.05 * length_of(poses, joints)) continue;
+    knees += moved < 0 ? 0.5 : -0.5;
   }
   const std::string name = side_of(model, pair.joints[0]);
   const double names = name == "left" ? 1.0 : name == "right" ? -1.0 : 0.0;

@@ -14,7 +14,7 @@ using dynamics::UrdfLink;
 
 // Words of a name, cut at what is no letter: "l_ft_frame" has "ft", "shift" has not.
 bool has_word(const std::string& name, std::initializer_list<const char*> words) {
-  const std::string text = lower_case(name);
+  const std::string text = lower_case(spaced(name));
   for (const char* word : words) {
     const std::string w = word;
     for (std::size_t at = text.find(w); at != std::string::npos; at = text.find(w, at + 1)) {
@@ -37,8 +37,8 @@ std::string link_of(const Guess& guess, const std::string& reference) {
 }
 
 bool is_imu(const std::string& name) {
-  return has_word(name,
-                  {"imu", "gyro", "ahrs", "vectornav", "microstrain", "accelerometer", "xsens"});
+  return has_word(name, {"imu", "gyro", "gyrometer", "gyroscope", "ahrs", "vectornav",
+                         "microstrain", "accelerometer", "xsens"});
 }
 
 bool is_force(const std::string& name) {
@@ -88,7 +88,9 @@ FrameGuess find_imu(const Guess& guess) {
   if (best > 0) return imu;
   imu.link = model.bodies[0].name;
   imu.X_LF = guess.options.X_LB();
-  imu.why = {"The URDF names none: proposed at the origin of the pelvis. Say where it is."};
+  imu.why = {
+      "The URDF names none in pelvis or chest: proposed at the origin of the pelvis. Say where "
+      "it is."};
   return imu;
 }
 
@@ -116,7 +118,9 @@ FrameGuess find_force_sensor(const Guess& guess, int side) {
   if (!sensor.link.empty()) return sensor;
   sensor.link = sole.frame.link;
   sensor.X_LF.linear() = sole.frame.X_LF.linear();
-  sensor.why = {"None is named: proposed at the origin of the foot, z up. Say where it is."};
+  sensor.why = {
+      "None is named: proposed at the origin of the foot, z up. Say where it is, or take the "
+      "line out if there is none."};
   return sensor;
 }
 

@@ -69,9 +69,10 @@ std::vector<FixedGuess> joints_to_fix(const dynamics::UrdfOutline& outline) {
     } else if (without_mass.count(joint.child) > 0) {
       fixed.push_back({joint.name, "nothing that it moves has a mass"});
     } else if (!joint.has_effort) {
-      fixed.push_back({joint.name, "the URDF gives no effort or no velocity of its drive", true});
+      fixed.push_back(
+          {joint.name, "the URDF gives no effort or no velocity of its drive", !joint.broken});
     } else if (!joint.has_range) {
-      fixed.push_back({joint.name, "the URDF gives no range or no axis", true});
+      fixed.push_back({joint.name, "the URDF gives no range or no axis", !joint.broken});
     }
   }
   fix_mirrors(outline, &fixed);

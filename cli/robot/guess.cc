@@ -3,12 +3,22 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 
 #include "gaitd/dynamics/kinematics.h"
 
 namespace gaitd::porting {
+
+const dynamics::UrdfJointNote* range_of_continuous(const Guess& guess, const std::string& joint) {
+  for (const dynamics::UrdfJointNote& note : guess.outline.joints) {
+    if (note.name != joint || note.type != "continuous") continue;
+    const double range = note.upper - note.lower;
+    return range > 0.0 && range < 2.0 * M_PI ? &note : nullptr;
+  }
+  return nullptr;
+}
 
 std::vector<Eigen::Isometry3d> body_poses(const GaitdModel& model, const Eigen::VectorXd& q) {
   dynamics::Kinematics kinematics(model);
@@ -45,6 +55,23 @@ std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
+}
+
+std::string spaced(const std::string& name) {
+  const auto is = [&](std::size_t i, int (*kind)(int)) {
+    return i < name.size() && kind(static_cast<unsigned char>(name[i])) != 0;
+  };
+  std::string out;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool word =
+        is(i, std::isupper) && i > 0 &&
+        (is(i - 1, std::islower) || (is(i - 1, std::isupper) && is(i + 1, std::islower)));
+    const bool number = i > 0 && is(i, std::isalnum) && is(i - 1, std::isalnum) &&
+                        is(i, std::isdigit) != is(i - 1, std::isdigit);
+    if (word || number) out += '_';
+    out += name[i];
+  }
+  return out;
 }
 
 std::string format(const char* pattern, ...) {

@@ -91,6 +91,8 @@ struct Guess {
   Reasons proportions_why;
 };
 
+// The joint if it is continuous and yet has a range narrower than a turn, or null.
+const dynamics::UrdfJointNote* range_of_continuous(const Guess& guess, const std::string& joint);
 // Poses of all bodies with the joints at `q`, rad; body 0 at the origin.
 std::vector<Eigen::Isometry3d> body_poses(const GaitdModel& model, const Eigen::VectorXd& q);
 // Zero, or where the range of a joint is nearest to it.
@@ -101,6 +103,8 @@ Eigen::Vector3d joint_axis(const GaitdModel& model, const std::vector<Eigen::Iso
 // m, y of the middle of the robot, between its hips, with all joints at zero.
 double middle_of(const Guess& guess);
 std::string lower_case(std::string text);
+// With '_' between words that are glued: "LHipYaw" is "L_Hip_Yaw", "leg_l1" is "leg_l_1".
+std::string spaced(const std::string& name);
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 
 }  // namespace gaitd::porting

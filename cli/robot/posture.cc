@@ -178,6 +178,8 @@ double half_stance(const Guess& guess, const std::array<Vector3d, 2>& hanging,
   }
   const double hip = 0.5 * (hips[0].y() - hips[1].y());
   double half = 0.5 * (hanging[0].y() - hanging[1].y());
+  // Without a joint that rolls it a sole is level at this width only.
+  if (guess.legs[0].ankle_roll < 0) return half;
   if (half < 0.6 * hip || half > 1.6 * hip) half = hip;
   return std::max(half, 0.5 * (1.0 + kGap) * width);
 }
@@ -200,6 +202,7 @@ bool solve_posture(Guess* guess, std::string* error) {
   hang_arms(*guess, &q);
   Solver hanging(model, kBends[0], kStopMargins[0]);
   hanging.pose(q);
+  const double hang = 0.5 * (hanging.sole(0).y() - hanging.sole(1).y());
   const double half = half_stance(*guess, {hanging.sole(0), hanging.sole(1)}, hips);
   for (int side = 0; side < 2; ++side) {
     const GaitdLeg& leg = model.legs[side];
@@ -234,8 +237,9 @@ bool solve_posture(Guess* guess, std::string* error) {
       "pelvis %.4f and centre of mass %.4f m above the soles, %.1f mm in front of their middle and "
       "%.1f mm to the left of it.",
       figures.foot_separation(),
-      stance.half > 1.01 * half ? "wider than the legs hang, which they do not reach"
-                                : "as the legs hang",
+      stance.half > 1.01 * hang   ? "wider than the legs hang"
+      : stance.half < 0.99 * hang ? "narrower than the legs hang, as far as their hips pitch"
+                                  : "as the legs hang",
       stance.bend, figures.pelvis_height(), figures.com_height(),
       1e3 * (figures.com[0] - figures.sole_position[0][0]),
       1e3 * (figures.com[1] - 0.5 * (figures.sole_position[0][1] + figures.sole_position[1][1]))));

@@ -138,7 +138,7 @@ void add_robot_command(CLI::App* app, Context* context) {
       ->add_option(
           "--sole", arguments->told.sole,
           "Sole of each foot in m, where its shapes do not show it: the last joint of the leg "
-          "is HEIGHT above the ground, and the middle of the sole AHEAD of it")
+          "is HEIGHT above the ground, the middle of the sole AHEAD of the one that pitches it")
       ->type_name("LENGTH,WIDTH,HEIGHT,AHEAD")
       ->delimiter(',')
       ->expected(4)

@@ -140,7 +140,6 @@ void write_drive_limits(const Guess& guess, Writer* out) {
 
 void write_parameters(const Guess& guess, Writer* out) {
   const Proportions& p = guess.proportions;
-  const double time = std::sqrt(p.scale);
   out->line("");
   out->comment(guess.proportions_why);
   out->line("parameters:");
@@ -153,8 +152,8 @@ void write_parameters(const Guess& guess, Writer* out) {
   out->line("      gait.transfer_duration: " + number(p.transfer, 3));
   out->line("  hardware:\n    parameters:");
   out->comment({"Slower, for the first steps of the real robot."}, "      ");
-  out->line("      gait.swing_duration: " + number(1.0 * time, 2));
-  out->line("      gait.transfer_duration: " + number(0.35 * time, 2));
+  out->line("      gait.swing_duration: " + number(p.swing / 0.7, 2));
+  out->line("      gait.transfer_duration: " + number(p.transfer * 0.35 / 0.3, 2));
 }
 
 }  // namespace

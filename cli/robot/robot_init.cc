@@ -26,6 +26,14 @@ bool load(const std::string& text, Guess* guess, std::string* error) {
   guess->options.fixed.clear();
   for (const FixedGuess& fixed : guess->fixed) guess->options.fixed.push_back(fixed.joint);
   guess->urdf = dynamics::load_urdf_text(text, guess->urdf_file, guess->options);
+  // Where it was written the author meant it.
+  for (int i = 0; i < guess->urdf.model.joint_count; ++i) {
+    GaitdJoint& joint = guess->urdf.model.joints[i];
+    if (const auto* note = range_of_continuous(*guess, joint.name)) {
+      joint.position_min = note->lower;
+      joint.position_max = note->upper;
+    }
+  }
   guess->model = guess->urdf.model;
   error->clear();
   for (const std::string& line : guess->urdf.errors) *error += (error->empty() ? "" : "\n") + line;
@@ -98,7 +106,7 @@ bool find_pelvis(const std::string& text, Guess* guess, std::string* error) {
   std::array<std::vector<Vector3d>, 2> points;
   for (std::size_t side = 0; side < 2; ++side) {
     Reasons unused;
-    for (const ShapePoint& p : shape_points(*guess, pair.joints[side].back() + 1, &unused)) {
+    for (const ShapePoint& p : shape_points(*guess, pair.joints[side].back() + 1, true, &unused)) {
       points[side].push_back(p.p);
     }
   }
@@ -136,12 +144,14 @@ bool find_pelvis(const std::string& text, Guess* guess, std::string* error) {
   return load(text, guess, error);
 }
 
-// The corners of the sole that somebody told, in the frame of the foot; R: from axes of the pelvis.
-std::vector<ShapePoint> told_corners(const std::vector<double>& sole, const Eigen::Matrix3d& R) {
+// The corners of the sole that somebody told, in the frame of the foot; R: from axes of the pelvis;
+// `ankle`: x there of the joint that pitches the foot.
+std::vector<ShapePoint> told_corners(const std::vector<double>& sole, const Eigen::Matrix3d& R,
+                                     double ankle) {
   std::vector<ShapePoint> points;
   for (const double x : {-0.5, 0.5}) {
     for (const double y : {-0.5, 0.5}) {
-      points.push_back({R * Vector3d(x * sole[0] + sole[3], y * sole[1], -sole[2])});
+      points.push_back({R * Vector3d(x * sole[0] + sole[3] + ankle, y * sole[1], -sole[2])});
     }
   }
   return points;
@@ -156,18 +166,26 @@ bool find_feet(const Told& told, Guess* guess, std::string* error) {
     SoleGuess& sole = guess->soles[side];
     sole.frame.link = guess->urdf.model.bodies[foot].name;
     const Eigen::Matrix3d R = poses[static_cast<std::size_t>(foot)].linear().transpose();
-    const std::vector<ShapePoint> points = told.sole.empty()
-                                               ? shape_points(*guess, foot, &sole.frame.why)
-                                               : told_corners(told.sole, R);
+    const double ankle = poses[static_cast<std::size_t>(leg.ankle_pitch) + 1].translation().x() -
+                         poses[static_cast<std::size_t>(foot)].translation().x();
+    std::vector<ShapePoint> points = told.sole.empty()
+                                         ? shape_points(*guess, foot, true, &sole.frame.why)
+                                         : told_corners(told.sole, R, ankle);
     if (!told.sole.empty()) sole.frame.why.emplace_back("As told by --sole.");
-    if (points.empty() || !find_sole(points, -R.col(2), R.col(0), &sole, error)) {
+    bool found = !points.empty() && find_sole(points, -R.col(2), R.col(0), &sole, error);
+    if (!found && told.sole.empty()) {
+      points = shape_points(*guess, foot, false, &sole.frame.why);
+      found = !points.empty() && find_sole(points, -R.col(2), R.col(0), &sole, error);
+    }
+    if (!found) {
       std::string why;
       for (const std::string& reason : sole.frame.why) why += " " + reason;
       *error =
           "foot " + sole.frame.link + ": " +
           (points.empty() ? "no shape to find the sole from" : *error) + "." + why +
           " Measure it: --sole LENGTH,WIDTH,HEIGHT,AHEAD in m, the height of the last joint of the "
-          "leg above the ground, and how far the middle of the sole lies ahead of it";
+          "leg above the ground, and how far the middle of the sole lies ahead of the one that "
+          "pitches the foot";
       return false;
     }
     cut_to_ankle(*guess, static_cast<int>(side), &sole);

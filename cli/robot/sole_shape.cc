@@ -86,7 +86,7 @@ std::vector<Vector2d> hull_along(const std::vector<Vector3d>& points, const Vect
   std::vector<Vector2d> flat;
   flat.reserve(points.size());
   for (const Vector3d& p : points) flat.emplace_back(p.dot(x), p.dot(y));
-  return convex_hull(std::move(flat));
+  return convex_hull(std::move(flat), 0.0);
 }
 
 double area_along(const std::vector<Vector3d>& points, const Vector3d& down) {
@@ -137,9 +137,10 @@ Vector3d fitted(const std::vector<ShapePoint>& points, Vector3d down) {
 
 }  // namespace
 
-std::vector<ShapePoint> shape_points(const Guess& guess, int body, Reasons* why) {
+std::vector<ShapePoint> shape_points(const Guess& guess, int body, bool collisions, Reasons* why) {
   std::vector<ShapePoint> points;
   for (const bool collision : {true, false}) {
+    if (collision && !collisions) continue;
     for (const dynamics::UrdfShape& shape : guess.outline.shapes) {
       const dynamics::UrdfLink* link = guess.urdf.find_link(shape.link);
       if (shape.collision != collision || link == nullptr || link->body != body) continue;
@@ -152,18 +153,18 @@ std::vector<ShapePoint> shape_points(const Guess& guess, int body, Reasons* why)
     }
     if (points.empty()) continue;
     why->push_back(collision ? "From the collision shapes."
-                             : "From the visuals, as there are no collision shapes: check it.");
+                             : "From the visuals, as the collision shapes show no sole: check it.");
     break;
   }
   return points;
 }
 
-std::vector<Vector2d> convex_hull(std::vector<Vector2d> points) {
+std::vector<Vector2d> convex_hull(std::vector<Vector2d> points, double least) {
   std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) {
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
   });
-  const auto turns_left = [](const Vector2d& a, const Vector2d& b, const Vector2d& c) {
-    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x()) > 1e-10;
+  const auto turns_left = [least](const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x()) > least;
   };
   std::vector<Vector2d> hull;
   for (int way = 0; way < 2; ++way) {

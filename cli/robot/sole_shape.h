@@ -17,8 +17,8 @@ struct ShapePoint {
 };
 
 // Corners of all shapes on the links of a body: of the collision shapes, or of the visuals if there
-// are none. `why` says which, and what could not be read.
-std::vector<ShapePoint> shape_points(const Guess& guess, int body, Reasons* why);
+// are none or nobody asks for `collisions`. `why` says which, and what could not be read.
+std::vector<ShapePoint> shape_points(const Guess& guess, int body, bool collisions, Reasons* why);
 
 // The flat part at the bottom of the points: frame and outline. `down`, `forward`: unit, where the
 // ground and the front of the robot are for the foot as it hangs, axes of the body. False and why
@@ -30,8 +30,9 @@ bool find_sole(const std::vector<ShapePoint>& points, const Eigen::Vector3d& dow
 // middle, to which the frame moves.
 void set_outline(std::vector<Eigen::Vector2d> outline, SoleGuess* sole);
 
-// Convex hull, counter-clockwise.
-std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points);
+// Convex hull, counter-clockwise, without corners that add `least` m^2 or less to a triangle of
+// their neighbours. Of shapes that are not rounded 0: a corner beside a long edge would go with it.
+std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points, double least = 1e-10);
 double polygon_area(const std::vector<Eigen::Vector2d>& points);
 
 }  // namespace gaitd::porting

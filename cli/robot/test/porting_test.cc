@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "cli/robot/ankle_reach.h"
 #include "cli/robot/describe.h"
 #include "cli/robot/find_legs.h"
 #include "cli/robot/fixed_joints.h"
@@ -83,6 +84,40 @@ TEST(FixedJoints, OneThatIsMimickedByItsMirrorIsFixedWithIt) {
   std::vector<std::string> fixed;
   for (const FixedGuess& one : joints_to_fix(outline)) fixed.push_back(one.joint);
   EXPECT_EQ(fixed, (std::vector<std::string>{"RHip", "LHip"}));
+}
+
+TEST(Names, AreReadInWords) {
+  EXPECT_EQ(spaced("LHipYaw"), "L_Hip_Yaw");
+  EXPECT_EQ(spaced("leg_l1_joint"), "leg_l_1_joint");
+  EXPECT_EQ(spaced("ImuTorsoGyrometer_frame"), "Imu_Torso_Gyrometer_frame");
+  EXPECT_EQ(spaced("left_knee_joint"), "left_knee_joint");
+  EXPECT_EQ(spaced("r_leg_akx"), "r_leg_akx");
+}
+
+// A corner that rounding puts beside a long edge is one nevertheless.
+TEST(SoleShape, KeepsCornersThatAreNotQuiteInLine) {
+  const std::vector<Vector2d> corners = {
+      {-0.07, -0.028}, {-0.07 - 1e-8, -0.02}, {-0.07, 0.028}, {0.17, 0.028}, {0.17, -0.028}};
+  EXPECT_NEAR(polygon_area(convex_hull(corners, 0.0)), 0.24 * 0.056, 1e-8);
+}
+
+// A sole is no larger than its ankle holds, and the frame is in the middle of it.
+TEST(SoleShape, IsCutToWhatTheAnkleHolds) {
+  Guess guess;
+  std::string error;
+  ASSERT_TRUE(guess_robot(GAITD_ATLAS_URDF, "atlas", {}, &guess, &error)) << error;
+  SoleGuess sole = guess.soles[0];
+  cut_to_ankle(guess, GAITD_LEFT, &sole);
+  EXPECT_EQ(sole.outline, guess.soles[0].outline);  // 890 N m hold all of it
+  guess.urdf.model.joints[guess.legs[0].ankle_pitch].effort_limit = 100.0;
+  cut_to_ankle(guess, GAITD_LEFT, &sole);
+  const double reach = 0.9 * 100.0 / (guess.urdf.model.total_mass * 9.81);
+  Vector2d most = sole.outline[0];
+  for (const Vector2d& p : sole.outline) most = most.cwiseMax(p);
+  EXPECT_NEAR(most.x(), reach, 1e-4);
+  EXPECT_NEAR(sole.frame.X_LF.translation().x(), 0.0, 1e-4);
+  EXPECT_NE(sole.frame.why.back().find("holds the whole robot 52 mm"), std::string::npos)
+      << sole.frame.why.back();
 }
 
 TEST(SoleShape, IsTheLowerFaceOfABox) {
@@ -175,7 +210,7 @@ TEST(SoleShape, IsTheFaceOfABoxThatLiesAskew) {
   SoleGuess sole;
   std::string error;
   ASSERT_TRUE(
-      find_sole(shape_points(guess, 1, &why), -Vector3d::UnitZ(), Vector3d::UnitX(), &sole, &error))
+      find_sole(shape_points(guess, 1, true, &why), -Vector3d::UnitZ(), Vector3d::UnitX(), &sole, &error))
       << error;
   EXPECT_LT((sole.frame.X_LF.linear().col(2) - R.col(2)).norm(), 1e-6);
   EXPECT_NEAR(polygon_area(sole.outline), 0.024, 1e-5);

@@ -30,6 +30,8 @@ struct UrdfJointNote {
   bool has_effort = false;  // and a velocity, both above 0
   bool has_range = true;    // an axis, and limits apart from each other where its type has some
   std::string mimicked;     // the joint that it follows
+  bool broken = false;      // an axis of zero, or a lower end above the upper one
+  double lower = 0.0, upper = 0.0;  // rad or m, as they stand there
 };
 
 // <sensor> in a <gazebo> of a link or joint.
