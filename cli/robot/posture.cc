@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "cli/robot/arms.h"
 #include "daemon/config/leg_kinematics.h"
@@ -18,12 +19,10 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Task = Eigen::Matrix<double, 6, 1>;
 
-// rad, of the knees, and times the width of the stance: what is tried until a leg gets there.
-constexpr double kBends[] = {0.5, 0.35, 0.25, 0.7};
-constexpr double kWidths[] = {1.0, 1.1, 1.2};
-constexpr double kStopMargins[] = {0.03, 0.005};  // rad, from the stops
-constexpr double kClose = 5e-4;                   // rad and m
-constexpr double kGap = 0.35;                     // of the width of a sole, between the soles
+constexpr double kBends[] = {0.5, 0.35, 0.25, 0.7};  // rad, of the knees: what is tried
+constexpr double kStopMargins[] = {0.03, 0.005};     // rad, from the stops
+constexpr double kClose = 5e-4;                      // rad and m
+constexpr double kGap = 0.35;                        // of the width of a sole, between the soles
 
 class Solver {
  public:
@@ -147,20 +146,24 @@ void stand(const GaitdModel& model, double middle, Stance* stance) {
   }
 }
 
-// The first that the legs reach; the most usual one if they reach none.
-Stance find_stance(const GaitdModel& model, double middle, double half, const VectorXd& q) {
+// The first that the legs reach away from their stops, or at them; the most usual one if they reach
+// none. Half the distance of the soles is `half`, somewhat more, or as the legs hang, `hang` (m).
+Stance find_stance(const GaitdModel& model, double middle, double half, double hang,
+                   const VectorXd& q) {
   Stance first;
+  std::optional<Stance> at_stops;
   for (const double bend : kBends) {
-    for (const double width : kWidths) {
+    for (const double width : {half, 1.1 * half, 1.2 * half, std::max(half, hang)}) {
       for (const double margin : kStopMargins) {
-        Stance stance{bend, width * half, margin, q, {}, ""};
+        Stance stance{bend, width, margin, q, {}, ""};
         stand(model, middle, &stance);
-        if (stance.found()) return stance;
+        if (stance.found() && stance.at_stops.empty()) return stance;
+        if (stance.found() && !at_stops) at_stops = stance;
         if (first.q.size() == 0) first = stance;
       }
     }
   }
-  return first;
+  return at_stops.value_or(first);
 }
 
 // Half the distance of the soles in y, m: as the legs hang, but not closer than feet can stand.
@@ -215,7 +218,7 @@ bool solve_posture(Guess* guess, std::string* error) {
           std::clamp(q[joints[i]] + signs[i] * bends[i], joint.position_min, joint.position_max);
     }
   }
-  const Stance stance = find_stance(model, middle_of(*guess), half, q);
+  const Stance stance = find_stance(model, middle_of(*guess), half, hang, q);
   if (!stance.found()) {
     *error = format(
         "no standing posture: with the soles flat, side by side, %.3f m apart and below the centre "

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gaitd/walking/footsteps.h"
 #include "gaitd/walking/swing_limits.h"
 
 namespace gaitd::porting {
@@ -63,6 +64,13 @@ void find_proportions(Guess* guess) {
       format("Scaled from Atlas, whose centre of mass is %.2f m high: here %.2f m, so lengths are "
              "%.2f and times %.2f times as large.",
              kComHeight, height, p.scale, time));
+  const double width = model.nominal_foot_separation / height;
+  if (width > walking::GaitParameters(walking::kGaitParameters)[walking::Gait::kWidestStep]) {
+    guess->proportions_why.push_back(format(
+        "The feet stand %.2f heights of the centre of mass apart: steps beside each other are "
+        "refused (gait.widest_step), and wider ones than that were seen to fall.",
+        width));
+  }
   for (int i = 0; i < kTries && !can_step(model, p, kAnyTime); ++i) {
     p.swing_height = rounded(0.8 * p.swing_height);
     if (i == 0) guess->proportions_why.emplace_back("Knees fold no further: feet are lifted less.");
