@@ -2,6 +2,8 @@
 #include "cli/robot/ankle_reach.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "cli/robot/sole_shape.h"
 

@@ -72,12 +72,11 @@ void guess_drive_limits(Guess* guess) {
     }
   }
   if (guess->drive_limits.empty()) return;
-  guess->drive_limits_why.push_back(
-      format("The URDF gives nothing for these, no end or a placeholder. In proportion to Atlas, "
-             "with %.1f "
-             "kg at %.2f m: enough to walk in simulation. Write what the data sheets of the drives "
-             "say before you trust a torque.",
-             model.total_mass, height));
+  guess->drive_limits_why.push_back(format(
+      "The URDF gives nothing for these, no end or a placeholder. In proportion to Atlas, with "
+      "%.1f kg at %.2f m: enough to walk in simulation. Write what the data sheets of the "
+      "drives say before you trust a torque. Ranges of continuous joints are those of the URDF.",
+      model.total_mass, height));
 }
 
 }  // namespace gaitd::porting

@@ -87,7 +87,7 @@ double asymmetry(const GaitdModel& model, const Poses& poses, const std::vector<
     along += std::abs(d.dot(line));
     across += (d - line * d.dot(line)).norm();
   }
-  return across / along;
+  return along > 0.0 ? across / along : 1.0;
 }
 
 std::string side_of(const GaitdModel& model, const std::vector<int>& joints) {
@@ -99,7 +99,8 @@ std::string side_of(const GaitdModel& model, const std::vector<int>& joints) {
              name.starts_with(std::string(1, letter) + "_") ||
              name.ends_with(std::string("_") + letter) ||
              name.find(std::string("_") + letter + "_") != std::string::npos ||
-             name.find(letter + std::string("leg")) != std::string::npos;
+             name.starts_with(letter + std::string("leg")) ||
+             name.find(std::string("_") + letter + "leg") != std::string::npos;
     };
     if (says("left", 'l')) ++votes;
     if (says("right", 'r')) --votes;

@@ -14,7 +14,7 @@ using dynamics::UrdfLink;
 
 // Words of a name, cut at what is no letter: "l_ft_frame" has "ft", "shift" has not.
 bool has_word(const std::string& name, std::initializer_list<const char*> words) {
-  const std::string text = lower_case(spaced(name));
+  const std::string text = lower_case(name + " " + spaced(name));
   for (const char* word : words) {
     const std::string w = word;
     for (std::size_t at = text.find(w); at != std::string::npos; at = text.find(w, at + 1)) {

@@ -44,8 +44,8 @@ struct FixedGuess {
 // What a person knows better than the URDF.
 struct Told {
   std::vector<std::string> fix;  // joints, by name or glob, that do not move
-  // m: length and width of a sole, the last joint of the leg above it, and its middle ahead of that
-  // joint. Empty: the shapes of the foot show it.
+  // m: length and width of a sole, the last joint of the leg above it, and its middle ahead of the
+  // joint that pitches the foot. Empty: the shapes of the foot show it.
   std::vector<double> sole;
 };
 
@@ -60,11 +60,13 @@ struct DriveLimitGuess {
 
 // What the commanded gait takes from the size of the robot.
 struct Proportions {
-  double scale = 1.0;         // height of the centre of mass against that of Atlas
-  double swing = 0.0;         // s
-  double transfer = 0.0;      // s
-  double length = 0.0;        // m, of a step
-  double swing_height = 0.0;  // m
+  double scale = 1.0;           // height of the centre of mass against that of Atlas
+  double swing = 0.0;           // s
+  double transfer = 0.0;        // s
+  double first_swing = 0.0;     // s, of the real robot
+  double first_transfer = 0.0;  // s
+  double length = 0.0;          // m, of a step
+  double swing_height = 0.0;    // m
 };
 
 // A robot as far as it is known. Every step of the guessing fills its part.

@@ -146,27 +146,29 @@ void stand(const GaitdModel& model, double middle, Stance* stance) {
   }
 }
 
-// The first that the legs reach away from their stops, or at them; the most usual one if they reach
-// none. Half the distance of the soles is `half`, somewhat more, or as the legs hang, `hang` (m).
+// The first that the legs reach with room to their stops, or next to them; the most usual one if
+// they reach none. Half the distance of the soles is `half`, somewhat more, or as the legs hang,
+// `hang` (m).
 Stance find_stance(const GaitdModel& model, double middle, double half, double hang,
                    const VectorXd& q) {
   Stance first;
-  std::optional<Stance> at_stops;
-  for (const double bend : kBends) {
-    for (const double width : {half, 1.1 * half, 1.2 * half, std::max(half, hang)}) {
-      for (const double margin : kStopMargins) {
+  std::optional<Stance> next_to_stops;
+  for (const double margin : kStopMargins) {
+    for (const double bend : kBends) {
+      for (const double width : {half, 1.1 * half, 1.2 * half, std::max(half, hang)}) {
         Stance stance{bend, width, margin, q, {}, ""};
         stand(model, middle, &stance);
-        if (stance.found() && stance.at_stops.empty()) return stance;
-        if (stance.found() && !at_stops) at_stops = stance;
+        if (stance.found() && stance.at_stops.empty() && margin == kStopMargins[0]) return stance;
+        if (stance.found() && !next_to_stops) next_to_stops = stance;
         if (first.q.size() == 0) first = stance;
       }
     }
   }
-  return at_stops.value_or(first);
+  return next_to_stops.value_or(first);
 }
 
-// Half the distance of the soles in y, m: as the legs hang, but not closer than feet can stand.
+// Half the distance of the soles in y, m: as the legs hang, but not closer than feet can stand,
+// unless no joint rolls them.
 double half_stance(const Guess& guess, const std::array<Vector3d, 2>& hanging,
                    const std::array<Vector3d, 2>& hips) {
   double width = 0.0;
@@ -241,7 +243,7 @@ bool solve_posture(Guess* guess, std::string* error) {
       "%.1f mm to the left of it.",
       figures.foot_separation(),
       stance.half > 1.01 * hang   ? "wider than the legs hang"
-      : stance.half < 0.99 * hang ? "narrower than the legs hang, as far as their hips pitch"
+      : stance.half < 0.99 * hang ? "narrower than the legs hang"
                                   : "as the legs hang",
       stance.bend, figures.pelvis_height(), figures.com_height(),
       1e3 * (figures.com[0] - figures.sole_position[0][0]),

@@ -20,6 +20,9 @@ constexpr double kLikeAtlas = 0.25;    // of the scale
 constexpr double kSlowest = 4.0;       // of the swing by scale
 constexpr double kAnyTime = 60.0;      // s, in which a swing asks for no speed
 constexpr int kTries = 8;
+// The first steps of the real robot are slower by so much.
+constexpr double kFirstTimes = 1.0 / 0.7;
+constexpr double kFirstTransfers = 0.35 / 0.3;
 
 struct Scaled {
   const char* name;
@@ -71,18 +74,31 @@ void find_proportions(Guess* guess) {
         "refused (gait.widest_step), and wider ones than that were seen to fall.",
         width));
   }
+  const double usual = p.swing_height;
+  bool possible = true;
   for (int i = 0; i < kTries && !can_step(model, p, kAnyTime); ++i) {
     p.swing_height = rounded(0.8 * p.swing_height);
-    if (i == 0) guess->proportions_why.emplace_back("Knees fold no further: feet are lifted less.");
+  }
+  if (!can_step(model, p, kAnyTime)) {
+    possible = false;
+    p.swing_height = usual;
+    guess->proportions_why.emplace_back("Legs cannot take this step: `gaitctl run` says why.");
+  }
+  if (possible && p.swing_height < usual) {
+    guess->proportions_why.emplace_back("Knees fold no further: feet are lifted less.");
   }
   double slower = 1.0;
-  while (slower < kSlowest && !can_step(model, p, slower * p.swing)) slower *= 1.05;
-  if (slower == 1.0) return;
-  p.swing = rounded(slower * p.swing);
-  p.transfer = rounded(slower * p.transfer);
-  guess->proportions_why.push_back(
-      format("Hip or knee are slower than that: times are %.2f times longer%s.", slower,
-             can_step(model, p, p.swing) ? "" : ", and still too short"));
+  while (possible && slower < kSlowest && !can_step(model, p, rounded(slower * p.swing)))
+    slower *= 1.05;
+  if (slower > 1.0) {
+    p.swing = rounded(slower * p.swing);
+    p.transfer = rounded(slower * p.transfer);
+    guess->proportions_why.push_back(
+        format("Hip or knee are slower than that: times are %.2f times longer%s.", slower,
+               can_step(model, p, p.swing) ? "" : ", and still too short"));
+  }
+  p.first_swing = kFirstTimes * p.swing;
+  p.first_transfer = kFirstTransfers * p.transfer;
 }
 
 std::vector<std::pair<std::string, double>> scaled_parameters(const Proportions& proportions) {

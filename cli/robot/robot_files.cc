@@ -152,8 +152,8 @@ void write_parameters(const Guess& guess, Writer* out) {
   out->line("      gait.transfer_duration: " + number(p.transfer, 3));
   out->line("  hardware:\n    parameters:");
   out->comment({"Slower, for the first steps of the real robot."}, "      ");
-  out->line("      gait.swing_duration: " + number(p.swing / 0.7, 2));
-  out->line("      gait.transfer_duration: " + number(p.transfer * 0.35 / 0.3, 2));
+  out->line("      gait.swing_duration: " + number(p.first_swing, 2));
+  out->line("      gait.transfer_duration: " + number(p.first_transfer, 2));
 }
 
 }  // namespace

@@ -168,14 +168,22 @@ bool find_feet(const Told& told, Guess* guess, std::string* error) {
     const Eigen::Matrix3d R = poses[static_cast<std::size_t>(foot)].linear().transpose();
     const double ankle = poses[static_cast<std::size_t>(leg.ankle_pitch) + 1].translation().x() -
                          poses[static_cast<std::size_t>(foot)].translation().x();
-    std::vector<ShapePoint> points = told.sole.empty()
-                                         ? shape_points(*guess, foot, true, &sole.frame.why)
-                                         : told_corners(told.sole, R, ankle);
+    const std::vector<ShapePoint> points = told.sole.empty()
+                                               ? shape_points(*guess, foot, true, &sole.frame.why)
+                                               : told_corners(told.sole, R, ankle);
     if (!told.sole.empty()) sole.frame.why.emplace_back("As told by --sole.");
     bool found = !points.empty() && find_sole(points, -R.col(2), R.col(0), &sole, error);
-    if (!found && told.sole.empty()) {
-      points = shape_points(*guess, foot, false, &sole.frame.why);
-      found = !points.empty() && find_sole(points, -R.col(2), R.col(0), &sole, error);
+    const bool has_collisions = std::ranges::any_of(guess->outline.shapes, [&](const auto& shape) {
+      const dynamics::UrdfLink* link = guess->urdf.find_link(shape.link);
+      return shape.collision && link != nullptr && link->body == foot;
+    });
+    if (!found && told.sole.empty() && has_collisions) {
+      SoleGuess drawn = sole;
+      drawn.frame.why.clear();
+      std::string unused;
+      const auto visuals = shape_points(*guess, foot, false, &drawn.frame.why);
+      found = !visuals.empty() && find_sole(visuals, -R.col(2), R.col(0), &drawn, &unused);
+      if (found) sole = drawn;
     }
     if (!found) {
       std::string why;
@@ -240,7 +248,7 @@ bool guess_robot(const std::string& urdf, const std::string& name, const Told& t
   guess->fixed = joints_to_fix(guess->outline);
   if (!told.sole.empty() &&
       !(told.sole[0] > 0 && told.sole[1] > 0 && told.sole[2] >= 0 && std::isfinite(told.sole[3]))) {
-    *error = "--sole: expected a length and a width above 0, and a height";
+    *error = "--sole: expected a length and a width above 0, a height, and how far it lies ahead";
     return false;
   }
   for (const std::string& glob : told.fix) guess->fixed.push_back({glob, "as told by --fix"});

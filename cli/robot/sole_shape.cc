@@ -47,6 +47,11 @@ void add_shape(const Guess& guess, const dynamics::UrdfShape& shape, const Eigen
                            0.0, end * X_BS.linear().col(2)});
       }
       break;
+    case dynamics::ShapeKind::kCapsule:
+      for (const double end : {-1.0, 1.0}) {
+        points->push_back({X_BS * Vector3d(0.0, 0.0, end * half[1]), shape.size[0]});
+      }
+      break;
     case dynamics::ShapeKind::kSphere:
       points->push_back({X_BS.translation(), shape.size[0]});
       break;

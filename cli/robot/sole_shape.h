@@ -30,8 +30,8 @@ bool find_sole(const std::vector<ShapePoint>& points, const Eigen::Vector3d& dow
 // middle, to which the frame moves.
 void set_outline(std::vector<Eigen::Vector2d> outline, SoleGuess* sole);
 
-// Convex hull, counter-clockwise, without corners that add `least` m^2 or less to a triangle of
-// their neighbours. Of shapes that are not rounded 0: a corner beside a long edge would go with it.
+// Convex hull, counter-clockwise, without corners whose triangle with their neighbours has half of
+// `least` (m^2) or less. 0 for shapes that are not rounded: a corner beside a long edge would go.
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points, double least = 1e-10);
 double polygon_area(const std::vector<Eigen::Vector2d>& points);
 

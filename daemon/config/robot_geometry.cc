@@ -342,11 +342,10 @@ void RobotGeometry::read_drive_limits(MapReader map) {
     const auto effort = limits.number("effort", {1e-3, 1e6, "N m"});
     const auto velocity = limits.number("velocity", {1e-3, 1e4, "rad/s"});
     std::array<double, 2> range{};
-    bool has_range = limits.numbers("range", range, kRange);
+    const bool has_range = limits.numbers("range", range, {-100.0, 100.0, "rad or m"});
     if (has_range && !(range[0] < range[1])) {
       limits.fail("range", "the lower end before the upper one",
                   printed(range[0]) + " and " + printed(range[1]), "");
-      has_range = false;
     }
     limits.finish();
     for (const int index : joints_like(entry, path)) {
@@ -366,6 +365,7 @@ void RobotGeometry::read_drive_limits(MapReader map) {
       take("velocity", velocity, urdf.joints[index].velocity_limit, &joint.velocity_limit);
       if (!has_range) continue;
       std::erase(without_range, joint.name);
+      if (!(range[0] < range[1])) continue;
       const GaitdJoint& most = urdf.joints[index];
       if (range[0] >= most.position_min && range[1] <= most.position_max) {
         joint.position_min = range[0];
@@ -388,6 +388,7 @@ void RobotGeometry::read_drive_limits(MapReader map) {
     if (std::max(joint.effort_limit, joint.velocity_limit) < dynamics::kNoUrdfLimit) continue;
     lacks(joint.name, "effort and velocity");
   }
+  if (!urdf_->ok()) return;
   for (const std::string& joint : without_range) lacks(joint, "the range");
 }
 

@@ -14,7 +14,6 @@
 
 namespace gaitd::daemon {
 
-inline constexpr Bounds kRange = {-100.0, 100.0, "rad or m"};
 inline constexpr Bounds kAngle = {-2.0 * M_PI, 2.0 * M_PI, "rad"};
 
 // Fixed axes x, y, z in this order, as in a URDF.

@@ -114,6 +114,7 @@ class ControlLoop {
   void end(RunEnd how, const std::string& problem = "");
   void record();
   void report_changes();
+  void report_recovery();
   void report_feet();
   void report_surplus();
   void report_hands();
@@ -155,6 +156,7 @@ class ControlLoop {
   std::array<bool, GAITD_MAX_HANDS> hand_moved_{};
   std::array<bool, GAITD_MAX_FEET> foot_partial_{};
   bool misjudged_ = false;
+  bool footsteps_wait_ = false;
 };
 
 }  // namespace gaitd::daemon

@@ -2,6 +2,7 @@
 // What the events of the log say of a tick.
 #include <utility>
 
+#include "daemon/control/command_text.h"
 #include "daemon/control/control_loop.h"
 #include "daemon/control/state_text.h"
 
@@ -16,6 +17,7 @@ void ControlLoop::report_changes() {
     telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
                            dropped_text(pipeline_->monitor(), i, text, sizeof(text)));
   }
+  report_recovery();
   report_feet();
   report_hands();
   report_surplus();
@@ -39,6 +41,21 @@ void ControlLoop::report_surplus() {
   char text[kMaxEventText];
   telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
                          surplus_text(d.external.surplus / model_.gravity, text, sizeof(text)));
+}
+
+// A robot that catches itself has left the place from which footsteps waited to be taken. While it
+// is paused nothing else makes it step.
+void ControlLoop::report_recovery() {
+  const TickData& d = pipeline_->data();
+  const bool stands = d.gait.phase == GAITD_PHASE_STAND;
+  const bool wait = stands && d.gait.paused != 0 && d.gait.footstep_count > 0;
+  if (!std::exchange(footsteps_wait_, wait) || stands || d.gait.paused == 0) return;
+  char text[kMaxEventText];
+  telemetry_->push_event(
+      EventKind::kNote, d.time.tick, d.time.time,
+      note_text("footsteps",
+                "the robot caught itself; those that waited for `gaitctl resume` are dropped", text,
+                sizeof(text)));
 }
 
 // A foothold turns out not to carry as a whole; told once of each.

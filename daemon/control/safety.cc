@@ -2,6 +2,7 @@
 #include "daemon/control/safety.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace gaitd::daemon {

@@ -243,7 +243,8 @@ class ElementReader {
     } else if (from.limits != nullptr) {
       const bool ranged =
           limit->Attribute("lower") != nullptr || limit->Attribute("upper") != nullptr;
-      joint->lacks_range = !limits_required_ && !continuous && !ranged;
+      joint->lacks_range =
+          !limits_required_ && !continuous && (!ranged || from.limits->lower == from.limits->upper);
       read_limit(limit->Row(), *from.limits, owner, continuous, joint);
     }
   }

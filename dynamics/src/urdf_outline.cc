@@ -54,9 +54,8 @@ bool read_shape(const TiXmlElement& element, UrdfShape* shape) {
     return numbers(attribute_text(form, "size"), &shape->size);
   }
   if (tag == "cylinder" || tag == "capsule") {
-    shape->kind = ShapeKind::kCylinder;
-    const double caps = tag == "capsule" ? 2.0 * number(form, "radius", 0) : 0.0;
-    shape->size = {number(form, "radius", 0), number(form, "length", 0) + caps, 0};
+    shape->kind = tag == "capsule" ? ShapeKind::kCapsule : ShapeKind::kCylinder;
+    shape->size = {number(form, "radius", 0), number(form, "length", 0), 0};
     return shape->size[0] > 0;
   }
   if (tag == "sphere") {
@@ -108,7 +107,6 @@ void read_joint(const TiXmlElement& element, UrdfOutline* outline) {
   }
   joint.lower = number(limit, "lower", 0);
   joint.upper = number(limit, "upper", 0);
-  joint.broken = !(axis.norm() > 0) || joint.lower > joint.upper;
   const bool limited = joint.type == "revolute" || joint.type == "prismatic";
   joint.has_range = axis.norm() > 0 && (!limited || joint.lower < joint.upper);
   outline->joints.push_back(joint);

@@ -2,6 +2,7 @@
 // What operators may ask of the gait machine: queue, replace, pause, resume, stop, abort, mode.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <vector>
@@ -232,6 +233,27 @@ TEST(GaitCommands, AStopInTransferClosesTheFeetWithTheFootThatWasToSwing) {
   ASSERT_TRUE(w.run_until_stand());
   EXPECT_EQ(w.gait().step_index, 3);
   EXPECT_LT(stagger(w.gait()), 1e-9);
+}
+
+TEST(GaitCommands, AStopPassesOverWhatTheStepWouldHavePassedOver) {
+  SyntheticWalk w;
+  std::array<GaitdFootstep, 3> steps{};
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const int side = i % 2 == 0 ? GAITD_LEFT : GAITD_RIGHT;
+    steps[i].side = side;
+    steps[i].pose = w.gait().footholds[side].pose;
+    steps[i].pose.position[0] += 0.2 * static_cast<double>(i + 1);
+    steps[i].swing_height = 0.1 + 0.05 * static_cast<double>(i);
+    steps[i].swing_duration = 0.9 + 0.1 * static_cast<double>(i);
+  }
+  ASSERT_FALSE(w.machine.set_mode(GAITD_MODE_WALK_BENT).refused());
+  ASSERT_FALSE(w.machine.footsteps(steps.data(), 3, false).refused());
+  ASSERT_TRUE(w.run_until_fraction(1, 0.5));
+  ASSERT_FALSE(w.machine.stop().refused());
+  ASSERT_EQ(w.gait().footstep_count, 2);
+  EXPECT_EQ(w.gait().commanded[1].closing, 1);
+  EXPECT_EQ(w.gait().commanded[1].swing_height, steps[1].swing_height);
+  EXPECT_EQ(w.gait().commanded[1].swing_duration, steps[1].swing_duration);
 }
 
 TEST(GaitCommands, AStopInTheClosingStepAddsNoFurtherOne) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "walking/test/allocation_counter.h"
 #include "walking/test/synthetic_walk.h"
@@ -275,6 +276,21 @@ TEST(ObjectiveBuilder, AngularMomentumWeighsMoreTheMoreOfItIsWanted) {
     EXPECT_EQ(last == 0.0, rate == 0.0);
   }
   EXPECT_GT(last, 0.5 * w.objectives->momentum_weight[3]);
+}
+
+TEST(ObjectiveBuilder, APoseLowersARobotThatStandsLowNoFurther) {
+  WalkWithObjectives w(GAITD_MODE_STAND);
+  w.builder.set_objective_parameter(static_cast<int>(Objective::kComHeight), 0.8);
+  w.run_for(0.01);
+  const double low = w.objectives->height_target;
+  GaitdTaskReferences references{};
+  std::copy_n(atlas().nominal_position, GAITD_MAX_JOINTS, references.joint_position);
+  for (const auto& [asked, got] : {std::pair(0.03, 0.03), std::pair(0.1, 0.05)}) {
+    references.com_shift[2] = -asked * atlas().nominal_com_height;
+    w.builder.set_references(references);
+    w.run_for(0.01);
+    EXPECT_NEAR(w.objectives->height_target, low - got * atlas().nominal_com_height, 1e-9);
+  }
 }
 
 TEST(ObjectiveBuilder, TheHeightTargetHasNoLargeStepsOverAWalkOnFlatGround) {

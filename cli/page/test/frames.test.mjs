@@ -67,13 +67,13 @@ test('a pelvis below a joint that moves stays at the origin', {skip}, async () =
   const robot = await made(), moved = new Set(['hip']);
   assert.ok(pelvisMoves(robot, {link: 'leg'}, moved));
   assert.ok(!pelvisMoves(robot, 'pelvis', moved));
-  for (const angle of [0, Math.PI / 2]) {
+  for (const angle of [0, 0.5]) {
     robot.joints.hip.setJointValue(angle);
     rootAtPelvis(robot, 'leg');
     robot.updateMatrixWorld(true);
     const at = (link, point) => robot.links[link].localToWorld(new Vector3(...point)).toArray()
         .map((v) => Math.round(1e6 * v) / 1e6 + 0);
     assert.deepEqual(at('leg', [0.2, 0, 0]), [0.2, 0, 0]);
-    assert.deepEqual(at('pelvis', [1, 0, 0]), angle === 0 ? [1, 0, 0.5] : [0, -1, 0.5]);
+    assert.deepEqual(at('pelvis', [1, 0, 0]), angle === 0 ? [1, 0, 0.5] : [0.877583, -0.479426, 0.5]);
   }
 });

@@ -209,8 +209,8 @@ TEST(SoleShape, IsTheFaceOfABoxThatLiesAskew) {
   Reasons why;
   SoleGuess sole;
   std::string error;
-  ASSERT_TRUE(
-      find_sole(shape_points(guess, 1, true, &why), -Vector3d::UnitZ(), Vector3d::UnitX(), &sole, &error))
+  ASSERT_TRUE(find_sole(shape_points(guess, 1, true, &why), -Vector3d::UnitZ(), Vector3d::UnitX(),
+                        &sole, &error))
       << error;
   EXPECT_LT((sole.frame.X_LF.linear().col(2) - R.col(2)).norm(), 1e-6);
   EXPECT_NEAR(polygon_area(sole.outline), 0.024, 1e-5);

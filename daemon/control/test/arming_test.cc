@@ -131,5 +131,25 @@ TEST(JointTest, OnlyOfADisarmedRobotAndEndedByAFault) {
   expect_damped(b);
 }
 
+// The ankles of some robots are too weak for a stiffness by their effort to hold the weight above.
+TEST(Readying, LegsThatAreTooSoftForTheirWeightHoldItNevertheless) {
+  const double stiffness = safety_parameter(SafetyParameter::kReadyStiffness);
+  const auto stiffness_of = [](const GaitdModel& model, int joint) {
+    Bench b({}, model);
+    EXPECT_EQ(b.safety.arm(), nullptr);
+    b.tick();
+    return b.command(joint).stiffness;
+  };
+  auto weak = std::make_unique<GaitdModel>(atlas());
+  for (const GaitdLeg& leg : weak->legs) weak->joints[leg.ankle_pitch].effort_limit = 100.0;
+  const GaitdLeg& leg = atlas().legs[GAITD_LEFT];
+  const auto effort = [](int joint) { return atlas().joints[joint].effort_limit; };
+  const double moment = atlas().total_mass * atlas().gravity * atlas().nominal_com_height;
+  EXPECT_NEAR(stiffness_of(atlas(), leg.ankle_pitch), stiffness * effort(leg.ankle_pitch), 1e-9);
+  EXPECT_NEAR(stiffness_of(*weak, leg.ankle_pitch), stiffness * 0.22 * moment, 1e-6);
+  EXPECT_NEAR(stiffness_of(*weak, leg.knee), stiffness * effort(leg.knee), 1e-9);
+  EXPECT_NEAR(stiffness_of(*weak, leg.ankle_roll), stiffness * effort(leg.ankle_roll), 1e-9);
+}
+
 }  // namespace
 }  // namespace gaitd::daemon

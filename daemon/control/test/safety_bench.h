@@ -35,8 +35,9 @@ inline void stand_on_soles(const GaitdRobotState& robot, GaitdGaitState& gait) {
 // A robot that stands in its nominal posture, with all its sensors.
 class Bench {
  public:
-  explicit Bench(std::initializer_list<std::pair<Limit, double>> limits = {})
-      : safety(atlas()), data(std::make_unique<TickData>()) {
+  explicit Bench(std::initializer_list<std::pair<Limit, double>> limits = {},
+                 const GaitdModel& model = atlas())
+      : safety(model), data(std::make_unique<TickData>()) {
     for (const auto& [limit, value] : limits) safety.set_limit(static_cast<int>(limit), value);
     data->robot = testing::standing_state(atlas());
     data->time.period = kPeriod;

@@ -49,7 +49,8 @@ struct UrdfResult {
   // inertias that no rigid body has are moved to the nearest possible one.
   std::vector<std::string> warnings;
   std::vector<std::string> unused_fixed;  // entries of UrdfOptions::fixed that no joint matches
-  // Revolute and prismatic ones of which the file gives neither lower nor upper.
+  // Revolute and prismatic ones of which the file gives neither lower nor upper, or the same for
+  // both.
   std::vector<std::string> joints_without_range;
 
   bool ok() const { return errors.empty(); }

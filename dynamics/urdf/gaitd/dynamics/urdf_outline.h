@@ -11,14 +11,15 @@
 
 namespace gaitd::dynamics {
 
-enum class ShapeKind { kBox, kCylinder, kSphere, kMesh };
+enum class ShapeKind { kBox, kCylinder, kCapsule, kSphere, kMesh };
 
 struct UrdfShape {
   std::string link;
   bool collision = false;  // else a visual
   ShapeKind kind = ShapeKind::kBox;
   Eigen::Isometry3d X_LS = Eigen::Isometry3d::Identity();  // in the link frame
-  // m: edges of a box; radius and length of a cylinder, which lies along z; radius of a sphere;
+  // m: edges of a box; radius and length of a cylinder, which lies along z, or of one
+  // between the caps of a capsule; radius of a sphere;
   // the scale of a mesh.
   Eigen::Vector3d size = Eigen::Vector3d::Ones();
   std::string file;  // of a mesh, as it stands there
