@@ -14,6 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     dynamics::UrdfOptions options{.root_link = root};
     if (options.root_link.empty()) {
       options.limits_required = false;
+      options.nearest_inertias = true;
       options.p_LB.z() = 0.1;
       options.fixed = {"*hand*"};
     }

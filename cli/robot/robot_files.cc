@@ -168,6 +168,12 @@ std::string robot_yaml(const Guess& guess, const std::string& urdf) {
   out.line("schema: gaitd.robot/1");
   out.line("name: " + quoted(guess.name));
   out.line("urdf: " + quoted(urdf));
+  if (guess.urdf.far_inertias) {
+    out.comment(
+        {"Some inertias in it are such as no body has, by far: the doctor names them. Until they "
+         "are corrected the nearest possible ones are taken."});
+    out.line("nearest_inertias: true");
+  }
   out.line("");
   out.comment(guess.pelvis_why);
   const std::string pelvis = quoted(model.bodies[0].name);

@@ -23,6 +23,7 @@ using Eigen::Vector3d;
 
 bool load(const std::string& text, Guess* guess, std::string* error) {
   guess->options.limits_required = false;
+  guess->options.nearest_inertias = true;
   guess->options.fixed.clear();
   for (const FixedGuess& fixed : guess->fixed) guess->options.fixed.push_back(fixed.joint);
   guess->urdf = dynamics::load_urdf_text(text, guess->urdf_file, guess->options);

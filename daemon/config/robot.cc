@@ -173,6 +173,7 @@ dynamics::UrdfResult load_urdf_of(MapReader* root, const std::string& file, cons
   const auto urdf = root->text("urdf");
   dynamics::UrdfOptions& options = robot->urdf_options;
   options.limits_required = false;  // drive_limits has what the file lacks
+  options.nearest_inertias = root->boolean("nearest_inertias").value_or(false);
   read_pelvis(root, &options);
   const std::vector<NodePtr> fixed = read_fixed(root, &options);
   dynamics::UrdfResult result;

@@ -43,6 +43,7 @@ std::unique_ptr<RobotMotion> RobotMotion::load(const std::map<std::string, std::
   if (urdf == metadata.end()) return nullptr;
   dynamics::UrdfOptions options;
   options.limits_required = false;  // robot.yaml has them
+  options.nearest_inertias = true;  // nor does it matter here
   if (const auto pelvis = metadata.find("pelvis"); pelvis != metadata.end()) {
     options.root_link = pelvis->second;
   }

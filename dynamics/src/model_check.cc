@@ -156,7 +156,7 @@ std::string check_inertia(const Eigen::Matrix3d& inertia, bool allow_zero) {
   return {};
 }
 
-bool make_physical(Eigen::Matrix3d* inertia) {
+bool make_physical(Eigen::Matrix3d* inertia, bool far) {
   if (!inertia->allFinite()) return false;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(*inertia);
   // A body with moments a, b, c has the second moments of mass (b + c - a) / 2 and so on, none of
@@ -164,7 +164,8 @@ bool make_physical(Eigen::Matrix3d* inertia) {
   const Eigen::Vector3d moments = solver.eigenvalues();
   if (!(moments[2] > 0)) return false;
   const Eigen::Vector3d extents = Eigen::Vector3d::Constant(0.5 * moments.sum()) - moments;
-  if (!(moments[0] > 0) && extents.minCoeff() < -kRounding * moments[2]) return false;
+  const bool rounded = extents.minCoeff() >= -kRounding * moments[2];
+  if (!rounded && !(far && moments[0] > 0)) return false;
   const Eigen::Vector3d possible = extents.cwiseMax(1e-6 * moments[2]);
   const Eigen::Vector3d nearest = Eigen::Vector3d::Constant(possible.sum()) - possible;
   *inertia = solver.eigenvectors() * nearest.asDiagonal() * solver.eigenvectors().transpose();

@@ -381,6 +381,7 @@ UrdfResult load_urdf_text(const std::string& text, const std::string& source,
   result.model.gravity = kStandardGravity;
   XmlReader xml(source, &result.errors, &result.warnings);
   const UrdfElements elements = read_urdf_elements(text, options, &xml, &result.unused_fixed);
+  result.far_inertias = elements.far_inertias;
   std::strncpy(result.model.name, elements.robot_name.c_str(), GAITD_NAME_SIZE - 1);
   if (!elements.links.empty()) TreeBuilder(elements, &xml, &result).build(options);
   if (result.ok()) {

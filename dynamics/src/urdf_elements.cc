@@ -26,6 +26,7 @@ class ElementReader {
   ElementReader(const UrdfOptions& options, XmlReader* xml)
       : fixed_(options.fixed),
         limits_required_(options.limits_required),
+        nearest_inertias_(options.nearest_inertias),
         used_(fixed_.size(), false),
         xml_(*xml) {}
 
@@ -132,12 +133,17 @@ class ElementReader {
     }
     // A part on a fixed joint may be a point mass; the body it is merged into is checked again.
     const std::string reason = check_inertia(m, true);
-    if (!reason.empty() && make_physical(&link->inertia)) {
+    const bool near = reason.empty() || make_physical(&link->inertia);
+    const bool moved = near || (nearest_inertias_ && make_physical(&link->inertia, true));
+    elements_.far_inertias = elements_.far_inertias || (moved && !near);
+    if (!reason.empty() && moved) {
       xml_.add_warning(inertia.Row(),
                        owner + ": " + reason + "; the nearest possible one is taken");
     } else if (!reason.empty()) {
       xml_.add_error(inertia.Row(),
-                     owner + ": " + reason + "; correct <inertia> (about the centre of mass)");
+                     owner + ": " + reason +
+                         "; correct <inertia> (about the centre of mass), or take the nearest "
+                         "possible ones: nearest_inertias in robot.yaml");
     }
   }
 
@@ -274,6 +280,7 @@ class ElementReader {
 
   const std::vector<std::string>& fixed_;
   bool limits_required_;
+  bool nearest_inertias_;
   std::vector<bool> used_;  // of fixed_
   XmlReader& xml_;
   UrdfElements elements_;

@@ -44,6 +44,7 @@ struct UrdfElements {
   std::string robot_name;
   std::vector<UrdfLinkElement> links;
   std::vector<UrdfJointElement> joints;
+  bool far_inertias = false;
 };
 
 // Everything wrong with single elements goes to `reader`; what hangs together wrongly does not.

@@ -163,6 +163,8 @@ TEST(UrdfErrors, NonPhysicalInertia) {
   };
   expect_link_error(inertial("ixx='1' iyy='1' izz='-1'"), {"'b'", "not positive definite"});
   expect_link_error(inertial("ixx='1' iyy='1' izz='1' ixy='2'"), {"not positive definite"});
+  expect_link_error(inertial("ixx='1' iyy='1' izz='3'"),
+                    {"1, 1, 3", "sum of the two others", "nearest_inertias"});
   expect_link_error(inertial("ixx='1' iyy='1'"), {"'b'", "<inertia>", "missing izz"});
 }
 

@@ -167,8 +167,11 @@ TEST(Urdf, MovesAnImpossibleInertiaToTheNearestPossibleOne) {
     const std::string part =
         "<link name='a'><inertial><mass value='1'/><inertia ixx='0.02' iyy='0.02' izz='" +
         std::to_string(most) + "'/></inertial></link>";
-    const UrdfResult result = load_urdf_text(robot(part), "t");
+    UrdfOptions options;
+    options.nearest_inertias = most > 0.05;
+    const UrdfResult result = load_urdf_text(robot(part), "t", options);
     ASSERT_TRUE(result.ok()) << all(result.errors);
+    EXPECT_EQ(result.far_inertias, most > 0.05);
     ASSERT_EQ(result.warnings.size(), 1u);
     EXPECT_NE(result.warnings[0].find("sum of the two others"), std::string::npos);
     const double* inertia = result.model.bodies[0].inertia;

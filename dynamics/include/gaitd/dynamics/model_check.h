@@ -22,10 +22,10 @@ std::vector<std::string> check_model(const GaitdModel& model);
 // others. With `allow_zero` a point or a thin rod passes too.
 std::string check_inertia(const Eigen::Matrix3d& inertia, bool allow_zero);
 
-// Moves an inertia (kg m^2, about the centre of mass) with a moment above the sum of the two others
-// to the nearest possible one. False, and nothing is changed, when it is not even positive
-// definite, by more than rounding: 5 % of its largest moment.
-bool make_physical(Eigen::Matrix3d* inertia);
+// Moves an inertia (kg m^2, about the centre of mass) that no body has to the nearest possible one.
+// False, and nothing is changed, when more than rounding is wrong with it, 5 % of its largest
+// moment; with `far` also then, if it is positive definite.
+bool make_physical(Eigen::Matrix3d* inertia, bool far = false);
 
 }  // namespace gaitd::dynamics
 

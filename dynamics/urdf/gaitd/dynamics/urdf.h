@@ -25,6 +25,9 @@ struct UrdfOptions {
   // Whether a moving joint without effort, velocity or range is an error. If not, it gets
   // kNoUrdfLimit: whoever asks knows them from elsewhere.
   bool limits_required = true;
+  // Whether inertias that no rigid body has, by more than rounding, are moved to the nearest
+  // possible ones. If not, they are errors.
+  bool nearest_inertias = false;
 };
 
 // N m, rad/s and rad: of what the file does not limit, as the range of a continuous joint.
@@ -48,6 +51,7 @@ struct UrdfResult {
   // What was taken differently from how it stands there: joints that mimic another one are fixed,
   // inertias that no rigid body has are moved to the nearest possible one.
   std::vector<std::string> warnings;
+  bool far_inertias = false;              // one of them by more than rounding
   std::vector<std::string> unused_fixed;  // entries of UrdfOptions::fixed that no joint matches
   // Revolute and prismatic ones of which the file gives neither lower nor upper, or the same for
   // both.
