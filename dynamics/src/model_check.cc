@@ -161,7 +161,7 @@ bool make_physical(Eigen::Matrix3d* inertia, bool far) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(*inertia);
   // A body with moments a, b, c has the second moments of mass (b + c - a) / 2 and so on, none of
   // which may be negative.
-  const Eigen::Vector3d moments = solver.eigenvalues();
+  const Eigen::Vector3d& moments = solver.eigenvalues();
   if (!(moments[2] > 0)) return false;
   const Eigen::Vector3d extents = Eigen::Vector3d::Constant(0.5 * moments.sum()) - moments;
   const bool rounded = extents.minCoeff() >= -kRounding * moments[2];

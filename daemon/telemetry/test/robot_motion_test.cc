@@ -67,8 +67,8 @@ TEST(RobotMotion, FramesAreThoseOfTheLinksAlsoAboveATurnedJoint) {
                            joint("waist", "revolute", "chest", "pelvis", "0.1 0 -0.3",
                                  "<limit lower='-2' upper='2' velocity='1' effort='1'/>") +
                            "</robot>";
-  const auto motion =
-      RobotMotion::load({{"robot_urdf", urdf}, {"pelvis", "pelvis"}, {"pelvis_origin", "[0, 0, 0.2]"}});
+  const auto motion = RobotMotion::load(
+      {{"robot_urdf", urdf}, {"pelvis", "pelvis"}, {"pelvis_origin", "[0, 0, 0.2]"}});
   ASSERT_NE(motion, nullptr);
   const std::array pelvis = {0.0, 0.0, 1.2, 0.0, 0.0, 0.0};  // of body 0
   motion->place(pelvis, std::array{M_PI_2});
