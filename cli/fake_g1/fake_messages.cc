@@ -63,7 +63,7 @@ void FakeG1::fill(const GaitdSensors& sensors) {
     unitree::MotorState& motor = state_.motor_state[index];
     const double step = torque_step(index);
     const bool broken = condition.off || condition.error != 0;
-    motor.mode = broken ? 0 : 1;
+    motor.mode = broken || (commanded_ && command_.motor_cmd[index].mode == 0) ? 0 : 1;
     motor.q = condition.nan ? std::numeric_limits<float>::quiet_NaN()
                             : static_cast<float>(joint.position);
     const double noise = options_.rate_noise > 0 ? options_.rate_noise * normal(&random_) : 0.0;

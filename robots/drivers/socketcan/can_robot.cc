@@ -217,6 +217,10 @@ void CanRobot::send(int bus) {
   bool down = false;
   const int sent = state.bus->send(state.frames.data(), count, &down);
   for (int i = 0; i < sent; ++i) motors_[state.motors[i]].awaiting = true;
+  for (int i = sent; i < count; ++i) {
+    MotorState& motor = motors_[state.motors[i]];
+    if (motor.cycles_enabled == 0) motor.enabled = false;  // what did not go out was its Enable
+  }
   if (sent < count) unsent_ += count - sent;
   state.unsent_in_row = sent < count ? state.unsent_in_row + 1 : 0;
   if (down) switch_off_bus(bus);

@@ -42,6 +42,7 @@ bool CanRobot::faulty(int index) const {
 void CanRobot::switch_off_bus(int bus) {
   buses_[bus].down = true;
   buses_[bus].fell = true;
+  buses_[bus].passive = false;  // one that comes up again does so without saying so
   buses_[bus].ends_owed = 0;
   for (size_t i = 0; i < motors_.size(); ++i) {
     if (wiring_.motors[i].bus == bus) motors_[i].enabled = false;

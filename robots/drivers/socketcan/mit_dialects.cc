@@ -60,6 +60,11 @@ Frame encode_special(const MotorId& motor, Special special) {
   return frame;
 }
 
+// Where the end 0xFB means nothing the frame is a command: nearly full torque.
+Frame encode_special_without_clear(const MotorId& motor, Special special) {
+  return encode_special(motor, special == Special::kClear ? Special::kDisable : special);
+}
+
 std::optional<Special> decode_special(const Frame& frame) {
   if (frame.length != 8) return std::nullopt;
   for (int i = 0; i < 7; ++i) {
@@ -222,7 +227,7 @@ constexpr Dialect without_registers(const char* name, ReplyRoute route, uint32_t
           .reply_length = reply_length,
           .command = encode_command,
           .read_command = decode_command,
-          .special = encode_special,
+          .special = encode_special_without_clear,
           .read_special = decode_special,
           .reply = reply,
           .read_reply = read_reply,
@@ -238,6 +243,7 @@ constexpr Dialect without_registers(const char* name, ReplyRoute route, uint32_t
 constexpr Dialect damiao() {
   Dialect dialect = without_registers("damiao", ReplyRoute::kOwnId, kLastId, 8, damiao_reply,
                                       decode_damiao_reply);
+  dialect.special = encode_special;
   dialect.fd = dialect.tells_ranges = true;
   dialect.registers = kDamiaoRegisters;
   dialect.register_request = damiao_request;

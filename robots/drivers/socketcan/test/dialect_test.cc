@@ -69,12 +69,15 @@ TEST(Dialects, BothSidesUnderstandEachOther) {
     EXPECT_NEAR(command.torque, read->torque, 0.02);
     EXPECT_FALSE(d->is_torque_free(frame)) << d->name;
     EXPECT_TRUE(d->is_torque_free(d->command(motor, ranges, {.damping = 5}))) << d->name;
-    for (const Special s :
-         {Special::kEnable, Special::kDisable, Special::kSetZero, Special::kClear}) {
+    for (const Special s : {Special::kEnable, Special::kDisable, Special::kSetZero}) {
       const Frame special = d->special(motor, s);
       EXPECT_EQ(s, d->read_special(special)) << d->name;
       EXPECT_TRUE(d->is_for(special, motor)) << d->name;
     }
+    const bool clears = d == &kDamiao || d == &kRobStride;
+    EXPECT_EQ(clears ? Special::kClear : Special::kDisable,
+              d->read_special(d->special(motor, Special::kClear)))
+        << d->name;
     for (const MotorError error : {MotorError::kOff, MotorError::kOn, MotorError::kOverload}) {
       const MotorReply reply{-3, 4, 5, static_cast<uint8_t>(error), 0, 0};
       const Frame answer = d->reply(motor, ranges, reply);

@@ -26,6 +26,14 @@ WatchOptions watch_options(const Settings& settings, bool lockstep) {
   return {settings.motor_mask(), lockstep ? 1e3 : settings.state_timeout, settings.lowest_charge};
 }
 
+uint64_t motors_on(const Command& command) {
+  uint64_t on = 0;
+  for (int i = 0; i < kMotors; ++i) {
+    if (command.motors[i].drive != Drive::kOff) on |= uint64_t{1} << i;
+  }
+  return on;
+}
+
 }  // namespace
 
 Link::Link(const Settings& settings, bool lockstep, bool rescue, Exchange* exchange)
@@ -84,7 +92,7 @@ void Link::poll(int64_t nanoseconds) {
   if (take_sample(torso_, &torso_message_)) watch_.take_torso(torso_message_, now);
   if (take_sample(battery_, &battery_message_)) watch_.take_battery(battery_message_);
   if (feet_ > 0 && take_sample(feet_, &feet_message_)) watch_.take_feet(feet_message_, now);
-  watch_.set_driving(driving_);
+  watch_.set_on(on_);
   const uint64_t cycle = cycle_of(message_);
   const bool whole = cycle == 0 || feet_ <= 0 || watch_.state().feet.sequence == cycle;
   // Half of a cycle is not taken; the fake robot sends it again.
@@ -209,7 +217,7 @@ void Link::write_loop() {
     // In lock step the state is answered once, by the command for it.
     if (passed == nullptr && lockstep_ && !alone) state.cycle = count == 0 ? 0 : command.cycle;
     write(passed, state);
-    driving_ = passed != nullptr && passed->driven != 0;
+    on_ = passed != nullptr && passed->driven != 0 ? motors_on(*passed) : 0;
     if (alone) ++damped_;
     // Without gaitd the answers of the lock step come from here.
     if (alone && lockstep_) {

@@ -64,7 +64,7 @@ class Link {
   bool twins_ = false;  // somebody else sends states, too
   // By the writer, for the reader.
   std::atomic<uint32_t> holds_{0}, late_{0}, unsent_{0}, slow_{0}, damped_{0};
-  std::atomic<bool> driving_{false};
+  std::atomic<uint64_t> on_{0};  // motors that are commanded to be
 };
 
 }  // namespace gaitd::unitree

@@ -15,7 +15,7 @@ namespace gaitd::unitree {
 namespace {
 
 constexpr int64_t kTickNs = 1'000'000;
-constexpr int kSwitchOnStates = 100;  // until a motor has to say that it is on
+constexpr uint8_t kSwitchOnStates = 100;  // until a motor has to say that it is on
 
 }  // namespace
 
@@ -80,16 +80,17 @@ void StateWatch::take_feet(const FootWrenches& message, int64_t now_ns) {
 
 void StateWatch::look_at_motors(const LowState& message) {
   bad_motor_ = -1;
-  driving_states_ = driving_ ? std::min(driving_states_ + 1, kSwitchOnStates) : 0;
   for (int i = 0; i < kMotors; ++i) {
     if ((options_.motors >> i & 1) == 0) continue;
     const MotorState& motor = message.motor_state[i];
     const uint64_t bit = uint64_t{1} << i;
+    uint8_t& states = on_states_[i];
+    states = (on_ & bit) == 0 ? 0 : std::min<uint8_t>(states + 1, kSwitchOnStates);
     if (motor.mode != 0) {
       was_on_ |= bit;
       fell_off_ &= ~bit;
-    } else if ((was_on_ & bit) != 0 && driving_states_ == kSwitchOnStates) {
-      fell_off_ |= bit;  // also once it is no longer driven for that
+    } else if ((was_on_ & bit) != 0 && states == kSwitchOnStates) {
+      fell_off_ |= bit;  // also once it is no longer on for that
     }
     const char* text = motor_error_text(motor.motorstate);
     if (text[0] != '\0') {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -25,8 +26,8 @@ class StateWatch {
   void take_torso(const ImuState& message, int64_t now_ns);
   void take_battery(const BmsState& message) { charge_ = message.soc; }
   void take_feet(const FootWrenches& message, int64_t now_ns);
-  // The motors are switched on by us: one that then says it is off switched itself off.
-  void set_driving(bool driving) { driving_ = driving; }
+  // Bit i: motor i is commanded to be on. One that then says it is off switched itself off.
+  void set_on(uint64_t motors) { on_ = motors; }
 
   const State& state() const { return state_; }
   bool heard() const { return state_.sequence != 0; }
@@ -47,10 +48,10 @@ class StateWatch {
   uint8_t first_machine_ = 0;
   bool other_machine_ = false, motor_frame_ = false, restarted_ = false;
   uint32_t machine_now_ = 0;
-  bool driving_ = false;
-  int driving_states_ = 0;  // in a row
-  uint64_t was_on_ = 0;     // motors that have said so
-  uint64_t fell_off_ = 0;   // and then switched themselves off
+  uint64_t on_ = 0;
+  std::array<uint8_t, kMotors> on_states_{};  // in a row
+  uint64_t was_on_ = 0;                       // motors that have said so
+  uint64_t fell_off_ = 0;                     // and then switched themselves off
   int bad_motor_ = -1;
   char bad_text_[64] = "";
   const char* estop_keys_ = nullptr;  // pressed now

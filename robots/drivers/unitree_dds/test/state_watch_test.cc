@@ -14,9 +14,10 @@ namespace gaitd::unitree {
 namespace {
 
 constexpr int64_t kMillisecond = 1'000'000;
+constexpr uint64_t kAllMotors = (uint64_t{1} << kMotors) - 1;
 
 struct Bench {
-  StateWatch watch{{(uint64_t{1} << kMotors) - 1, 0.05, 20}};
+  StateWatch watch{{kAllMotors, 0.05, 20}};
   LowState message;
   int64_t now = 1000 * kMillisecond;
 
@@ -191,12 +192,16 @@ TEST(StateWatch, AMotorThatIsOffWhileDrivenSwitchedItselfOff) {
   b.message.motor_state[3].mode = 0;
   for (int i = 0; i < 200; ++i) b.next();
   EXPECT_EQ(0u, b.status().conditions);  // nobody drives
-  b.watch.set_driving(true);
+  // A test of another joint: this one is commanded off.
+  b.watch.set_on(kAllMotors & ~(uint64_t{1} << 3));
+  for (int i = 0; i < 200; ++i) b.next();
+  EXPECT_EQ(0u, b.status().conditions);
+  b.watch.set_on(kAllMotors);
   for (int i = 0; i < 99; ++i) b.next();
   EXPECT_EQ(0u, b.status().conditions);
   b.next();
   EXPECT_STREQ("motor of left_knee_joint: it switched itself off", b.status().text);
-  b.watch.set_driving(false);  // gaitd has heard of it
+  b.watch.set_on(0);  // gaitd has heard of it
   b.next();
   EXPECT_EQ(uint32_t{GAITD_HEALTH_MOTOR}, b.status().conditions);
   b.message.motor_state[3].mode = 1;
@@ -207,7 +212,7 @@ TEST(StateWatch, AMotorThatIsOffWhileDrivenSwitchedItselfOff) {
 TEST(StateWatch, SimulatorsThatNeverSayOnAreBelievedToBeOn) {
   Bench b;
   for (int i = 0; i < kMotors; ++i) b.message.motor_state[i].mode = 0;
-  b.watch.set_driving(true);
+  b.watch.set_on(kAllMotors);
   for (int i = 0; i < 200; ++i) b.next();
   EXPECT_EQ(0u, b.status().conditions);
 }
