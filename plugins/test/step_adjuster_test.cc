@@ -242,6 +242,21 @@ TEST(FixedSteps, StateGoesOnInAnotherInstance) {
   EXPECT_TRUE(std::ranges::equal(std::as_bytes(std::span(&x, 1)), std::as_bytes(std::span(&y, 1))));
 }
 
+TEST(FixedSteps, WhatMovedAStepOfAnotherWalkMovesNone) {
+  SyntheticWalk w = in_swing();
+  GaitdStepAdjusterState state{};
+  state.step_index = w.gait().step_index + 1;
+  state.shift[0] = 0.1;
+  state.time_shift = -0.3;
+  Adjuster a;
+  a.layer.set_state(state);
+  EXPECT_EQ(a.process(w).active, 0);
+  state.step_index = w.gait().step_index;
+  Adjuster b;
+  b.layer.set_state(state);
+  EXPECT_EQ(b.process(w).time_shift, -0.3);
+}
+
 TEST(FixedSteps, NeverAllocates) {
   SyntheticWalk w = in_swing();
   Adjuster adjuster;

@@ -255,6 +255,19 @@ TEST(StepPlan, GoesOnFromAShiftThatAnotherVariantMade) {
   EXPECT_NEAR(out.time_shift, w.adjustment.time_shift, 1e-9);
 }
 
+// As beside the newcomer of a swap, which may roll back to it.
+TEST(StepPlan, WhatTheGaitDoesNotFollowDoesNotAddUp) {
+  SyntheticWalk w;
+  ASSERT_FALSE(w.machine.walk({.steps = 5, .length = 0.4}).refused());
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_TRANSFER, 3));
+  StepPlan layer(atlas());
+  sdk::view(w.robot.icp) = Vector2d(sdk::view(w.plan.icp)) - Vector2d(sdk::view(w.plan.offset));
+  w.robot.icp[0] += 0.2;
+  const double first = process(layer, w).time_shift;
+  ASSERT_LT(first, -0.02);
+  for (int i = 0; i < 50; ++i) EXPECT_GT(process(layer, w).time_shift, 1.5 * first) << i;
+}
+
 TEST(StepPlan, NeverAllocates) {
   SyntheticWalk w = planned_swing();
   StepPlan layer(atlas());

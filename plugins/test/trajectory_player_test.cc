@@ -95,6 +95,24 @@ TEST_F(TrajectoryPlayerTest, AWalkTakesTheShiftBackAndKeepsTheTurn) {
   EXPECT_NEAR(sdk::roll_pitch_yaw(sdk::quaternion(out.pelvis_turn)).y(), 0.1, 1e-9);
 }
 
+TEST_F(TrajectoryPlayerTest, AWalkLeavesTheRestOfTheMotionItsTime) {
+  GaitdMotion& motion = ask(GAITD_PART_PELVIS, GAITD_MOTION_PELVIS, 0b111111, 6.0);
+  motion.points[0].value[0] = 0.05;
+  motion.points[0].value[5] = 0.2;
+  run(2.0);
+  ASSERT_FALSE(walk_.machine.walk({.steps = 2, .length = 0.1}).refused());
+  walk_.tick();
+  const auto yaw = [](const GaitdTaskReferences& out) {
+    return sdk::yaw_of(sdk::quaternion(out.pelvis_turn));
+  };
+  GaitdTaskReferences out = run(1.0);
+  EXPECT_NEAR(out.com_shift[0], 0.0, 1e-12);
+  EXPECT_NEAR(yaw(out), 0.1, 1e-3);
+  out = run(3.1);
+  EXPECT_NEAR(out.com_shift[0], 0.0, 1e-12);
+  EXPECT_NEAR(yaw(out), 0.2, 1e-9);
+}
+
 TEST_F(TrajectoryPlayerTest, JointsGoWhereTheyAreToldTheOthersStay) {
   const sdk::Chain arm = sdk::arm_of(atlas(), GAITD_LEFT);
   ask(GAITD_PART_LEFT_ARM, GAITD_MOTION_ARM, 0b1000, 1.0).points[0].value[3] = 1.2;

@@ -16,6 +16,15 @@ namespace {
 constexpr int kDistinctSteps = 5;
 
 constexpr int kMostReturning = 10;  // steps: who is pushed all the time does not step for ever
+constexpr double kLevel = 0.05;     // rad, a sole lies down on what is tilted by less
+
+// Both soles say that the ground is tilted, and alike: so it is beside them.
+bool on_slope(const GaitdPose& a, const GaitdPose& b) {
+  const auto up = [](const GaitdPose& pose) -> Eigen::Vector3d {
+    return sdk::quaternion(pose.orientation) * Eigen::Vector3d::UnitZ();
+  };
+  return tilt_of(a) > kLevel && up(a).cross(up(b)).norm() < kLevel;
+}
 
 }  // namespace
 
@@ -44,7 +53,7 @@ Refusal GaitMachine::check(const GaitdFootstep& step, const GaitdPose& stance,
 }
 
 Refusal GaitMachine::check_capture(const GaitdFootstep* steps, int count, int kept,
-                                   int closing_number) const {
+                                   int closing_number, int before) const {
   const auto at = [&](int i) -> const GaitdFootstep& {
     return i < kept ? queue_[i] : steps[i - kept];
   };
@@ -56,10 +65,10 @@ Refusal GaitMachine::check_capture(const GaitdFootstep* steps, int count, int ke
       ahead[i] = at(landing + i);
       fill_in(ahead[i]);
     }
-    GaitdFoothold stance = landing > 0 ? foothold_of(model_, at(landing - 1))
+    GaitdFoothold stance = landing > 0 ? bearing_of(model_, at(landing - 1))
                                        : state_.footholds[other_side(ahead[0].side)];
     stance.contact = GAITD_CONTACT_FULL;
-    const int number = ahead[1].closing != 0 ? closing_number : landing + 2 - kept;
+    const int number = ahead[1].closing != 0 ? closing_number : landing + 2 - kept + before;
     if (Refusal r =
             capture_check_.check(stance, ahead.data(), known, kFinalTransfer, state_.omega, number);
         r.refused()) {
@@ -73,7 +82,7 @@ Refusal GaitMachine::set_mode(int mode) {
   if (mode < GAITD_MODE_STAND || mode > GAITD_MODE_WALK_BENT) {
     return refuse("mode %d: stand, walk-straight or walk-bent expected", mode);
   }
-  if (mode == GAITD_MODE_STAND && (walking() || queue_.size() > 0)) stop();
+  if (mode == GAITD_MODE_STAND && (walking() || queue_.size() > 0 || drive_.active())) stop();
   pending_mode_ = mode;
   return {};
 }
@@ -112,6 +121,8 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
     return refuse("walk: width %.3f m, at least %.3f expected, or the legs cross", width, least);
   }
   GaitdPose middle = middle_pose(feet[GAITD_LEFT], feet[GAITD_RIGHT]);
+  // Between two levels there is no ground: the walk goes on at that of the foot it begins on.
+  middle.position[2] = feet[other_side(first)].position[2];
   // From the third on each footstep is to the two before it as the one two further on: a long walk
   // is as good as a short one that ends with the same foot, and costs a tick no more.
   WalkCommand shorter = walk;
@@ -136,6 +147,7 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
   keep_first(kept);
   returns_left_ = kMostReturning;
   drive_.end();
+  routed_ = false;
   FootstepGenerator generator(walk, middle, first, width, least);
   for (int i = 0; i < generator.count(); ++i) {
     GaitdFootstep step = generator.next();
@@ -147,13 +159,13 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
   return {};
 }
 
-Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool replace) {
+Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool replace, bool routed) {
   if (pending_mode_ == GAITD_MODE_STAND) {
     return refuse("steps: the gait mode is stand; choose one to walk in: gaitctl mode walk-bent");
   }
   // A transfer has chosen its foot: its footstep may be replaced by one of the same side only.
   const bool committed = state_.phase == GAITD_PHASE_TRANSFER && state_.transfer_final == 0;
-  int kept = left_by_another();
+  int kept = routed ? queue_.size() : left_by_another();
   if (replace) kept = recovering() ? begun() : std::min(first_free(), queue_.size());
   // The footstep that the transfer has chosen, sent again: it stays, with how it was moved.
   const bool again = replace && committed && count > 0 && queue_.size() > 0 && steps[0].id != 0 &&
@@ -163,6 +175,7 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
     ++steps;
     --count;
   }
+  const int before = again ? 1 : 0;  // of those that were sent
   if (count < 1 && !again && !(replace && !committed)) {
     return refuse("steps: at least one expected, got none");
   }
@@ -174,24 +187,27 @@ Refusal GaitMachine::footsteps(const GaitdFootstep* steps, int count, bool repla
   if (kept == 0 && committed) expected = state_.next_side;
   for (int i = 0; i < count; ++i) {
     const GaitdFootstep& step = steps[i];
+    const int number = before + i + 1;
     if (step.side != GAITD_LEFT && step.side != GAITD_RIGHT) {
-      return refuse("footstep %d: side left or right expected", i + 1);
+      return refuse("footstep %d: side left or right expected", number);
     }
     if (expected != GAITD_BOTH && step.side != expected) {
-      return refuse("footstep %d: side %s expected, because feet alternate%s, got %s", i + 1,
+      return refuse("footstep %d: side %s expected, because feet alternate%s, got %s", number,
                     side_name(expected), i == 0 ? " with the footsteps already ahead" : "",
                     side_name(step.side));
     }
-    if (Refusal r = check(step, feet[other_side(step.side)], feet[step.side], i + 1); r.refused()) {
+    if (Refusal r = check(step, feet[other_side(step.side)], feet[step.side], number);
+        r.refused()) {
       return r;
     }
     feet[step.side] = step.pose;
     expected = other_side(step.side);
   }
-  if (Refusal r = check_capture(steps, count, kept, count); r.refused()) return r;
+  if (Refusal r = check_capture(steps, count, kept, before + count, before); r.refused()) return r;
   keep_first(kept);
   returns_left_ = kMostReturning;
   drive_.end();
+  routed_ = routed;
   for (int i = 0; i < count; ++i) {
     GaitdFootstep step = steps[i];
     complete(step);
@@ -254,17 +270,19 @@ GaitdFootstep GaitMachine::closing_step(const GaitdPose& stance, int side) const
   GaitdFootstep step{};
   step.side = side;
   step.closing = 1;
-  const double yaw = sdk::yaw_of(sdk::quaternion(stance.orientation));
-  GaitdPose level = stance;
-  sdk::store(sdk::from_yaw(yaw), level.orientation);
+  GaitdPose plane = stance;
+  if (!on_slope(stance, state_.footholds[side].pose)) {
+    sdk::store(sdk::from_yaw(sdk::yaw_of(sdk::quaternion(stance.orientation))), plane.orientation);
+  }
+  step.pose = plane;
   sdk::view(step.pose.position) =
-      sdk::transform(level, {0.0, side_sign(side) * model_.nominal_foot_separation, 0.0});
-  sdk::store(sdk::from_yaw(yaw), step.pose.orientation);
+      sdk::transform(plane, {0.0, side_sign(side) * model_.nominal_foot_separation, 0.0});
   return step;
 }
 
 Refusal GaitMachine::stop() {
   drive_.end();
+  routed_ = false;
   returns_left_ = 0;
   state_.paused = 0;
   if (recovering()) {  // it catches itself and closes its feet: that is how it comes to a stand
@@ -318,6 +336,7 @@ int GaitMachine::begun() const {
 
 Refusal GaitMachine::abort() {
   drive_.end();
+  routed_ = false;
   returns_left_ = 0;
   state_.paused = 0;
   keep_first(begun());

@@ -90,6 +90,7 @@ GaitdFootstep GaitMachine::drive_step(const GaitdPose& middle, int side,
 
 void GaitMachine::drive_on(int kept, int landed, const Eigen::Vector3d& missed) {
   keep_first(kept);
+  routed_ = false;
   returns_left_ = 0;  // a velocity leads nowhere
   GaitdPose feet[2] = {state_.footholds[GAITD_LEFT].pose, state_.footholds[GAITD_RIGHT].pose};
   for (GaitdPose& foot : feet) foot.position[2] -= height_offset_;
@@ -114,6 +115,7 @@ void GaitMachine::drive_on(int kept, int landed, const Eigen::Vector3d& missed) 
     // Into the walk with the foot on the side it goes to, so that the legs never close first.
     const bool left = v.lateral > 0.0 || (v.lateral == 0.0 && v.turn > 0.0);
     const int side = landed != GAITD_BOTH ? other_side(landed) : left ? GAITD_LEFT : GAITD_RIGHT;
+    if (landed == GAITD_BOTH) middle.position[2] = feet[other_side(side)].position[2];
     GaitdFootstep footstep;
     Refusal refusal;
     for (int attempt = 0; attempt < kAttempts; ++attempt, v = scaled(v, kSlower)) {

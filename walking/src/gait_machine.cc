@@ -75,6 +75,7 @@ void GaitMachine::set_parameter(int index, double value) { parameters_.set(index
 void GaitMachine::reset(const GaitdRobotState& robot) {
   queue_.truncate(0);
   drive_.end();
+  routed_ = false;
   shift_.setZero();
   path_offset_.setZero();
   time_shift_ = 0.0;

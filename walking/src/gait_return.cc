@@ -80,6 +80,8 @@ void GaitMachine::begin_return(const GaitdRobotState& robot) {
   GaitdPose stance = state_.footholds[other_side(side)].pose;
   while (returns_left_ > 0 && std::max(away[GAITD_LEFT], away[GAITD_RIGHT]) > arrived()) {
     GaitdFootstep step = goals_[side].step;
+    // The ground was felt beside it; what is commanded is as far off as the map of who commands.
+    step.pose.position[2] = state_.footholds[side].pose.position[2] - height_offset_;
     step.closing = 1;
     complete(step);
     queue_.push(step);

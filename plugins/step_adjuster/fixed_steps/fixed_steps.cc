@@ -5,10 +5,7 @@ namespace gaitd::plugins {
 
 GaitdStatus FixedSteps::process(const GaitdStepAdjusterInput& in, GaitdStepAdjustment& out) {
   const GaitdGaitState& gait = *in.gait;
-  if (phase_ == kUnknownPhase) {
-    phase_ = gait.phase;
-    step_ = gait.step_index;
-  }
+  if (phase_ == kUnknownPhase) phase_ = gait.phase;
   if (phase_ != gait.phase || step_ != gait.step_index) {
     kept_shift_.setZero();
     kept_time_shift_ = 0.0;

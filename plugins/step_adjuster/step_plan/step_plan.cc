@@ -19,6 +19,7 @@ constexpr double kClearance = 0.02;  // m, between soles that pass each other
 // sqrt(h/g), before touchdown: no leg follows a change any more.
 constexpr double kHold = 0.09;
 constexpr double kLeastLeft = 1.3 * kHold;
+constexpr double kOtherDuration = 1e-9;  // s, more than rounding
 // sqrt(h/g), after touchdown: the landing and not the feedback decides where the CMP is.
 constexpr double kSettling = 0.3;
 // sqrt(h/g), for which an ICP that moves without a CMP that moves it has to last: a shock does not.
@@ -90,6 +91,7 @@ void StepPlan::set_state(const GaitdStepAdjusterState& s) {
 void StepPlan::begin_phase(const GaitdGaitState& gait) {
   // The planned duration is what the phase began with; a swap keeps what was shifted since.
   if (phase_ != kUnknownPhase || step_index_ != gait.step_index) time_shift_ = 0.0;
+  duration_ = gait.phase_duration - time_shift_;
   phase_ = gait.phase;
   step_index_ = gait.step_index;
   const GaitdFootstep& step = gait.commanded[0];
@@ -258,13 +260,12 @@ void StepPlan::add_limits(const GaitdStepAdjusterInput& in, StepProblem& c) cons
   c.capture = capture_set(gait);
 
   c.planned = gait.time_remaining - time_shift_;
-  const double duration = gait.phase_duration - time_shift_;
   if (transfer) {
     c.shortest = std::max(time_ * p_[P::kShortestTransfer] - gait.time_in_phase, 0.0);
     c.longest = std::max(c.planned, c.shortest);
   } else {
     c.shortest = std::max(time_ * p_[P::kShortestSwing] - gait.time_in_phase, kLeastLeft * time_);
-    c.longest = p_[P::kLongestSwing] * duration - gait.time_in_phase;
+    c.longest = p_[P::kLongestSwing] * duration_ - gait.time_in_phase;
   }
   c.foot_speed = p_[P::kFootSpeed] * length_ / time_;
 }
@@ -319,9 +320,15 @@ GaitdStatus StepPlan::process(const GaitdStepAdjusterInput& in, GaitdStepAdjustm
                         gait.trailing_side != GAITD_BOTH;
   if (gait.footstep_count == 0 || (gait.phase != GAITD_PHASE_SWING && !transfer)) {
     phase_ = gait.phase;
+    shift_.setZero();
+    time_shift_ = 0.0;
     return GAITD_OK;
   }
   if (gait.step_index != step_index_ || gait.phase != phase_) begin_phase(gait);
+  // Beside another variant that is being swapped in, the gait follows that one.
+  if (std::abs(gait.phase_duration - time_shift_ - duration_) > kOtherDuration) {
+    time_shift_ = gait.phase_duration - duration_;
+  }
   if (transfer ? gait.time_remaining > 0.0 : gait.time_remaining > kHold * time_) adjust(in);
   out.active = 1;
   view(out.shift) = Eigen::Vector3d(shift_.x(), shift_.y(), 0.0);

@@ -94,6 +94,7 @@ class StepPlan {
   Eigen::Vector2d start_shift_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d shift_ = Eigen::Vector2d::Zero();  // m, W, against the commanded foothold
   double time_shift_ = 0.0;                          // s
+  double duration_ = 0.0;                            // s, of the phase without it
 };
 
 }  // namespace gaitd::plugins

@@ -53,7 +53,7 @@ GaitdStatus TrajectoryPlayer::process(const GaitdTaskSourceInput& in, GaitdTaskR
   for (int part = 0; part < GAITD_PART_COUNT; ++part) {
     advance(part, in.motions->parts[part], in.time.period);
   }
-  leave(in.motions->parts[GAITD_PART_PELVIS], *in.gait);
+  leave(*in.gait, in.time.period);
   play_body(out);
   std::copy_n(model_.nominal_position, GAITD_MAX_JOINTS, out.joint_position);
   for (int hand = 0; hand < GAITD_MAX_HANDS; ++hand) play_arm(hand, in, out);
@@ -117,22 +117,29 @@ void TrajectoryPlayer::begin(int part, const GaitdMotion& motion, double elapsed
   p.joints.begin(from, times.data(), values.data(), count);
 }
 
-void TrajectoryPlayer::leave(const GaitdMotion& motion, const GaitdGaitState& gait) {
+// The rest of the motion goes on.
+void TrajectoryPlayer::leave(const GaitdGaitState& gait, double dt) {
   Part& p = parts_[GAITD_PART_PELVIS];
-  if (p.kind == GAITD_MOTION_NONE || leaving_ || gait.phase == GAITD_PHASE_STAND) return;
-  if (p.pose_now.position.head<2>().isZero(0.0) && p.pose_now.velocity.head<2>().isZero(0.0)) {
+  if (p.kind == GAITD_MOTION_NONE) return;
+  PosePath::Sample& now = p.pose_now;
+  if (leaving_) {
+    left_for_ += dt;
+    const MinimumJerkPath::Sample back = way_back_.at(left_for_);
+    now.position.head<2>() = back.value.head<2>();
+    now.velocity.head<2>() = back.velocity.head<2>();
+    now.acceleration.head<2>() = back.acceleration.head<2>();
     return;
   }
+  if (gait.phase == GAITD_PHASE_STAND) return;
+  if (now.position.head<2>().isZero(0.0) && now.velocity.head<2>().isZero(0.0)) return;
+  MinimumJerkPath::Sample from;
+  from.value.head<2>() = now.position.head<2>();
+  from.velocity.head<2>() = now.velocity.head<2>();
+  from.acceleration.head<2>() = now.acceleration.head<2>();
+  const MinimumJerkPath::Axes home = MinimumJerkPath::Axes::Zero();
+  way_back_.begin(from, &kLeaving, &home, 1);
   leaving_ = true;
-  GaitdMotion back = motion;
-  if (motion.point_count > 0) back.points[0] = motion.points[motion.point_count - 1];
-  back.axis_mask |= 0b000011;
-  back.point_count = 1;
-  back.points[0].time = kLeaving;
-  back.points[0].value[0] = back.points[0].value[1] = 0.0;
-  p.pose.begin(p.pose_now, back, 0.0);
-  p.begun = kOver;
-  p.elapsed = 0.0;
+  left_for_ = 0.0;
 }
 
 void TrajectoryPlayer::play_body(GaitdTaskReferences& out) const {
@@ -254,7 +261,7 @@ void TrajectoryPlayer::get_state(GaitdTaskSourceState& state) const {
     GaitdMotionProgress& out = state.parts[i];
     out.id = p.id;
     out.kind = p.kind;
-    out.elapsed = p.begun + p.elapsed;
+    out.elapsed = i == GAITD_PART_PELVIS && leaving_ ? kOver : p.begun + p.elapsed;
     if (p.kind == GAITD_MOTION_ARM) {
       view(out.value) = p.joints_now.value;
       view(out.velocity) = p.joints_now.velocity;

@@ -43,7 +43,7 @@ class TrajectoryPlayer {
 
   void advance(int part, const GaitdMotion& motion, double dt);
   void begin(int part, const GaitdMotion& motion, double elapsed);
-  void leave(const GaitdMotion& motion, const GaitdGaitState& gait);
+  void leave(const GaitdGaitState& gait, double dt);
   void play_body(GaitdTaskReferences& out) const;
   void play_arm(int hand, const GaitdTaskSourceInput& in, GaitdTaskReferences& out);
   void follow_hand(int hand, const GaitdMotion& motion, double dt, GaitdHandReference& out);
@@ -57,7 +57,9 @@ class TrajectoryPlayer {
   dynamics::Kinematics kinematics_;
   std::array<walking::JointChain, GAITD_MAX_HANDS> arms_;
   std::array<Part, GAITD_PART_COUNT> parts_;
-  bool leaving_ = false;  // a walk takes the shift of the CoM back
+  bool leaving_ = false;               // a walk takes the shift of the CoM back
+  double left_for_ = 0.0;              // s, since then
+  walking::MinimumJerkPath way_back_;  // its axes 0 and 1
   std::array<Joints, GAITD_MAX_HANDS> position_, velocity_, acceleration_;  // references
 };
 

@@ -47,7 +47,9 @@ class GaitMachine {
   Refusal walk(const WalkCommand& walk);
   // Appends the footsteps, or replaces all that have not begun. `count` at most
   // kMaxFootstepsPerCommand. Zero durations and heights take the parameters.
-  Refusal footsteps(const GaitdFootstep* steps, int count, bool replace);
+  // `routed`: they lead to a place, and somebody looks after them. The next command that makes
+  // footsteps then leaves of them what has begun.
+  Refusal footsteps(const GaitdFootstep* steps, int count, bool replace, bool routed = false);
   // Footsteps ahead that have not begun, found by their `id`, take pose, region, durations and
   // swing height of `steps`; others are left out. The order, the sides and what is closing stay.
   Refusal refine(const GaitdFootstep* steps, int count);
@@ -129,7 +131,7 @@ class GaitMachine {
   // Footsteps that are under way: of a swing, or the one that a transfer has chosen.
   int begun() const;
   // What another producer of footsteps leaves of those that are ahead.
-  int left_by_another() const { return drive_.active() ? begun() : queue_.size(); }
+  int left_by_another() const { return drive_.active() || routed_ ? begun() : queue_.size(); }
   // Makes the footsteps of a velocity behind the first `kept`. `landed`: where none is kept, the
   // foot that has just come down, GAITD_BOTH while standing.
   // `missed`: m, of the foot that has landed from where it was to land.
@@ -149,7 +151,9 @@ class GaitMachine {
                 int number) const;
   // Whether the weight gets over each of the footsteps in time, the first `kept` of the queue being
   // those before them. `closing_number` names a closing one in the message.
-  Refusal check_capture(const GaitdFootstep* steps, int count, int kept, int closing_number) const;
+  // `before`: footsteps of the command that are not among `steps`, for their numbers.
+  Refusal check_capture(const GaitdFootstep* steps, int count, int kept, int closing_number,
+                        int before = 0) const;
   void complete(GaitdFootstep& step);
   // Of a footstep that gives none.
   void fill_in(GaitdFootstep& step) const;
@@ -172,7 +176,8 @@ class GaitMachine {
   double time_unheld_ = 0.0;            // s, since the feet cannot hold the ICP
   double ready_time_ = 0.0;             // s, for which the ICP has been ready
   double landed_impulse_ = 0.0;         // N s, of the load on the swing foot since it came
-  int own_steps_ = 0;  // first in the queue: those with which the robot catches itself
+  int own_steps_ = 0;    // first in the queue: those with which the robot catches itself
+  bool routed_ = false;  // the footsteps ahead lead to a place
   struct Goal {
     GaitdFootstep step;
     bool known;
