@@ -18,6 +18,7 @@
 #include "daemon/config/library_paths.h"
 #include "daemon/control/impedance.h"
 #include "daemon/goto/map_methods.h"
+#include "daemon/host/instance.h"
 #include "daemon/host/layers.h"
 
 namespace gaitd::daemon {
@@ -256,7 +257,7 @@ bool Application::load_backend(const ProvenLibraries& proven) {
   }
   const GaitdBackendInstance& b = backend_->instance();
   GaitdTruth truth{};
-  if (simulation_ && b.vtable->truth(b.self, &truth) != GAITD_OK) {
+  if (simulation_ && contained([&] { return b.vtable->truth(b.self, &truth); }) != GAITD_OK) {
     spdlog::error("backend {}: says that it is a simulation, but gives no truth", backend_id_);
     return false;
   }
@@ -300,7 +301,7 @@ int Application::run() {
     stay_awake(config_.realtime, &latency, &realtime_);
     status_->set_realtime(realtime_);
   }
-  if (backend.vtable->start(backend.self) != GAITD_OK) {
+  if (contained([&] { return backend.vtable->start(backend.self); }) != GAITD_OK) {
     spdlog::error("backend {}: start failed; see the messages above", config_.backend);
     return 1;
   }
@@ -341,7 +342,10 @@ int Application::run() {
   });
   control.join();
   // Before anything that could wait, for a disk or a library that is being loaded.
-  backend.vtable->stop(backend.self);
+  contained([&] {
+    backend.vtable->stop(backend.self);
+    return GAITD_OK;
+  });
   running = false;
   watch.join();
   manager.reset();

@@ -12,6 +12,7 @@
 #include "daemon/control/signals.h"
 #include "daemon/control/state_text.h"
 #include "daemon/control/tick_data.h"
+#include "daemon/host/instance.h"
 #include "daemon/host/layers.h"
 
 namespace gaitd::daemon {
@@ -210,7 +211,8 @@ json StatusReport::status() const {
 json StatusReport::health() const {
   const GaitdBackendInstance& backend = sources_.backend;
   GaitdHealth h{};
-  if (backend.vtable->health == nullptr || backend.vtable->health(backend.self, &h) != GAITD_OK) {
+  if (backend.vtable->health == nullptr ||
+      contained([&] { return backend.vtable->health(backend.self, &h); }) != GAITD_OK) {
     return nullptr;
   }
   return {

@@ -67,6 +67,7 @@ struct Command {
   walking::WalkCommand walk;
   walking::VelocityCommand drive;
   bool replace = false;
+  bool routed = false;  // footsteps of a goto
   // A footstep with swing_duration, transfer_duration or swing_height 0 takes the parameter of the
   // gait. contact_polygon and landing_region as in the footstep struct.
   int footstep_count = 0;

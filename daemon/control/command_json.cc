@@ -119,6 +119,7 @@ std::string input_text(const Command& c, int parameter_owner, int parameter_plac
     case CommandType::kFootsteps:
     case CommandType::kRefine:
       out["replace"] = c.replace;
+      if (c.routed) out["routed"] = true;
       out["footsteps"] = json::array();
       for (int i = 0; i < c.footstep_count; ++i) {
         json step;
@@ -200,6 +201,7 @@ bool read_input(const json& in, Command* c, int* parameter_owner, int* parameter
     }
     if (c->type == CommandType::kFootsteps || c->type == CommandType::kRefine) {
       c->replace = in.at("replace").get<bool>();
+      c->routed = in.value("routed", false);
       for (const json& step : in.at("footsteps")) {
         if (c->footstep_count >= static_cast<int>(c->footsteps.size())) return false;
         GaitdFootstep& footstep = c->footsteps[c->footstep_count++];

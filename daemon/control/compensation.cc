@@ -108,7 +108,10 @@ void Compensation::commands(double dt, TickData& d, double torque_ratio) {
   for (int i = 0; i < model_.joint_count; ++i) {
     GaitdJointCommand& command = d.commands.joints[i];
     command.position += calibration_.joints[i].zero + bend(i, command.torque);
-    if (command.mode != GAITD_JOINT_MODE_TORQUE) continue;
+    if (command.mode != GAITD_JOINT_MODE_TORQUE) {
+      rate_[i] = 0.0;
+      continue;
+    }
     const double limit = torque_ratio * model_.joints[i].effort_limit;
     rate_[i] += share * (command.velocity - rate_[i]);
     command.torque = std::clamp(command.torque + lost(i, rate_[i]), -limit, limit);

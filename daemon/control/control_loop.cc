@@ -46,27 +46,13 @@ RunEnd end_of(ScenarioPlayer::End end) {
   }
 }
 
-// Says so while it lives.
-class Inside {
- public:
-  explicit Inside(std::atomic<bool>* flag) : flag_(flag) {
-    flag_->store(true, std::memory_order_relaxed);
-  }
-  ~Inside() { flag_->store(false, std::memory_order_relaxed); }
-  Inside(const Inside&) = delete;
-  Inside& operator=(const Inside&) = delete;
-
- private:
-  std::atomic<bool>* flag_;
-};
-
 }  // namespace
 
 ControlLoop::ControlLoop(const LoopOptions& options, const Parts& parts)
     : options_(options),
       model_(*parts.model),
       pipeline_(parts.pipeline),
-      backend_(parts.backend),
+      backend_(parts.backend, *parts.model),
       telemetry_(parts.telemetry),
       watch_(parts.watch),
       estop_(parts.estop),
@@ -87,7 +73,7 @@ LoopReport ControlLoop::run() {
   pace_.start(now_ns());
   if (options_.arm) pipeline_->safety().arm();
   const bool lockstep = options_.clock == GAITD_CLOCK_LOCKSTEP;
-  if (scenario_ != nullptr && scenario_->pushes() && backend_.vtable->disturb == nullptr) {
+  if (scenario_ != nullptr && scenario_->pushes() && !backend_.has_pushes()) {
     end(RunEnd::kPush,
         "the scenario pushes the robot, which this backend cannot do; run it on a "
         "simulation: --backend simbody");
@@ -117,7 +103,7 @@ LoopReport ControlLoop::run() {
           break;
         }
       }
-      if (lockstep && !advance()) {
+      if (lockstep && !backend_.advance()) {
         backend_failed("advance failed");
         end(RunEnd::kBackend, "the backend failed to advance the simulation");
       }
@@ -139,23 +125,7 @@ LoopReport ControlLoop::run() {
 }
 
 int ControlLoop::inside() const noexcept {
-  return inside_backend_.load(std::memory_order_relaxed) ? GAITD_LAYER_BACKEND
-                                                         : pipeline_->layers().running();
-}
-
-GaitdStatus ControlLoop::read() {
-  const Inside backend(&inside_backend_);
-  return backend_.vtable->read(backend_.self, &pipeline_->data().readings);
-}
-
-bool ControlLoop::write() {
-  const Inside backend(&inside_backend_);
-  return backend_.vtable->write(backend_.self, &pipeline_->data().commands) == GAITD_OK;
-}
-
-bool ControlLoop::advance() {
-  const Inside backend(&inside_backend_);
-  return backend_.vtable->advance(backend_.self) == GAITD_OK;
+  return backend_.inside() ? GAITD_LAYER_BACKEND : pipeline_->layers().running();
 }
 
 void ControlLoop::end(RunEnd how, const std::string& problem) {
@@ -169,16 +139,15 @@ ControlLoop::Outcome ControlLoop::tick() {
   const TickGuard guard;
   const Stopwatch watch;
   TickData& data = pipeline_->data();
-  const GaitdStatus status = read();
+  const GaitdStatus status = backend_.read(&data.readings);
   if (status == GAITD_NOT_READY) return Outcome::kNotReady;
   if (status != GAITD_OK) return Outcome::kBackendFailed;
-  data.health = health();
+  data.health = backend_.health();
   pipeline_->run(tick_);
-  const bool written = write();
+  const bool written = backend_.write(data.commands);
   data.times.total_us = watch.microseconds();
   watch_->add(tick_, data.times, pipeline_->layers().budgets());
-  data.has_truth = backend_.vtable->truth != nullptr &&
-                   backend_.vtable->truth(backend_.self, &data.truth) == GAITD_OK;
+  data.has_truth = backend_.truth(&data.truth);
   sight_.look(model_, data, tick_);
   record();
   report_changes();
@@ -201,8 +170,7 @@ void ControlLoop::go_without_readings() {
   silence_.joint_count = model_.joint_count;
   silence_.tick = tick_;
   safety.damp(silence_);
-  const Inside backend(&inside_backend_);
-  if (backend_.vtable->write(backend_.self, &silence_) != GAITD_OK) write_failed_ = true;
+  if (!backend_.write(silence_)) write_failed_ = true;
 }
 
 bool ControlLoop::silent() const {
@@ -216,14 +184,6 @@ void ControlLoop::take_estop() {
   *command_ = Command{};
   command_->type = CommandType::kEstop;
   execute(*command_, false);
-}
-
-std::uint32_t ControlLoop::health() const {
-  if (backend_.vtable->health == nullptr) return 0;
-  GaitdHealth health{};
-  const bool known = backend_.vtable->health(backend_.self, &health) == GAITD_OK;
-  // A robot that cannot say how it is counts as one that cannot be reached.
-  return known ? health.conditions : std::uint32_t{GAITD_HEALTH_BUS};
 }
 
 void ControlLoop::take_commands() {
@@ -254,7 +214,7 @@ void ControlLoop::execute(const Command& command, bool from_client) {
   const bool switches_on =
       command.type == CommandType::kArm || command.type == CommandType::kJointTest;
   const char* untimely = nullptr;
-  if (from_client && clears && command.estops < estop_->asked()) {
+  if (from_client && (clears || switches_on) && command.estops < estop_->asked()) {
     untimely = "an e-stop was asked for after this command; look why, then send it again";
   } else if (switches_on && silent()) {
     untimely = "the robot tells nothing new; look at its power and its buses";

@@ -11,6 +11,7 @@
 
 #include "daemon/command/estop_flag.h"
 #include "daemon/config/daemon_config.h"
+#include "daemon/control/backend_port.h"
 #include "daemon/control/goto_task.h"
 #include "daemon/control/loop_pulse.h"
 #include "daemon/control/pace.h"
@@ -83,13 +84,9 @@ class ControlLoop {
  private:
   enum class Outcome { kTicked, kNotReady, kBackendFailed };
   Outcome tick();
-  GaitdStatus read();
-  bool write();
-  bool advance();
   void take_estop();
   void go_without_readings();
   bool silent() const;  // nothing new for safety.sensor_timeout
-  std::uint32_t health() const;
   void take_commands();
   void take_swaps();
   void tell_swaps();
@@ -124,7 +121,7 @@ class ControlLoop {
   const LoopOptions options_;
   const GaitdModel& model_;
   Pipeline* pipeline_;
-  GaitdBackendInstance backend_;
+  BackendPort backend_;
   Telemetry* telemetry_;
   TickWatch* watch_;
   EstopFlag* estop_;
@@ -133,7 +130,6 @@ class ControlLoop {
   SwapPort* swaps_;
 
   LoopPulse pulse_;
-  std::atomic<bool> inside_backend_{false};
   GotoTask goto_;
   std::atomic<Place> goal_{Place{NAN, NAN}};
   RefineTask refine_;

@@ -12,6 +12,9 @@
 namespace gaitd::daemon {
 namespace {
 
+constexpr const char* kReplaced = "another command has taken its place";
+constexpr const char* kGivenUp = "goto: given up, another command has taken its place";
+
 // What takes the place of footsteps that are being planned.
 bool replaces_goto(const Command& command) {
   switch (command.type) {
@@ -54,13 +57,13 @@ void ControlLoop::begin_goto(const Command& command, bool from_client) {
 
 void ControlLoop::give_up_goto(const Command& command) {
   if (!goto_.active() || !replaces_goto(command)) return;
-  if (goto_.answered()) {
-    note_goto("goto: given up, another command has taken its place");
-    return goto_.drop();
+  if (!goto_.answered()) {
+    CommandReply reply;
+    std::snprintf(reply.message.data(), reply.message.size(), "%s", kReplaced);
+    tell_goto(goto_.command(), goto_.from_client(), reply);
   }
-  CommandReply reply;
-  std::snprintf(reply.message.data(), reply.message.size(), "another command has taken its place");
-  tell_goto(goto_.command(), goto_.from_client(), reply);
+  if (command.type == CommandType::kGoto) return;  // which may be refused: settle() says
+  if (goto_.answered() || goto_.replaces()) note_goto(kGivenUp);
   goto_.drop();
 }
 
@@ -106,7 +109,7 @@ void ControlLoop::take_plan() {
     } else {
       std::snprintf(reply.message.data(), reply.message.size(), "%s", taken.message.data());
       tell_goto(goto_.command(), goto_.from_client(), reply);
-      goto_.drop();
+      if (goto_.settle(false)) note_goto(kGivenUp);
     }
   } else if (step == GotoTask::Step::kEnded) {
     note_goto(goto_.message());
@@ -117,6 +120,7 @@ void ControlLoop::take_plan() {
     std::snprintf(reply.message.data(), reply.message.size(), "%s%s", goto_.message(),
                   waits ? "; paused: the footsteps wait for `gaitctl resume`" : "");
     tell_goto(goto_.command(), goto_.from_client(), reply);
+    if (goto_.settle(reply.accepted)) note_goto(kGivenUp);
   }
 }
 

@@ -12,7 +12,7 @@ void ControlLoop::report_changes() {
   const TickData& d = pipeline_->data();
   char text[kMaxEventText];
   const JointMask dropped = d.dropped & ~std::exchange(last_dropped_, d.dropped);
-  for (int i = 0; dropped >> i != 0 && i < model_.joint_count; ++i) {
+  for (int i = 0; i < model_.joint_count && dropped >> i != 0; ++i) {
     if ((dropped >> i & 1u) == 0) continue;
     telemetry_->push_event(EventKind::kNote, d.time.tick, d.time.time,
                            dropped_text(pipeline_->monitor(), i, text, sizeof(text)));

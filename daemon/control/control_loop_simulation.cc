@@ -5,13 +5,12 @@
 
 #include "daemon/control/command_text.h"
 #include "daemon/control/control_loop.h"
-#include "daemon/control/simulation.h"
 
 namespace gaitd::daemon {
 
 // Of the scenario: one that is not made would pass for one that was withstood.
 void ControlLoop::push_robot(const GaitdDisturbance& push) {
-  const char* why = sim_push(backend_, push);
+  const char* why = backend_.push(push);
   if (why == nullptr) return tell_push(push);
   end(RunEnd::kPush,
       std::string("the push on ") + model_.bodies[push.body].name + " was not made: " + why);
@@ -36,7 +35,7 @@ CommandReply ControlLoop::simulate(const Command& command) {
   reply.tick = tick_;
   if (command.type == CommandType::kPush || command.type == CommandType::kSimLoad) {
     const bool push = command.type == CommandType::kPush;
-    const char* why = push ? sim_push(backend_, command.push) : sim_load(backend_, command.load);
+    const char* why = push ? backend_.push(command.push) : backend_.load(command.load);
     reply.accepted = why == nullptr;
     if (why != nullptr) {
       std::snprintf(reply.message.data(), reply.message.size(), "sim %s: %s",
@@ -46,8 +45,7 @@ CommandReply ControlLoop::simulate(const Command& command) {
     } else {
       tell_load("load", command.load);
     }
-  } else if (backend_.vtable->reset == nullptr ||
-             backend_.vtable->reset(backend_.self) != GAITD_OK) {
+  } else if (!backend_.reset()) {
     std::snprintf(reply.message.data(), reply.message.size(), "%s",
                   (std::string("sim reset: ") + kNoSimulation).c_str());
   } else {

@@ -25,17 +25,35 @@ constexpr int kMostSetbacks = 20;
 }  // namespace
 
 void GotoTask::begin(const Command& command, bool from_client, const walking::GaitMachine& gait) {
-  drop();
+  if (under_way_) before_ = walk_;
+  close();
   active_ = true;
   from_client_ = from_client;
-  command_ = command;
+  walk_.command = command;
   attempts_ = 0;
-  under_way_ = partial_ = false;
-  tries_ = 0;
+  walk_.partial = false;
+  walk_.tries = 0;
   if (port_ != nullptr) ask(gait, PlanKind::kGoto);
 }
 
+bool GotoTask::settle(bool accepted) {
+  if (!accepted) close();
+  if (!before_) return false;
+  const bool goes_on = !accepted && commands_ == 0;
+  if (goes_on) {
+    walk_ = *before_;
+    active_ = under_way_ = true;
+  }
+  before_.reset();
+  return !goes_on;
+}
+
 void GotoTask::drop() {
+  close();
+  before_.reset();
+}
+
+void GotoTask::close() {
   release_plan();
   active_ = asked_ = under_way_ = false;
 }
@@ -55,8 +73,8 @@ void GotoTask::ask(const walking::GaitMachine& gait, PlanKind kind) {
   request.kind = kind;
   request.taken = taken_;
   request.start = start_;
-  request.goal = {command_.target.x, command_.target.y, {}};
-  if (command_.target.has_yaw) request.goal.yaw = command_.target.yaw;
+  request.goal = {walk_.command.target.x, walk_.command.target.y, {}};
+  if (walk_.command.target.has_yaw) request.goal.yaw = walk_.command.target.yaw;
   request.height_offset = gait.height_offset();
   request.parameters = gait.parameters();
   asked_ = port_->request(request);
@@ -78,7 +96,7 @@ GotoTask::Step GotoTask::ask_again(const walking::GaitMachine& gait) {
 
 GotoTask::Step GotoTask::end(Step how, const char* why) {
   std::snprintf(message_.data(), message_.size(), "%s", why);
-  drop();
+  close();
   return how;
 }
 
@@ -86,7 +104,8 @@ GotoTask::Step GotoTask::end(Step how, const char* why) {
 double GotoTask::off_goal(const walking::GaitMachine& gait) const {
   const GaitdFoothold* feet = gait.state().footholds;
   const GaitdPose middle = walking::middle_pose(feet[GAITD_LEFT].pose, feet[GAITD_RIGHT].pose);
-  return std::hypot(middle.position[0] - command_.target.x, middle.position[1] - command_.target.y);
+  return std::hypot(middle.position[0] - walk_.command.target.x,
+                    middle.position[1] - walk_.command.target.y);
 }
 
 GotoTask::Step GotoTask::give_up(const walking::GaitMachine& gait, const char* why) {
@@ -131,21 +150,21 @@ GotoTask::Step GotoTask::step(const walking::GaitMachine& gait, Command* out) {
 GotoTask::Step GotoTask::watch(const walking::GaitMachine& gait) {
   const GaitdGaitState& state = gait.state();
   if (state.phase == GAITD_PHASE_SWING && state.footstep_count > 0 &&
-      state.commanded[0].id != step_) {
-    step_ = state.commanded[0].id;
-    attempts_ = tries_ = 0;
+      state.commanded[0].id != walk_.step) {
+    walk_.step = state.commanded[0].id;
+    attempts_ = walk_.tries = 0;
     ask(gait, PlanKind::kRevise);
     return Step::kWait;
   }
   if (state.phase != GAITD_PHASE_STAND || state.footstep_count > 0) return Step::kWait;
   const double off = off_goal(gait);
-  if (!partial_ && off < kNotThere) {
-    std::snprintf(why_.data(), why_.size(), "goto: arrived, %.3f m off", off);
-    return end(Step::kEnded, why_.data());
+  if (!walk_.partial && off < kNotThere) {
+    std::snprintf(walk_.why.data(), walk_.why.size(), "goto: arrived, %.3f m off", off);
+    return end(Step::kEnded, walk_.why.data());
   }
-  if (state.time_in_phase < kTryAgain * (tries_ + 1)) return Step::kWait;
-  if (++tries_ > kMostTries) {
-    return give_up(gait, why_.data());
+  if (state.time_in_phase < kTryAgain * (walk_.tries + 1)) return Step::kWait;
+  if (++walk_.tries > kMostTries) {
+    return give_up(gait, walk_.why.data());
   }
   attempts_ = 0;
   ask(gait, PlanKind::kRevise);
@@ -169,6 +188,7 @@ GotoTask::Step GotoTask::hand_over(const walking::GaitMachine& gait, Command* ou
   *out = Command{};
   out->type = CommandType::kFootsteps;
   out->replace = commands_ == 0;
+  out->routed = true;
   if (commands_ == 0 && is_chosen_only(gait)) {
     out->footsteps[out->footstep_count++] = gait.state().commanded[0];
   }
@@ -182,33 +202,33 @@ GotoTask::Step GotoTask::hand_over(const walking::GaitMachine& gait, Command* ou
 // Whether the plans of many steps were no better than one before: it goes back and forth.
 bool GotoTask::gets_nowhere() {
   const bool found = plan_->refusal.empty();
-  if (found && plan_->cost > kSetback * last_cost_ && ++setbacks_ <= kMostSetbacks) {
-    least_cost_ = plan_->cost + 2.0 * kBetter;
+  if (found && plan_->cost > kSetback * walk_.last_cost && ++walk_.setbacks <= kMostSetbacks) {
+    walk_.least_cost = plan_->cost + 2.0 * kBetter;
   }
-  if (found) last_cost_ = plan_->cost;
-  const bool better = found && plan_->cost < least_cost_ - kBetter;
-  if (better) least_cost_ = plan_->cost;
-  stale_ = better ? 0 : stale_ + 1;
-  return stale_ > kMostStale;
+  if (found) walk_.last_cost = plan_->cost;
+  const bool better = found && plan_->cost < walk_.least_cost - kBetter;
+  if (better) walk_.least_cost = plan_->cost;
+  walk_.stale = better ? 0 : walk_.stale + 1;
+  return walk_.stale > kMostStale;
 }
 
 // The plan is with the gait machine.
 GotoTask::Step GotoTask::all_taken() {
   const bool first = !under_way_;
   if (!unchanged_) taken_ = serial_;
-  if (!unchanged_) partial_ = plan_->partial || !plan_->refusal.empty();
-  if (partial_) {
-    std::snprintf(why_.data(), why_.size(), "%s",
+  if (!unchanged_) walk_.partial = plan_->partial || !plan_->refusal.empty();
+  if (walk_.partial) {
+    std::snprintf(walk_.why.data(), walk_.why.size(), "%s",
                   plan_->refusal.empty() ? "the ground beyond is not seen from here"
                                          : plan_->refusal.c_str());
   }
   if (first) {
     tell_done();
-    least_cost_ = last_cost_ = plan_->cost;
-    stale_ = setbacks_ = 0;
+    walk_.least_cost = walk_.last_cost = plan_->cost;
+    walk_.stale = walk_.setbacks = 0;
   }
   if (!port_->live()) {
-    drop();
+    close();
     return Step::kDone;
   }
   release_plan();
@@ -223,8 +243,8 @@ void GotoTask::taken() {
 }
 
 void GotoTask::refused(const char* why) {
-  std::snprintf(why_.data(), why_.size(), "%s", why);
-  partial_ = true;
+  std::snprintf(walk_.why.data(), walk_.why.size(), "%s", why);
+  walk_.partial = true;
   release_plan();
   asked_ = false;
 }

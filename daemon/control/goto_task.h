@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "daemon/command/command.h"
 #include "daemon/control/plan_port.h"
@@ -18,16 +19,21 @@ class GotoTask {
  public:
   explicit GotoTask(PlanPort* port) : port_(port) {}
 
-  // Whether it can be done is said by step(). `from_client`: somebody waits for the answer.
+  // Whether it can be done is said by step(), and settle() follows. `from_client`: somebody waits
+  // for the answer. One that is under way is kept until then.
   void begin(const Command& command, bool from_client, const walking::GaitMachine& gait);
-  // It is given up; a plan that comes is not looked at.
+  // Takes the place of one that was under way before, or leaves it that: where the answer is no
+  // that one goes on, as long as its footsteps are still ahead. True: it is given up.
+  bool settle(bool accepted);
+  // All is given up; a plan that comes is not looked at.
   void drop();
 
   bool active() const { return active_; }
-  bool answered() const { return under_way_; }  // who asked for it has been told
+  bool answered() const { return under_way_; }           // who asked for it has been told
+  bool replaces() const { return before_.has_value(); }  // one that is under way, if it is accepted
   bool awaits_plan() const { return active_ && asked_ && plan_ == nullptr; }
   bool from_client() const { return from_client_; }
-  const Command& command() const { return command_; }
+  const Command& command() const { return walk_.command; }
 
   enum class Step {
     kWait,       // nothing to do in this tick
@@ -53,6 +59,7 @@ class GotoTask {
   Step all_taken();
   bool gets_nowhere();
   void take_answers();
+  void close();
   void release_plan();
   Step end(Step how, const char* why);
   double off_goal(const walking::GaitMachine& gait) const;
@@ -62,7 +69,6 @@ class GotoTask {
   PlanPort* port_;
   bool active_ = false;
   bool from_client_ = false;
-  Command command_;
   std::uint64_t serial_ = 0;
   std::uint64_t taken_ = 0;  // of the last plan that is with the gait machine
   bool asked_ = false;
@@ -76,14 +82,19 @@ class GotoTask {
   int in_hand_ = 0;   // of the last command
   // On a map that grows.
   bool under_way_ = false;
-  bool partial_ = false;     // the footsteps ahead do not lead to the goal
-  int tries_ = 0;            // standing, without a way on
-  double least_cost_ = 0.0;  // of the plans so far
-  double last_cost_ = 0.0;   // of the last one
-  int setbacks_ = 0;         // plans that were dearer than the one before
-  int stale_ = 0;            // plans since then that were no better
-  std::uint32_t step_ = 0;   // id of the one at which it was asked
-  std::array<char, 256> why_{};
+  struct Walk {
+    Command command;
+    bool partial = false;     // the footsteps ahead do not lead to the goal
+    int tries = 0;            // standing, without a way on
+    double least_cost = 0.0;  // of the plans so far
+    double last_cost = 0.0;   // of the last one
+    int setbacks = 0;         // plans that were dearer than the one before
+    int stale = 0;            // plans since then that were no better
+    std::uint32_t step = 0;   // id of the one at which it was asked
+    std::array<char, 256> why{};
+  };
+  Walk walk_;
+  std::optional<Walk> before_;  // that is under way, until walk_ has been accepted
   std::array<char, 256> message_{};
 };
 

@@ -6,7 +6,7 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr double kErrorTime = 0.5;  // s, of the mean ICP error that a newcomer is compared with
+constexpr double kErrorTime = 0.5;  // s, in which the largest ICP error so far fades
 
 }  // namespace
 
@@ -83,6 +83,12 @@ void LayerChain::give_up_swaps(const char* why) {
   }
 }
 
+void LayerChain::give_up_shadows(const char* why) {
+  std::apply([why](auto&... slot) { (slot.give_up_shadow(why), ...); }, slots_);
+}
+
+// A newcomer is compared with the largest error of the last steps: a robot whose drives stick is
+// off its plan by some centimetres at each touchdown.
 void LayerChain::watch_icp_error(double error, double dt) {
   if (error > icp_error_before_ + rules_.icp_error_growth) {
     std::apply([](auto&... slot) { (slot.doubt("the ICP error grows"), ...); }, slots_);
@@ -91,6 +97,7 @@ void LayerChain::watch_icp_error(double error, double dt) {
     if (swapping(i)) return;
   }
   icp_error_before_ += std::min(1.0, dt / kErrorTime) * (error - icp_error_before_);
+  icp_error_before_ = std::max(icp_error_before_, error);
 }
 
 void LayerChain::take_too_long(int layer) {

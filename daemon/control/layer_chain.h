@@ -58,6 +58,8 @@ class LayerChain {
   bool swapping(int layer) const;
   // The layers behind the estimator have stopped: ends their swaps.
   void give_up_swaps(const char* why);
+  // Ends the swaps whose layer has not come into use yet.
+  void give_up_shadows(const char* why);
   // After each tick under control. Layers that came in a short while ago go again when it grows.
   void watch_icp_error(double error, double dt);
   void take_too_long(int layer);  // replay, see LayerSlot
@@ -80,7 +82,7 @@ class LayerChain {
       slots_;
   std::atomic<int> running_{-1};
   Failure failure_;
-  double icp_error_before_ = 0.0;  // m, without any swap, its slow mean
+  double icp_error_before_ = 0.0;  // m, without any swap, the largest of late
 };
 
 }  // namespace gaitd::daemon

@@ -76,6 +76,7 @@ class LayerSlot {
     if (swap.rollback) return exchange_with_previous(controlled);
     beside_ = {std::unique_ptr<LoadedLayer>(order.candidate), order.table, order.variant};
     elapsed_ = 0.0;
+    too_long_ = false;
     if (!controlled) {
       std::swap(in_use_, beside_);
       journal_.tell(SwapStep::kSwitched);
@@ -95,8 +96,12 @@ class LayerSlot {
 
   // Ends a swap that cannot go on: the layer does not run any more.
   void give_up(const char* why) {
-    if (phase_ == Phase::kShadow) refuse(why);
+    give_up_shadow(why);
     if (phase_ == Phase::kProbation) roll_back(why, true);
+  }
+  // What has not come into use yet does not any more.
+  void give_up_shadow(const char* why) {
+    if (phase_ == Phase::kShadow) refuse(why);
   }
   // Something went wrong that the newcomer may have caused.
   void doubt(const char* why) {

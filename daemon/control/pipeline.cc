@@ -125,6 +125,9 @@ void Pipeline::run(std::int64_t tick) {
   update_payload(period_);
   safety_.check(d, estimated);
   if (safety_.update(period_, d, gait_.walking())) begin_control();
+  if (const SwapRight right = swap_right(); right == SwapRight::kNotAtRest) {
+    layers_.give_up_shadows(swap_refusal(right));
+  }
   const bool controlled = safety_.controlled();
   const bool ok = controlled && control(period_);
   d.controlled = controlled;
@@ -154,8 +157,9 @@ bool Pipeline::control(double dt) {
   const bool moved = layers_.source_tasks(d);
   const bool planned = layers_.plan(d);
   walking::shift_plan(d.gait, d.references, d.plan);
-  const bool sound = moved & planned & layers_.adjust(d) & layers_.toe_off(d);
-  if (!sound) {
+  const bool adjusted = layers_.adjust(d);
+  const bool rolled = layers_.toe_off(d);  // of the step as it was adjusted
+  if (!moved || !planned || !adjusted || !rolled) {
     safety_.raise(kFaultLayer);
     return false;
   }
@@ -256,7 +260,8 @@ CommandReply Pipeline::execute(const Command& command) {
       if (gait_.velocity_walk().limit().refused()) note = gait_.velocity_walk().limit().message;
       break;
     case CommandType::kFootsteps:
-      refusal = gait_.footsteps(command.footsteps.data(), command.footstep_count, command.replace);
+      refusal = gait_.footsteps(command.footsteps.data(), command.footstep_count, command.replace,
+                                command.routed);
       break;
     case CommandType::kRefine:
       refusal = gait_.refine(command.footsteps.data(), command.footstep_count);

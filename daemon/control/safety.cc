@@ -216,7 +216,9 @@ void Safety::clamp(double dt, const TickData& d, GaitdJointCommands& commands) {
     }
     c.torque = torque;
     // While readying the drives make the torque: what they make now is where control takes over.
-    last_torque_[i] = state_ == SafetyState::kReadying ? d.sensors.joints[i].torque : torque;
+    last_torque_[i] = state_ == SafetyState::kReadying
+                          ? std::clamp(d.sensors.joints[i].torque, -limit, limit)
+                          : torque;
   }
 }
 

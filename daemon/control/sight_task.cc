@@ -23,7 +23,11 @@ void SightTask::look(const GaitdModel& model, const TickData& data, std::int64_t
   if (data.robot.valid == 0) return;
   Pending& pending = pending_[static_cast<std::size_t>(looked_ % kPending)];
   Sight& sight = pending.sight;
-  if (looked_ - delivered_ == kPending) ++delivered_;  // the oldest is lost
+  if (looked_ - delivered_ == kPending) {  // the oldest is lost, but not that all began anew there
+    Sight& next = pending_[static_cast<std::size_t>((delivered_ + 1) % kPending)].sight;
+    next.anew = next.anew || sight.anew;
+    ++delivered_;
+  }
   ++looked_;
   pending.due = tick + timing_.latency;
   sight.anew = std::exchange(anew_, false);
