@@ -57,6 +57,13 @@ for (const cell of summary.cells) {
 }
 check(comparisons.length === 2 && comparisons.every(({pairs}) => pairs === 6), 'pairs of the same seeds');
 check(await page.locator('#comparisons figure').count() === 2, 'not every comparison is shown');
+// Seeds are counted by the pairs that a figure has, in which neither fell.
+const {seeds} = await page.evaluate(() => gaitd.data);
+const told = await page.locator('#comparisons').innerText();
+for (const {figure, more, pairs} of comparisons.flatMap(({figures}) => figures).filter((one) => one.more > 0)) {
+  const words = `${Math.ceil(more / (pairs / seeds)).toLocaleString('en')} more seeds`;
+  check(told.includes(words), `${figure} has ${pairs} pairs, but no '${words}' in ${told}`);
+}
 check(await page.locator('#polar img').evaluate((image) => image.naturalWidth > 0), 'no polar plot');
 
 // Nothing is wider than the window, also of a phone.

@@ -36,8 +36,10 @@ fs::path beside(const Calibration& calibration, const char* extension) {
 // Of all settings of a run these make its robot, and say where its calibration begins.
 bool is_of_robot(std::string_view key) {
   constexpr std::array<std::string_view, 3> kKeys = {"backend", "robot", "calibration"};
-  return std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end() ||
-         key.starts_with("actuators.") || key.starts_with("sensors.");
+  constexpr std::array<std::string_view, 2> kNot = {"model_error.friction", "sensors.episode"};
+  if (std::ranges::find(kNot, key) != kNot.end()) return false;
+  return std::ranges::find(kKeys, key) != kKeys.end() || key.starts_with("actuators.") ||
+         key.starts_with("sensors.") || key.starts_with("model_error.");
 }
 
 // FNV-1a: the same name on every machine, also after a restart.
@@ -72,9 +74,7 @@ bool accept(const Calibration& calibration, int status, const fs::path& fresh) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
     fs::rename(fresh, calibration.file, error);
     if (!error) {
-      for (const char* extension : kRunFiles) {
-        fs::remove(beside(calibration, extension), error);
-      }
+      remove_run_files(beside(calibration, ".mcap"));
       return true;
     }
   }
@@ -104,7 +104,8 @@ void read_calibrate(daemon::MapReader* root, Campaign* campaign) {
   campaign->calibrate = true;
   campaign->motions = motions;
   const daemon::Paths paths = daemon::Paths::detect();
-  if (!motions.empty() && !paths.scenario(scenario_from(campaign->file, motions))) {
+  if (!motions.empty() && !campaign->is_copy &&
+      !paths.scenario(scenario_from(campaign->file, motions))) {
     root->fail("calibrate", "motions that are the name of a scenario or the path of its file",
                "'" + motions + "'", daemon::suggestion(motions, paths.scenarios()));
   }

@@ -60,9 +60,8 @@ void read_scenarios(MapReader* root, Campaign* campaign) {
   for (const NodePtr& node : root->list("scenarios", 1, 1000)) {
     const std::string path = "scenarios[" + std::to_string(i++) + "]";
     const std::string& scenario = node->text;
-    if (node->kind != NodeKind::kScalar ||
-        !paths.scenario(scenario_from(campaign->file, scenario)) ||
-        campaign->drawn.contains(scenario)) {
+    const bool there = campaign->is_copy || paths.scenario(scenario_from(campaign->file, scenario));
+    if (node->kind != NodeKind::kScalar || !there || campaign->drawn.contains(scenario)) {
       root->issues()->add(node->where, path, "the name of a scenario or the path of its file",
                           daemon::describe(*node),
                           daemon::suggestion(node->text, paths.scenarios()));
@@ -180,6 +179,7 @@ std::optional<Campaign> load_campaign(const std::string& file, Issues* issues,
   Campaign campaign;
   campaign.file = fs::absolute(copy_of.empty() ? file : copy_of).lexically_normal().string();
   campaign.text = read_file(file);
+  campaign.is_copy = !copy_of.empty() && copy_of != file;
   MapReader root(node, "", issues);
   root.require({"schema", "name"});
   if (!root.has("gauntlet")) root.require({"scenarios"});

@@ -74,8 +74,9 @@ struct CampaignPlot {
 
 /// One file of schema gaitd.campaign/1, checked; see docs/campaigns.md.
 struct Campaign {
-  std::string file;  ///< absolute; what it names by path is meant from its folder
-  std::string text;  ///< of the file
+  std::string file;      ///< absolute; what it names by path is meant from its folder
+  std::string text;      ///< of the file
+  bool is_copy = false;  ///< in the folder of its results: the files that it names may have gone
   std::string name;
   std::vector<std::string> scenarios;     ///< as written: names, paths, kinds of the gauntlet
   std::set<std::string> drawn;            ///< those that are kinds of the gauntlet

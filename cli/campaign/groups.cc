@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 
 #include "cli/campaign/labels.h"
+#include "cli/campaign/settings.h"
 #include "cli/campaign/statistics.h"
 #include "cli/print.h"
 #include "cli/table.h"
@@ -53,11 +55,13 @@ void read_target(MapReader map, Campaign* campaign) {
     const CampaignSetting* setting = find_setting(*campaign, entry.key);
     const std::vector<std::string> none;
     const std::vector<std::string>& values = setting == nullptr ? none : setting->values;
-    if (std::find(values.begin(), values.end(), entry.value->text) == values.end()) {
+    const std::string value =
+        campaign->bundles.contains(entry.key) ? entry.value->text : setting_text(*entry.value);
+    if (std::find(values.begin(), values.end(), value) == values.end()) {
       where.fail(entry.key, "a key of 'set' and one of its values", daemon::describe(*entry.value),
                  "");
     }
-    target.where.emplace_back(entry.key, entry.value->text);
+    target.where.emplace_back(entry.key, value);
   }
   map.finish();
   campaign->targets.push_back(std::move(target));
@@ -208,9 +212,17 @@ std::string targets_text(const json& targets) {
 }
 
 std::string percent_text(double share) {
-  char text[16];
-  std::snprintf(text, sizeof(text), "%.1f %%", 100.0 * share);
-  return text;
+  constexpr double kRounding = 1e-9;
+  constexpr int kMostDigits = 8;
+  char text[32];
+  for (int digits = 1; digits <= kMostDigits; ++digits) {
+    std::snprintf(text, sizeof(text), "%.*f", digits, 100.0 * share);
+    const double shown = std::atof(text);
+    const bool none = shown == 0.0 && share > kRounding;
+    const bool all = shown == 100.0 && share < 1.0 - kRounding;
+    if (!none && !all) break;
+  }
+  return std::string(text) + " %";
 }
 
 }  // namespace gaitd::cli

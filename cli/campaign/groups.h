@@ -31,7 +31,7 @@ nlohmann::json targets_json(const Campaign& campaign, const std::vector<Campaign
 std::string groups_text(const nlohmann::json& groups, std::size_t columns);
 std::string targets_text(const nlohmann::json& targets);
 
-/// A share as a percentage.
+/// A share as a percentage, with so many digits that only all of them are 100 and none of them 0.
 std::string percent_text(double share);
 
 }  // namespace gaitd::cli

@@ -33,7 +33,7 @@ PoolEnd play(const CampaignPlan& plan, const RunnerOptions& options,
   ProgressBar bar(options.part);
   const auto progress = [&](int finished) {
     const std::size_t done = results->results().size();
-    bar.show({done, done + order->remaining(), count_failed(results->results()), finished});
+    bar.show({done, done + order->remaining(), results->failed(), finished});
   };
   const PoolEnd end =
       play_runs(plan.campaign, plan.runs, options, failures, order, results, progress, error);

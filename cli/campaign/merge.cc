@@ -73,14 +73,12 @@ bool add_logs(const CampaignPlan& plan, const CampaignResults& results, const So
     const fs::path from = campaign_log(sources.at(result->number), result->number);
     const bool keep = left_files(from) && kept++ < plan.campaign.keep_logs;
     if (keep && from == to) continue;
+    remove_run_files(to);
+    if (!keep) continue;
     for (const char* extension : kRunFiles) {
-      const fs::path one = fs::path(to).replace_extension(extension);
       const fs::path its = fs::path(from).replace_extension(extension);
-      if (!keep || !fs::exists(its, ignored)) {
-        fs::remove(one, ignored);
-      } else if (!share_file(its, one, error)) {
-        return false;
-      }
+      if (!fs::exists(its, ignored)) continue;
+      if (!share_file(its, fs::path(to).replace_extension(extension), error)) return false;
     }
   }
   return true;
@@ -98,6 +96,12 @@ bool merge_folders(const CampaignPlan& plan, const std::vector<fs::path>& folder
     if (!theirs) return false;
     if (theirs->text != plan.text) {
       *error = folder.string() + ": holds another campaign than " + folders.front().string();
+      return false;
+    }
+    if (theirs->origin.build != plan.origin.build) {
+      *error = folder.string() + ": expected results of " + plan.origin.build +
+               ", as elsewhere, got those of " + theirs->origin.build +
+               ", which may walk otherwise; play all shards with one of them";
       return false;
     }
     if (!add_results(format, folder, results, &sources, error) ||

@@ -16,12 +16,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Of a name or a file; a name may have dots.
+std::string plot_name(const std::string& scenario) {
+  std::string name = fs::path(scenario).filename().string();
+  if (name.ends_with(".yaml")) name.resize(name.rfind('.'));
+  return name + ".svg";
+}
+
 // False, and said, when one of them cannot be written.
 bool write_plots(const Campaign& campaign, const std::vector<PlotPoint>& points,
                  const fs::path& folder, std::string* error) {
   return std::ranges::all_of(campaign.scenarios, [&](const std::string& scenario) {
-    return write_file(folder / (fs::path(scenario).stem().string() + ".svg"),
-                      polar_plot(campaign, points, scenario), error);
+    return write_file(folder / plot_name(scenario), polar_plot(campaign, points, scenario), error);
   });
 }
 

@@ -5,16 +5,20 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <system_error>
 #include <utility>
 
 #include "cli/campaign/settings.h"
-#include "cli/one_line.h"
 #include "cli/print.h"
+#include "cli/scenario_run.h"
 #include "cli/whole_file.h"
 #include "daemon/config/daemon_config.h"
 #include "daemon/config/library_paths.h"
@@ -30,6 +34,7 @@ using nlohmann::json;
 constexpr const char* kCopy = "campaign.yaml";
 constexpr const char* kOrigin = "origin.json";
 constexpr const char* kShardLine = "# --shard ";
+constexpr const char* kOldBuild = "an older gaitd";  // which has not said what it was
 
 // KEY=VALUE of everything that a run may get from the file.
 std::vector<std::string> all_assignments(const Campaign& campaign) {
@@ -90,14 +95,74 @@ std::optional<CampaignPlan> make_plan(const CampaignOrigin& origin, const std::s
   }
   plan.runs = expand(plan.campaign);
   plan.text = plan.campaign.text;
+  if (!plan.text.ends_with('\n')) plan.text += '\n';
   return plan;
+}
+
+std::string checksum_text(std::uint32_t sum) {
+  char text[16];
+  std::snprintf(text, sizeof(text), "%08x", sum);
+  return text;
+}
+
+// For a comment of one line: what comes after the end of a line would be YAML.
+std::string comment_text(const std::string& text) {
+  const bool plain =
+      std::ranges::none_of(text, [](unsigned char c) { return std::iscntrl(c) != 0; });
+  return plain ? text : json(text).dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
 // `name` and the sum of the file that it stands for, as a line.
 std::string named_sum(const std::string& name, const std::string& file) {
-  char sum[32];
-  std::snprintf(sum, sizeof(sum), "%08x", daemon::crc32(read_file(file)));
-  return one_line(name) + " " + sum + "\n";
+  return comment_text(name) + " " + checksum_text(daemon::crc32(read_file(file))) + "\n";
+}
+
+// With any other gaitctl, gaitd or installed plugin a run may come out otherwise.
+std::string present_build() {
+  std::uint32_t sum = daemon::crc32(read_file("/proc/self/exe"));
+  sum = daemon::crc32(read_file(gaitd_program()), sum);
+  const daemon::Paths paths = daemon::Paths::detect();
+  for (const fs::path& folder : paths.plugin_folders()) {
+    std::error_code ignored;
+    std::set<fs::path> libraries;  // in the same order on every machine
+    for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
+      if (entry.path().extension() == ".so") libraries.insert(entry.path());
+    }
+    for (const fs::path& library : libraries) sum = daemon::crc32(read_file(library), sum);
+  }
+  return "gaitd " GAITD_VERSION " (" + checksum_text(sum) + ")";
+}
+
+bool is_file(const std::string& name) {
+  std::error_code ignored;
+  return fs::is_regular_file(name, ignored);
+}
+
+// A word like `nominal` is no file, whatever lies in this folder.
+std::string with_whole_path(const std::string& setting) {
+  const std::size_t begin = setting.find('=') + 1;
+  const std::string value = setting.substr(begin);
+  if (value.find_first_of("./") == std::string::npos || !is_file(value)) return setting;
+  return setting.substr(0, begin) + fs::absolute(value).lexically_normal().string();
+}
+
+void add_files(const daemon::Node& value, std::set<std::string>* files) {
+  if (value.kind == daemon::NodeKind::kScalar && is_file(value.text)) files->insert(value.text);
+  for (const daemon::NodePtr& item : value.items) add_files(*item, files);
+  for (const daemon::Node::Entry& entry : value.entries) add_files(*entry.value, files);
+}
+
+// Files that the settings of the runs name.
+std::set<std::string> named_files(const CampaignPlan& plan) {
+  std::vector<std::string> all = all_assignments(plan.campaign);
+  all.insert(all.end(), plan.settings.begin(), plan.settings.end());
+  std::set<std::string> files;
+  for (const std::string& assignment : all) {
+    daemon::Issues unreadable;  // gaitd will say so
+    const std::string value = assignment.substr(assignment.find('=') + 1);
+    if (const auto node = daemon::parse_yaml(value, "", &unreadable)) add_files(*node, &files);
+  }
+  return files;
 }
 
 // Of one shard: it is another folder than those of the others.
@@ -108,16 +173,19 @@ std::string text_of(const CampaignPlan& plan) {
 
 }  // namespace
 
-std::optional<CampaignPlan> plan_of_file(const CampaignOrigin& origin, std::string* error) {
+std::optional<CampaignPlan> plan_of_file(const CampaignOrigin& asked, std::string* error) {
+  CampaignOrigin origin = asked;
+  for (std::string& setting : origin.settings) setting = with_whole_path(setting);
   std::optional<CampaignPlan> plan = make_plan(origin, origin.file, error);
   if (!plan) return plan;
+  plan->origin.build = present_build();
   // What --set says makes another campaign of it, and so does what the scenarios say.
   for (const std::string& setting : origin.settings) {
-    plan->text += "# --set " + setting + "\n";
-    // Of a file that it names: a library that is built anew is another one.
-    const std::string file = setting.substr(setting.find('=') + 1);
-    std::error_code none;
-    if (fs::is_regular_file(file, none)) plan->text += "# file " + named_sum(file, file);
+    plan->text += "# --set " + comment_text(setting) + "\n";
+  }
+  // A library that is built anew is another one.
+  for (const std::string& file : named_files(*plan)) {
+    plan->text += "# file " + named_sum(file, file);
   }
   const daemon::Paths paths = daemon::Paths::detect();
   std::vector<std::string> scenarios = plan->campaign.scenarios;
@@ -137,9 +205,9 @@ std::optional<CampaignPlan> plan_of_folder(const fs::path& folder, std::string* 
     *error = folder.string() + ": not the folder of a campaign";
     return std::nullopt;
   }
-  const CampaignOrigin origin{document.value("file", ""),
-                              document["set"].get<std::vector<std::string>>(),
-                              document.value("trust", false), *shard};
+  const CampaignOrigin origin{
+      document.value("file", ""), document["set"].get<std::vector<std::string>>(),
+      document.value("trust", false), *shard, document.value("build", std::string(kOldBuild))};
   std::optional<CampaignPlan> plan = make_plan(origin, (folder / kCopy).string(), error);
   if (!plan) return plan;
   const std::string own = kShardLine + shard_text(*shard) + "\n";
@@ -175,15 +243,26 @@ bool CampaignFolder::take(const fs::path& folder, const CampaignPlan& plan, std:
   } else if (read_file(folder / kCopy) != text) {
     *error =
         folder.string() + ": holds results of another campaign, or of this one before its " +
-        "file, a scenario of it, --set or --shard was changed; give another folder with -o, or " +
-        "delete this one";
+        "file, a scenario of it, a file that its settings name, --set or --shard was changed; " +
+        "give another folder with -o, or delete this one";
+    return false;
+  }
+  const std::string before = read_file(folder / kOrigin);
+  const json there = json::parse(before, nullptr, false);
+  const std::string build =
+      there.is_object() ? there.value("build", std::string(kOldBuild)) : kOldBuild;
+  if (!before.empty() && build != plan.origin.build) {
+    *error = folder.string() + ": expected " + build + ", which has played what is there, got " +
+             plan.origin.build +
+             ", which may walk otherwise; give another folder with -o, or delete this one";
     return false;
   }
   const std::string origin = json_text({{"file", plan.origin.file},
                                         {"set", plan.origin.settings},
                                         {"trust", plan.origin.trust},
-                                        {"shard", shard_text(plan.origin.shard)}});
-  return read_file(folder / kOrigin) == origin || replace_file(folder / kOrigin, origin, error);
+                                        {"shard", shard_text(plan.origin.shard)},
+                                        {"build", plan.origin.build}});
+  return before == origin || replace_file(folder / kOrigin, origin, error);
 }
 
 bool holds_campaign(const fs::path& folder) {

@@ -18,6 +18,7 @@ struct CampaignOrigin {
   std::vector<std::string> settings;  ///< KEY=VALUE of --set
   bool trust = false;                 ///< load libraries that scenarios name by path
   Shard shard;
+  std::string build = {};  ///< gaitctl, gaitd and plugins that play it; filled in by the plan
 };
 
 /// A campaign as it is to be played.
@@ -29,10 +30,11 @@ struct CampaignPlan {
   std::vector<CampaignRun> runs;      ///< of all shards
 };
 
-/// From the file that was asked for. Nothing with a reason in `error`.
-std::optional<CampaignPlan> plan_of_file(const CampaignOrigin& origin, std::string* error);
+/// From the file that was asked for; a file that --set names by a relative path is named by the
+/// whole one from then on. Nothing with a reason in `error`.
+std::optional<CampaignPlan> plan_of_file(const CampaignOrigin& asked, std::string* error);
 
-/// From a folder that a campaign or a shard was played in.
+/// From a folder that a campaign or a shard was played in, also if its scenarios have gone since.
 std::optional<CampaignPlan> plan_of_folder(const std::filesystem::path& folder, std::string* error);
 
 /// Makes the folder of a campaign and keeps others out of it while this lives.
@@ -43,7 +45,8 @@ class CampaignFolder {
   CampaignFolder(const CampaignFolder&) = delete;
   CampaignFolder& operator=(const CampaignFolder&) = delete;
 
-  /// False with a reason in `error`: it holds another campaign, another process is at work there.
+  /// False with a reason in `error`: it holds another campaign or what another build has played,
+  /// another process is at work there.
   bool take(const std::filesystem::path& folder, const CampaignPlan& plan, std::string* error);
 
  private:

@@ -18,6 +18,7 @@
 #include "cli/one_line.h"
 #include "cli/scenario_run.h"
 #include "cli/whole_file.h"
+#include "daemon/log/column_log.h"
 
 namespace gaitd::cli {
 namespace {
@@ -37,7 +38,7 @@ std::string quoted(const std::string& text) {
 std::string joined(const std::vector<std::string>& fields) {
   std::string line;
   for (const std::string& field : fields) line += (line.empty() ? "" : ",") + quoted(field);
-  return line + "\n";
+  return line;
 }
 
 std::vector<std::string> split(const std::string& line) {
@@ -62,13 +63,6 @@ std::string number_text(double value) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.6g", value);
   return text;
-}
-
-double badness(const CampaignResult& result) {
-  const auto& names = campaign_figures();
-  const auto icp = std::find(names.begin(), names.end(), "icp_error_max") - names.begin();
-  const double error = result.figures[static_cast<std::size_t>(icp)];
-  return (result.success ? 0.0 : 1e6) + (std::isnan(error) ? 1e3 : std::min(error, 1e3));
 }
 
 }  // namespace
@@ -132,6 +126,13 @@ int count_failed(const CampaignResults& results) {
                                         [](const auto& entry) { return !entry.second.success; }));
 }
 
+double badness(const CampaignResult& result) {
+  static const auto kIcpError = static_cast<std::size_t>(
+      std::ranges::find(campaign_figures(), "icp_error_max") - campaign_figures().begin());
+  const double error = result.figures[kIcpError];
+  return (result.success ? 0.0 : 1e6) + (std::isnan(error) ? 1e3 : std::min(error, 1e3));
+}
+
 std::vector<const CampaignResult*> worst_first(const CampaignResults& results) {
   std::vector<std::pair<double, const CampaignResult*>> ranked;
   for (const auto& [number, result] : results) ranked.emplace_back(-badness(result), &result);
@@ -161,19 +162,27 @@ std::string ResultFormat::header() const {
   for (const CampaignDraw& draw : campaign_.draws) fields.push_back(column("draw", draw.key));
   fields.insert(fields.end(), outcome.begin(), outcome.end());
   fields.insert(fields.end(), figures.begin(), figures.end());
-  return joined(fields);
+  return joined(fields) + "\n";
 }
 
-std::string ResultFormat::row(const CampaignResult& result) const {
-  const CampaignRun& run = runs_[static_cast<std::size_t>(result.number) - 1];
+std::string ResultFormat::beginning(int number) const {
+  const CampaignRun& run = runs_[static_cast<std::size_t>(number) - 1];
   std::vector<std::string> fields{std::to_string(run.number), run.scenario,
                                   std::to_string(run.seed)};
   fields.insert(fields.end(), run.values.begin(), run.values.end());
   fields.insert(fields.end(), run.drawn.begin(), run.drawn.end());
-  fields.insert(fields.end(), {result.success ? "1" : "0", result.fell ? "1" : "0",
-                               result.refused ? "1" : "0", result.failed, result.problem});
+  return joined(fields) + ",";
+}
+
+bool ResultFormat::is_of_run(const std::string& line, int number) const {
+  return line.starts_with(beginning(number));
+}
+
+std::string ResultFormat::row(const CampaignResult& result) const {
+  std::vector<std::string> fields{result.success ? "1" : "0", result.fell ? "1" : "0",
+                                  result.refused ? "1" : "0", result.failed, result.problem};
   for (const double figure : result.figures) fields.push_back(number_text(figure));
-  return joined(fields);
+  return beginning(result.number) + joined(fields) + "\n";
 }
 
 std::optional<CampaignResult> ResultFormat::parse(const std::string& line) const {
@@ -203,14 +212,20 @@ std::optional<CampaignResults> read_results(const fs::path& path, const ResultFo
   const std::string text = read_file(path);
   const std::string header = format.header();
   CampaignResults results;
-  if (!text.starts_with(header)) {
-    if (text.find('\n') == std::string::npos) return results;  // not even a header was written
+  const auto foreign = [&] {
     *error = path.string() + ": not the results of this campaign; give another folder with -o";
     return std::nullopt;
+  };
+  if (!text.starts_with(header)) {
+    if (text.find('\n') == std::string::npos) return results;  // not even a header was written
+    return foreign();
   }
   std::istringstream lines(text.substr(header.size(), text.rfind('\n') + 1 - header.size()));
   for (std::string line; std::getline(lines, line);) {
-    if (auto result = format.parse(line)) results.emplace(result->number, std::move(*result));
+    auto result = format.parse(line);
+    if (!result) continue;
+    if (!format.is_of_run(line, result->number)) return foreign();
+    results.emplace(result->number, std::move(*result));
   }
   return results;
 }
@@ -228,7 +243,23 @@ bool ResultFile::open(const fs::path& path, std::string* error) {
   if (!before) return false;
   results_ = std::move(*before);
   std::erase_if(results_, [](const auto& entry) { return !entry.second.problem.empty(); });
+  failed_ = count_failed(results_);
+  unjudged_ = 0;
   return write_results(path, format_, results_, error);
+}
+
+void ResultFile::count(const CampaignResult& result, int by) {
+  failed_ += result.success ? 0 : by;
+  unjudged_ += result.problem.empty() ? 0 : by;
+}
+
+void ResultFile::add(const CampaignResult& result) {
+  const auto [there, fresh] = results_.try_emplace(result.number, result);
+  if (!fresh) {
+    count(there->second, -1);
+    there->second = result;
+  }
+  count(result, 1);
 }
 
 bool ResultFile::write(const CampaignResult& result, std::string* error) const {
@@ -259,6 +290,14 @@ bool left_files(const fs::path& log) {
     std::error_code ignored;
     return fs::exists(fs::path(log).replace_extension(extension), ignored);
   });
+}
+
+void remove_run_files(const fs::path& log) {
+  std::error_code ignored;
+  for (const char* extension : kRunFiles) {
+    fs::remove(fs::path(log).replace_extension(extension), ignored);
+  }
+  fs::remove(daemon::columns_beside(log.string()), ignored);
 }
 
 }  // namespace gaitd::cli

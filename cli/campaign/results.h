@@ -42,8 +42,12 @@ class ResultFormat {
   std::string row(const CampaignResult& result) const;
   /// Nothing if the line is no whole row of one of the runs.
   std::optional<CampaignResult> parse(const std::string& line) const;
+  /// Whether the row of this run begins like that: with its scenario, seed, settings and draws.
+  bool is_of_run(const std::string& line, int number) const;
 
  private:
+  std::string beginning(int number) const;  // of its row
+
   const Campaign& campaign_;
   const std::vector<CampaignRun>& runs_;
 };
@@ -52,7 +56,10 @@ using CampaignResults = std::map<int, CampaignResult>;  ///< by the number of th
 
 int count_failed(const CampaignResults& results);
 
-/// Those that failed first, then by the largest error of the ICP, then by number.
+/// The larger the worse: those that failed, then by the largest error of the ICP.
+double badness(const CampaignResult& result);
+
+/// The worst first, by number where they are as bad.
 std::vector<const CampaignResult*> worst_first(const CampaignResults& results);
 
 /// The rows of such a file, of a run the first one. Nothing with a reason in `error` if it holds
@@ -75,17 +82,23 @@ class ResultFile {
   /// those of runs that could not be judged, which are played again, and opens the file for more.
   bool open(const std::filesystem::path& path, std::string* error);
   /// Among the results from now on; in the file once it is written.
-  void add(const CampaignResult& result) { results_[result.number] = result; }
+  void add(const CampaignResult& result);
   bool write(const CampaignResult& result, std::string* error) const;
   /// Puts the rows in the order of the runs.
   bool sort(std::string* error) const { return write_results(path_, format_, results_, error); }
 
   const CampaignResults& results() const { return results_; }
+  int failed() const { return failed_; }
+  /// Whether none of them could be judged.
+  bool none_judged() const { return unjudged_ == static_cast<int>(results_.size()); }
 
  private:
+  void count(const CampaignResult& result, int by);
+
   ResultFormat format_;
   std::filesystem::path path_;
   CampaignResults results_;
+  int failed_ = 0, unjudged_ = 0;  // of the results
 };
 
 /// The log of a run in the folder of its campaign, and whether it was kept.
@@ -93,5 +106,7 @@ std::filesystem::path campaign_log(const std::filesystem::path& folder, int numb
 bool has_log(const std::filesystem::path& folder, int number);
 /// Whether a run left a log here, or only what gaitd printed because it ended before it had one.
 bool left_files(const std::filesystem::path& log);
+/// Removes the log of a run, what gaitd printed, and the columns that were made of the log.
+void remove_run_files(const std::filesystem::path& log);
 
 }  // namespace gaitd::cli

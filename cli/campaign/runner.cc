@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "cli/campaign/calibration.h"
 #include "cli/child_pool.h"
@@ -58,20 +60,20 @@ class Logs {
     return text;
   }
 
-  // Those of the worst runs stay, or come from where they were written; all others go.
-  void keep_worst(const CampaignResults& results) {
-    int kept = 0;
-    for (const CampaignResult* result : worst_first(results)) {
-      const int number = result->number;
-      if (deleted_.contains(number)) continue;
-      const bool fresh = left_files(running(number, ".mcap"));
-      if ((fresh || left_files(campaign_log(folder_, number))) && kept++ < keep_) {
-        if (fresh) keep(number);
-        continue;
-      }
-      forget(number);
-      deleted_.insert(number);
+  // Those of the worst runs stay, or come from where they were written: if this is one of them,
+  // that of the least bad goes. False with a reason in `error`.
+  bool take(const CampaignResult& result, std::string* error) {
+    const int number = result.number;
+    const bool fresh = left_files(running(number, ".mcap"));
+    if (!fresh && !left_files(campaign_log(folder_, number))) return true;
+    kept_.emplace(-badness(result), number);
+    int gone = 0;
+    if (static_cast<int>(kept_.size()) > keep_) {
+      gone = kept_.rbegin()->second;
+      forget(gone);
+      kept_.erase(std::prev(kept_.end()));
     }
+    return !fresh || gone == number || keep(number, error);
   }
 
  private:
@@ -81,28 +83,33 @@ class Logs {
   fs::path log(int number, const char* extension) const {
     return campaign_log(folder_, number).replace_extension(extension);
   }
-  void keep(int number) const {
+  bool keep(int number, std::string* error) const {
     for (const char* extension : kRunFiles) {
       const fs::path from = running(number, extension), to = log(number, extension);
-      std::error_code other_disk, ignored;
-      fs::rename(from, to, other_disk);
-      if (!other_disk) continue;
-      fs::copy_file(from, to, fs::copy_options::overwrite_existing, ignored);
-      fs::remove(from, ignored);
+      std::error_code code;
+      if (!fs::exists(from, code)) continue;
+      fs::rename(from, to, code);
+      if (!code) continue;
+      fs::copy_file(from, to, fs::copy_options::overwrite_existing, code);  // to another disk
+      if (code) {
+        *error = to.string() + ": cannot write: " + code.message() +
+                 "; the same command plays run " + std::to_string(number) + " again";
+        fs::remove(to, code);
+        return false;
+      }
+      fs::remove(from, code);
     }
+    return true;
   }
   void forget(int number) const {
-    std::error_code ignored;
-    for (const char* extension : kRunFiles) {
-      fs::remove(log(number, extension), ignored);
-      fs::remove(running(number, extension), ignored);
-    }
+    remove_run_files(campaign_log(folder_, number));
+    remove_run_files(running(number, ".mcap"));
   }
 
   const fs::path folder_;
   const int keep_;
   fs::path running_;
-  std::set<int> deleted_;
+  std::set<std::pair<double, int>> kept_;  // the worst first: by badness, then by number
 };
 
 std::vector<std::string> arguments_of(const Campaign& campaign, const CampaignRun& run,
@@ -195,13 +202,14 @@ PoolEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs
   const StopSignals signals;
   Logs logs(options.folder, options.scratch, campaign.keep_logs);
   ChildPool pool(options.jobs);
-  logs.keep_worst(results->results());
+  for (const auto& [number, result] : results->results()) {
+    if (!logs.take(result, error)) return PoolEnd::kFailed;
+  }
   int finished = 0;
   const auto append = [&](const CampaignResult& result, std::string* why) {
     // Logs first: whoever is killed in between plays this run again, and finds what it needs.
     results->add(result);
-    logs.keep_worst(results->results());
-    if (!results->write(result, why)) return false;
+    if (!logs.take(result, why) || !results->write(result, why)) return false;
     ++finished;
     return true;
   };
@@ -220,11 +228,8 @@ PoolEnd play_runs(const Campaign& campaign, const std::vector<CampaignRun>& runs
   };
   // What no run can play is no result of the campaign: it would say so as often as it has runs.
   const auto hopeless = [&](const CampaignResult& result) {
-    const CampaignResults& all = results->results();
-    return options.part.empty() && static_cast<int>(all.size()) >= std::max(4, 2 * options.jobs) &&
-           !result.problem.empty() && std::none_of(all.begin(), all.end(), [](const auto& entry) {
-             return entry.second.problem.empty();
-           });
+    return options.part.empty() && !result.problem.empty() && results->none_judged() &&
+           static_cast<int>(results->results().size()) >= std::max(4, 2 * options.jobs);
   };
   const auto finish = [&](const ChildPool::End& end, std::string* why) {
     CampaignResult result =

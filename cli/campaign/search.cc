@@ -188,6 +188,17 @@ std::optional<int> RunOrder::next() {
   return std::nullopt;
 }
 
+// After every run of many somebody asks.
+std::size_t RunOrder::remaining() {
+  if (campaign_.search || !counted_) {
+    remaining_ = remaining_of(mine_);
+  } else {
+    remaining_ -= results_.size() - *counted_;
+  }
+  counted_ = results_.size();
+  return remaining_;
+}
+
 std::size_t RunOrder::remaining_of(const ShardRange& range) {
   std::size_t count = 0;
   for (std::size_t i = range.first; i < range.end; ++i) {

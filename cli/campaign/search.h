@@ -48,8 +48,9 @@ class RunOrder {
   /// Number of a run to start now. Nothing while the results of others have to be known first, and
   /// when there is none left.
   std::optional<int> next();
-  /// At most so many runs have no result yet.
-  std::size_t remaining() { return remaining_of(mine_); }
+  /// At most so many runs have no result yet. From the first call on, results of other runs of this
+  /// shard may come, and none may go.
+  std::size_t remaining();
   /// The same of another shard.
   std::size_t remaining(const Shard& shard) { return remaining_of(shard_range(shard, parts())); }
   /// Of a search, in the order of scenarios and combinations.
@@ -84,6 +85,8 @@ class RunOrder {
   ShardRange mine_;
   std::size_t first_open_ = 0;
   std::set<int> started_;
+  std::size_t remaining_ = 0;           // when there were counted_ results
+  std::optional<std::size_t> counted_;  // nothing: never
   int levels_ = 1;
   int stride_ = 1;    // between the numbers of two levels
   int per_seed_ = 1;  // between those of two seeds

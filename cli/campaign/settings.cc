@@ -27,10 +27,19 @@ CampaignSetting read_bundles(MapReader map, const std::string& key, Campaign* ca
   return setting;
 }
 
+// Whether it is the same text without quotes: no number, list or anything else.
+bool needs_no_quotes(const std::string& text) {
+  daemon::Issues unreadable;
+  const NodePtr plain = daemon::parse_yaml(text, "", &unreadable);
+  return plain != nullptr && plain->kind == NodeKind::kScalar && !plain->quoted &&
+         plain->text == text && daemon::to_json(*plain).is_string();
+}
+
 }  // namespace
 
 std::string setting_text(const Node& node) {
-  return node.kind == NodeKind::kScalar && !node.quoted ? node.text : daemon::to_json(node).dump();
+  const bool plain = node.kind == NodeKind::kScalar && (!node.quoted || needs_no_quotes(node.text));
+  return plain ? node.text : daemon::to_json(node).dump();
 }
 
 std::string setting_number(double value) {
@@ -113,6 +122,12 @@ bool narrow(Campaign* campaign, const std::string& assignment, std::string* erro
     *error = "--set " + assignment + ": expected one of the campaign's values of '" + key + "':";
     for (const std::string& known : setting->values) *error += " " + known;
     return false;
+  }
+  if (campaign->plot && campaign->plot->panels == key) {
+    std::vector<std::string>& names = campaign->plot->panel_names;
+    const auto place = static_cast<std::size_t>(std::ranges::find(setting->values, value) -
+                                                setting->values.begin());
+    names = {place < names.size() ? names[place] : value};
   }
   setting->values = {value};
   return true;

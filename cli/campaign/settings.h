@@ -8,7 +8,7 @@
 
 namespace gaitd::cli {
 
-/// As YAML takes it behind KEY=.
+/// As YAML takes it behind KEY=; a word is the same with and without quotes.
 std::string setting_text(const daemon::Node& node);
 
 /// A value that a campaign makes itself, for KEY=.

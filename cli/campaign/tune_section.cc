@@ -160,7 +160,7 @@ void read_held_out(MapReader map, const Campaign& campaign, CampaignTune* tune) 
   }
   const daemon::Paths paths = daemon::Paths::detect();
   for (const NodePtr& node : map.list("scenarios", 0, 1000)) {
-    if (!paths.scenario(scenario_from(campaign.file, node->text))) {
+    if (!campaign.is_copy && !paths.scenario(scenario_from(campaign.file, node->text))) {
       map.fail("scenarios", "the name of a scenario or the path of its file",
                daemon::describe(*node), daemon::suggestion(node->text, paths.scenarios()));
     }

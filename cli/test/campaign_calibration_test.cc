@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 
 #include "cli/test/cli_process.h"
@@ -128,6 +129,33 @@ TEST_F(CampaignCalibrationTest, MeasuresEachRobotOnceAndKeepsIt) {
   EXPECT_EQ(calls().size(), 3u);
 }
 
+// Neither the ground nor the start of the sensors.
+TEST_F(CampaignCalibrationTest, MeasuresTheMassesThatTheRobotWalksWith) {
+  options_.settings = {"sensors.episode=3", "model_error.mass_scale.head=1.5",
+                       "model_error.inertia_scale={utorso: 1.2}"};
+  load(std::string("gauntlet: [flat, side]\nseeds: 2\ncalibrate: true\n"
+                   "draw: {model_error.friction: [0.5, 1]}\n") +
+       kDrives);
+  std::set<fs::path> files;
+  for (const CampaignRun& run : runs_) {
+    const auto calibration =
+        calibration_of(campaign_, run, settings_of(campaign_, run, options_), file("results"));
+    if (!calibration) continue;
+    files.insert(calibration->file);
+    std::string all;
+    for (const std::string& setting : calibration->settings) {
+      all += setting;
+      all += '\n';
+    }
+    EXPECT_HAS(all, "model_error.mass_scale.head=1.5\n");
+    EXPECT_HAS(all, "model_error.inertia_scale.utorso=1.2\n");
+    for (const char* part : {"friction", "episode", "terrain"}) {
+      EXPECT_EQ(all.find(part), std::string::npos) << all;
+    }
+  }
+  EXPECT_EQ(files.size(), 2u);  // one for each seed
+}
+
 TEST_F(CampaignCalibrationTest, RunsPlayWithTheFileThatWasMeasured) {
   load(std::string("calibrate: true\n") + kDrives);
   const fs::path folder = file("results/calibrations");
@@ -187,6 +215,7 @@ TEST_F(CampaignCalibrationTest, RunsWithoutTheirCalibrationHaveFailed) {
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_HAS(outcome.err, "calibrations [");
   EXPECT_EQ(calls().size(), 1u);  // no run
+  EXPECT_HAS(calls()[0], "sensors.episode=1");
   const std::string results = workspace_.read("results/results.csv");
   EXPECT_HAS(results, "\n1,short.yaml,1,hydraulic,walk-straight,0,0,0,,");
   EXPECT_HAS(results, "no calibration: " + file("motions.yaml") +

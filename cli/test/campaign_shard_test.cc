@@ -133,6 +133,113 @@ TEST_F(ShardTest, SaysWhatDoesNotFitTogether) {
   EXPECT_HAS(merge(".", "d").err, "not the folder of a campaign");
 }
 
+TEST_F(ShardTest, ResultsOfAnotherBuildOrLibraryStayApart) {
+  campaign("scenarios: [good.yaml]\nset: {toe_off.variant: [never, " + file("mine.so") +
+           "]}\nseeds: 2\n");
+  workspace_.write("mine.so", "one");
+  EXPECT_EQ(play("a", "--trust").exit_code, 0);
+  EXPECT_EQ(play("a", "--trust").exit_code, 0);
+  workspace_.write("mine.so", "two");
+  EXPECT_HAS(play("a", "--trust").err, "a file that its settings name");
+  EXPECT_EQ(play("b", "--trust --shard 1/2").exit_code, 0);
+  workspace_.write("gaitd", workspace_.read("gaitd") + "# built anew\n");
+  const Outcome other = play("b", "--trust --shard 1/2");
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_HAS(other.err, "b: expected gaitd ");
+  EXPECT_HAS(other.err, ", got gaitd ");
+  EXPECT_EQ(play("c", "--trust --shard 2/2").exit_code, 0);
+  const Outcome mixed = merge("b c", "bc");
+  EXPECT_EQ(mixed.exit_code, 1);
+  EXPECT_HAS(mixed.err, "play all shards with one of them");
+}
+
+TEST_F(ShardTest, RowsOfOtherRunsAreNotTaken) {
+  campaign("scenarios: [good.yaml]\nset: {x: [1, 2]}\nseeds: 2\n");
+  play("a");
+  const std::string rows = workspace_.read("a/results.csv");
+  for (const char* row : {"\n2,good.yaml,1,1,", "\n2,good.yaml,2,2,", "\n2,bad.yaml,1,2,"}) {
+    std::string others = rows;
+    others.replace(others.find("\n2,good.yaml,1,2,"), 17, row);
+    workspace_.write("a/results.csv", others);
+    EXPECT_HAS(play("a").err, "not the results of this campaign") << row;
+  }
+}
+
+TEST_F(ShardTest, TheCopyCanBeReadWhateverItsLastLine) {
+  campaign("scenarios: [good.yaml]\nseeds: 2");
+  EXPECT_EQ(play("a", "--set 'x=\"1\nseeds: 5\"'").exit_code, 0);
+  EXPECT_HAS(workspace_.read("a/campaign.yaml"), "seeds: 2\n# --set ");
+  EXPECT_EQ(merge("a", "b").exit_code, 0);
+  expect_same("a", "b");
+}
+
+TEST_F(ShardTest, AFinishedFolderNeedsNoScenario) {
+  campaign("scenarios: [good.yaml]\ncalibrate: {motions: bad.yaml}\nseeds: 2\n");
+  EXPECT_EQ(play("a").exit_code, 0);
+  for (const char* name : {"good.yaml", "bad.yaml", "c.yaml"}) fs::remove(file(name));
+  fs::rename(file("a"), file("elsewhere"));
+  const Outcome outcome = merge("elsewhere", "b");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_HAS(outcome.out, "2 of 2 runs, 2 succeeded");
+}
+
+TEST_F(ShardTest, AFileOfSetIsNamedFromEverywhere) {
+  campaign("scenarios: [good.yaml]\nseeds: 1\n");
+  for (const char* name : {"mine.so", "nominal"}) workspace_.write(name, "");
+  const Outcome outcome =
+      run_shell(workspace_, "cd " + file("") +
+                                " && ./gaitctl campaign c.yaml -o a --set "
+                                "toe_off.variant=./mine.so --set sensors.noise=nominal");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_HAS(workspace_.read("a/summary.txt"),
+             " --set toe_off.variant=" + file("mine.so") + " --set sensors.noise=nominal");
+}
+
+TEST_F(ShardTest, ALogThatCannotBeKeptIsAnError) {
+  campaign("scenarios: [good.yaml]\nseeds: 1\nkeep_logs: 1\n");
+  gaitd("mkdir -p " + file("a/logs/000001.mcap/x"));
+  const Outcome outcome = play("a");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_HAS(outcome.err, "000001.mcap: cannot write: ");
+  EXPECT_HAS(outcome.err, "plays run 1 again");
+  EXPECT_EQ(lines("a/results.csv"), 1);
+  fs::remove_all(file("a/logs/000001.mcap"));
+  gaitd("");
+  EXPECT_EQ(play("a").exit_code, 0);
+  EXPECT_EQ(logs_in("a").size(), 1u);
+}
+
+TEST_F(ShardTest, WithALogGoesWhatWasMadeOfIt) {
+  for (const char* name : {"x.mcap", "x.mcap.txt", "x.mcap.columns"}) workspace_.write(name, "");
+  remove_run_files(file("x.mcap"));
+  for (const char* name : {"x.mcap", "x.mcap.txt", "x.mcap.columns"}) {
+    EXPECT_FALSE(fs::exists(file(name))) << name;
+  }
+}
+
+TEST_F(ShardTest, CountsAsResultsCome) {
+  campaign("scenarios: [good.yaml]\nseeds: 4\n");
+  std::string error;
+  const auto plan = plan_of_file({file("c.yaml"), {}, false, {}}, &error);
+  ASSERT_TRUE(plan) << error;
+  ResultFile results(plan->campaign, plan->runs);
+  RunOrder order(plan->campaign, plan->runs, results.results());
+  ASSERT_TRUE(results.open(file("results.csv"), &error)) << error;
+  EXPECT_EQ(order.remaining(), 4u);
+  results.add(unjudged_result(1, "no log"));
+  EXPECT_TRUE(results.none_judged());
+  CampaignResult good = unjudged_result(2, "");
+  good.success = true;
+  results.add(good);
+  EXPECT_FALSE(results.none_judged());
+  EXPECT_EQ(results.failed(), 1);
+  EXPECT_EQ(order.remaining(), 2u);
+  good.number = 1;  // played again
+  results.add(good);
+  EXPECT_EQ(results.failed(), 0);
+  EXPECT_EQ(order.remaining(), 2u);
+}
+
 TEST_F(ShardTest, SlurmIsLookedFor) {
   campaign("scenarios: [good.yaml]\nseeds: 4\n");
   const Outcome outcome =
@@ -156,6 +263,34 @@ TEST_F(ShardTest, APlotNeedsNoSearch) {
   const std::string plot = workspace_.read("results/good.svg");
   EXPECT_HAS(plot, "<polygon points=\"160.0,60.0 95.0,190.0 \"");  // all, and a half
   EXPECT_HAS(plot, "success rate");
+}
+
+TEST_F(ShardTest, APlotIsOfItsScenarioAndOfThePanelsThatAreLeft) {
+  scenario("good-0.35", "2.0");
+  scenario("good-0.5", "2.0");
+  campaign(
+      "scenarios: [good-0.35.yaml, good-0.5.yaml]\nset: {turn: [0, 1.5708], p: [x, y]}\n"
+      "plot: {angle: turn, panels: p, panel_names: [first, second]}\n");
+  EXPECT_EQ(play("a", "--set p=y").exit_code, 0);
+  for (const char* name : {"a/good-0.35.svg", "a/good-0.5.svg"}) {
+    const std::string plot = workspace_.read(name);
+    EXPECT_HAS(plot, ">second</text>");
+    EXPECT_EQ(plot.find(">first</text>"), std::string::npos) << plot;
+  }
+}
+
+TEST_F(ShardTest, AWordIsTheSameInQuotes) {
+  campaign(
+      "scenarios: [good.yaml]\nset: {\"toe_off.variant\": [\"never\", \"/a/b/mine.so\"], "
+      "n: [\"1\", 2, \"a: b\", \"\"]}\n"
+      "success_min: [{where: {\"toe_off.variant\": \"never\", n: \"1\"}, rate: 1}]\n");
+  daemon::Issues issues;
+  const auto loaded = load_campaign(file("c.yaml"), &issues);
+  ASSERT_TRUE(loaded) << issues.error_text();
+  EXPECT_EQ(loaded->settings[0].values, (std::vector<std::string>{"never", "/a/b/mine.so"}));
+  EXPECT_EQ(loaded->settings[1].values,
+            (std::vector<std::string>{"\"1\"", "2", "\"a: b\"", "\"\""}));
+  EXPECT_EQ(value_label(*loaded, "toe_off.variant", loaded->settings[0].values[1]), "mine");
 }
 
 TEST_F(ShardTest, PluginFilesAreCalledByTheirNames) {

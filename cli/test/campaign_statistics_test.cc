@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "cli/campaign/groups.h"
+
 namespace gaitd::cli {
 namespace {
 
@@ -16,6 +18,16 @@ TEST(Wilson, GivesTheKnownIntervals) {
   EXPECT_NEAR(none.low, 0.0, 1e-12);
   EXPECT_NEAR(none.high, 0.2775, 1e-3);
   EXPECT_EQ(wilson_interval(0, 0).high, 1.0);
+}
+
+TEST(Percent, IsAllOnlyOfAllAndNoneOnlyOfNone) {
+  EXPECT_EQ(percent_text(0.0), "0.0 %");
+  EXPECT_EQ(percent_text(0.5), "50.0 %");
+  EXPECT_EQ(percent_text(1.0), "100.0 %");
+  EXPECT_EQ(percent_text(0.9996), "99.96 %");
+  EXPECT_EQ(percent_text(0.999996), "99.9996 %");
+  EXPECT_EQ(percent_text(0.00004), "0.004 %");
+  EXPECT_EQ(percent_text(1.0 - 1e-16), "100.0 %");  // rounding
 }
 
 // As R's binom.test(k, n) gives it.

@@ -62,6 +62,10 @@ TEST(Objective, CountsFailuresBeforeFigures) {
   // A fall has no figures, also where nothing else is left.
   EXPECT_NEAR(objective.score({&near, &fallen}).figures[0], 0.01, 1e-12);
   EXPECT_GE(objective.score({&fallen}).value, 2.0);
+  CampaignResult refused = near;
+  refused.refused = true;
+  EXPECT_EQ(objective.score({&usual, &refused}).failures, 1);
+  EXPECT_NEAR(objective.score({&usual, &refused}).figures[0], 0.02, 1e-12);
   // In units of what is usual.
   EXPECT_NEAR(objective.weighted(usual), 1.5, 1e-12);
   EXPECT_NEAR(objective.weighted(bent), 2.0, 1e-12);
@@ -93,6 +97,14 @@ TEST(TuneVerdict, IsBetterOnlyWhereThePairsDecideIt) {
   EXPECT_EQ(verdict(held, closer), "better");
   EXPECT_EQ(verdict(closer, held), "worse");
   EXPECT_EQ(verdict(held, mixed), "undecided");
+  // Who refuses to walk does not fall, and stands well.
+  std::vector<CampaignResult> refusing = held, refused = closer;
+  for (int i = 0; i < 8; ++i) refusing[static_cast<std::size_t>(i)] = result(true, 0.001, 0.4);
+  for (int i = 0; i < 8; ++i) refusing[static_cast<std::size_t>(i)].refused = true;
+  EXPECT_EQ(verdict(held, refusing), "worse");
+  EXPECT_EQ(verdict(refusing, held), "better");
+  for (CampaignResult& one : refused) one.refused = true;
+  EXPECT_EQ(verdict(refused, refused), "undecided");
   // Better figures do not make up for one more failure.
   std::vector<CampaignResult> rash = closer;
   rash[5] = result(false, 0.01, 0.4);

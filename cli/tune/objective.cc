@@ -23,7 +23,7 @@ std::vector<double> Objective::means(const std::vector<const CampaignResult*>& r
     double sum = 0.0;
     int count = 0;
     for (const CampaignResult* run : runs) {
-      if (run->fell || !std::isfinite(run->figures[place])) continue;
+      if (!has_walked(*run) || !std::isfinite(run->figures[place])) continue;
       sum += run->figures[place];
       ++count;
     }
@@ -42,13 +42,9 @@ void Objective::set_usual(const std::vector<const CampaignResult*>& runs) {
 Score Objective::score(const std::vector<const CampaignResult*>& runs) const {
   Score score;
   score.runs = static_cast<int>(runs.size());
-  score.failures = static_cast<int>(
-      std::count_if(runs.begin(), runs.end(), [](const CampaignResult* r) { return !r->success; }));
+  score.failures = static_cast<int>(std::count_if(
+      runs.begin(), runs.end(), [](const CampaignResult* run) { return has_failed(*run); }));
   score.figures = means(runs);
-  // A robot that refuses to walk has fine figures of standing.
-  for (const CampaignResult* run : runs) {
-    if (run->success && run->refused) ++score.failures;
-  }
   double sum = 0.0;
   for (std::size_t i = 0; i < weights_.size(); ++i) {
     if (std::isfinite(score.figures[i])) sum += weights_[i] * score.figures[i] / units_[i];

@@ -9,13 +9,17 @@
 
 namespace gaitd::cli {
 
+/// A robot that refuses to walk has not fallen, but it has not done what it was asked for either.
+inline bool has_failed(const CampaignResult& run) { return !run.success || run.refused; }
+/// Whether its figures say how it walked: standing has fine ones.
+inline bool has_walked(const CampaignResult& run) { return !run.fell && !run.refused; }
+
 /// What the runs of one candidate come to.
 struct Score {
   int runs = 0;
   int failures = 0;
-  std::vector<double>
-      figures;         ///< means of those of the objective, of runs without a fall; NaN: none
-  double value = 0.0;  ///< less is better: failures first, then the weighted figures
+  std::vector<double> figures;  ///< means of those of the objective, of runs that walked; NaN: none
+  double value = 0.0;           ///< less is better: failures first, then the weighted figures
 };
 
 /// By what candidates are judged: figures count in units of their mean with the defaults, so that

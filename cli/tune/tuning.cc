@@ -109,7 +109,7 @@ class Tuning {
     for (const Candidate& candidate : stage.candidates) {
       const std::vector<const CampaignResult*> runs = results.runs(candidate.name);
       PlayedCandidate played{candidate, generation, objective_.score(runs), {}};
-      for (const CampaignResult* run : runs) played.successes.push_back(run->success);
+      for (const CampaignResult* run : runs) played.successes.push_back(!has_failed(*run));
       played_.push_back(std::move(played));
     }
   }
@@ -125,7 +125,7 @@ class Tuning {
       const std::vector<const CampaignResult*> runs = results->runs(candidate.name);
       NeighbourOutcome neighbour{candidate.name, objective_.score(runs), 0};
       for (std::size_t i = 0; i < runs.size(); ++i) {
-        neighbour.lost += winner.successes[i] && !runs[i]->success ? 1 : 0;
+        neighbour.lost += winner.successes[i] && has_failed(*runs[i]) ? 1 : 0;
       }
       outcome->neighbours.push_back(std::move(neighbour));
     }

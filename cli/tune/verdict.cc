@@ -27,12 +27,12 @@ json verdict_json(const Objective& objective, const std::vector<const CampaignRe
   std::int64_t both = 0, only_usual = 0, only_winner = 0;
   std::vector<double> differences;
   for (std::size_t i = 0; i < usual.size(); ++i) {
-    const bool a = !usual[i]->success, b = !winner[i]->success;
+    const bool a = has_failed(*usual[i]), b = has_failed(*winner[i]);
     both += a && b ? 1 : 0;
     only_usual += a && !b ? 1 : 0;
     only_winner += !a && b ? 1 : 0;
     const double difference = objective.weighted(*winner[i]) - objective.weighted(*usual[i]);
-    if (!usual[i]->fell && !winner[i]->fell && std::isfinite(difference)) {
+    if (has_walked(*usual[i]) && has_walked(*winner[i]) && std::isfinite(difference)) {
       differences.push_back(difference);
     }
   }

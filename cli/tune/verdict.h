@@ -11,9 +11,9 @@
 namespace gaitd::cli {
 
 /// The winner against the defaults on pairs of runs: failures by McNemar's test, the weighted
-/// figures by the mean of the differences with its interval, of pairs in which neither
-/// fell. {pairs, both_fail, only_default_fails, only_winner_fails, p, objective: {mean, low, high,
-/// pairs}, verdict, by}. `verdict`: "better", "worse" or "undecided"; `by`: "failures" or
+/// figures by the mean of the differences with its interval, of pairs in which both
+/// walked. {pairs, both_fail, only_default_fails, only_winner_fails, p, objective: {mean, low,
+/// high, pairs}, verdict, by}. `verdict`: "better", "worse" or "undecided"; `by`: "failures" or
 /// "figures". It is better if it fails less often, or does not fail more often and its figures are
 /// better.
 nlohmann::json verdict_json(const Objective& objective,

@@ -28,15 +28,16 @@ def campaign(
 
     campaign: the path of a file, or a campaign as a dict (docs/campaigns.md), which is written to
     ``<folder>.campaign.yaml``. folder: for results, summary and logs; by default ``<name>-results`` here. Called again
-    with the same campaign and folder it goes on where it was, and what is done is not played again. set: any keys, for
-    every run, or to leave only that value of a key of the campaign. jobs: runs at once. trust: load libraries that the
-    campaign names by path.
+    with the same campaign and folder it goes on where it was, and what is done is not played again. With another
+    campaign, a library that was built anew, or another gaitd it needs another folder. set: any keys, for every run, or
+    to leave only that value of a key of the campaign. jobs: runs at once. trust: load libraries that the campaign names
+    by path.
 
     The columns are those of ``results.csv``: scenario, seed, settings and draws, success, fell, figures ... Settings
     that are words are plain (``step_plan``), lists and objects their JSON.
     ``frame.attrs["summary"]`` is ``summary.json``: success rates with their intervals, and whether the campaign passed.
     Runs that fail are rows with success 0; nothing is raised. Raises :class:`ProgramError` where gaitctl refuses the
-    campaign or is interrupted.
+    campaign or the folder, or is interrupted.
     """
     made: Optional[Path] = None
     if isinstance(campaign, Mapping):
@@ -69,9 +70,12 @@ def results(folder: Union[str, "os.PathLike[str]"]) -> "pandas.DataFrame":
     """The results of a campaign that was played, also by gaitctl: as :func:`campaign` gives them."""
     import pandas
 
-    frame = pandas.read_csv(Path(folder) / "results.csv", float_precision="round_trip")
-    for name in frame.columns[frame.dtypes == object]:
-        frame[name] = frame[name].map(_plain_word)
+    file = Path(folder) / "results.csv"
+    # Only what is empty was not measured: "None" and "NA" are words.
+    frame = pandas.read_csv(file, float_precision="round_trip", keep_default_na=False, na_values=[""])
+    for name, kind in frame.dtypes.items():
+        if not pandas.api.types.is_numeric_dtype(kind):
+            frame[name] = frame[name].map(_plain_word)
     summary = Path(folder) / "summary.json"
     if summary.exists():
         frame.attrs["summary"] = json.loads(summary.read_text(encoding="utf-8"))
@@ -79,7 +83,7 @@ def results(folder: Union[str, "os.PathLike[str]"]) -> "pandas.DataFrame":
 
 
 def _plain_word(value: Any) -> Any:
-    """Settings are JSON in the table: a word stands in quotes there."""
+    """Settings are JSON in the table: a word that could be something else stands in quotes there."""
     if not isinstance(value, str) or not value.startswith('"'):
         return value
     try:

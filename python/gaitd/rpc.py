@@ -77,7 +77,7 @@ class Connection:
             try:
                 self._socket.settimeout(left)
                 received = self._socket.recv(1 << 16)
-            except TimeoutError:
+            except (TimeoutError, socket.timeout):  # one class from Python 3.10 on
                 return None
             except OSError as error:
                 raise NoDaemon(f"{self.path}: the connection broke: {error}") from None

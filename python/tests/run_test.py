@@ -104,6 +104,16 @@ class Campaigns(unittest.TestCase):
         with self.assertRaisesRegex(gaitd.ProgramError, "another"):
             gaitd.campaign({**campaign, "seeds": 3}, scratch("tiny"))
 
+    def test_words_are_words(self):
+        os.mkdir(scratch("written"))
+        with open(scratch("written/results.csv"), "w", encoding="utf-8") as file:
+            file.write('run,a,b,success,icp\n1,None,"""1""",1,0.5\n2,NA,x,0,\n')
+        frame = gaitd.results(scratch("written"))
+        self.assertEqual(list(frame["a"]), ["None", "NA"])
+        self.assertEqual(list(frame["b"]), ["1", "x"])
+        self.assertEqual(list(frame["success"]), [1, 0])
+        self.assertTrue(np.isnan(frame["icp"][1]))
+
     def test_a_campaign_that_makes_no_sense(self):
         with self.assertRaisesRegex(gaitd.ProgramError, "scenarioz"):
             gaitd.campaign({"name": "wrong", "scenarioz": ["stand"]}, scratch("wrong"))

@@ -10,7 +10,7 @@ const kShown = 3;  // comparisons of one setting that stand open
 const cell = (words, className = '') => make('td', {textContent: words, className});
 const chance = (p) => p < 0.001 ? '< 0.001' : p.toFixed(3);
 
-// Of how many seeds they are, as one run of a seed makes `each` pairs.
+// Of how many seeds they are, as many make `pairs` of them.
 function more({more}, pairs) {
   if (more === 0) return cell('decided', 'pass');
   if (more === null) return cell('no difference seen', 'quiet');
@@ -37,7 +37,7 @@ function comparison(one) {
       cell(chance(share.p), 'count'), more(share, one.pairs)));
   const figures = one.figures.map((figure) => make('tr', {}, cell(figure.figure + unit(figure.figure)),
       cell(figure.pairs, 'count'), cell(`${figure.mean > 0 ? '+' : ''}${number(figure.mean)}`, 'count'),
-      cell(`${number(figure.low)} … ${number(figure.high)}`, 'count'), more(figure, one.pairs)));
+      cell(`${number(figure.low)} … ${number(figure.high)}`, 'count'), more(figure, figure.pairs)));
   return make('figure', {},
       make('figcaption', {}, `${one.key}: `, make('b', {textContent: one.first}), ' against ',
            make('b', {textContent: one.second}), ` on ${one.pairs} pairs`),

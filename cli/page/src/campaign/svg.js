@@ -33,7 +33,14 @@ export function ticks(from, to, most = 6) {
 }
 
 export const number = (value) => Number(value.toPrecision(4)).toString();
-export const percent = (share) => `${(100 * share).toFixed(1)} %`;
+
+// With so many digits that only all of them are 100 and none of them 0.
+export function percent(share) {
+  const wrong = (words) => (Number(words) === 0 && share > 1e-9) || (Number(words) === 100 && share < 1 - 1e-9);
+  let digits = 1;
+  while (digits < 8 && wrong((100 * share).toFixed(digits))) ++digits;
+  return `${(100 * share).toFixed(digits)} %`;
+}
 
 // What can be clicked can also be reached and pressed with the keyboard.
 export function pressable(element, action, label) {
