@@ -18,6 +18,7 @@
 #include "cli/failure.h"
 #include "cli/print.h"
 #include "daemon/server/base64.h"
+#include "gaitd/terrain/ground_memory.h"
 #include "gaitd/terrain/height_map_file.h"
 
 namespace gaitd::cli {
@@ -34,10 +35,26 @@ std::string bytes_of(const std::vector<float>& values) {
       {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
 }
 
-json tile_of(const HeightMap& map, int i, int j) {
+// Where a tile ends that begins at cell `begin` of `count` in a direction, of which the first is at
+// `origin` (m): where a cell of gaitd does, so that none is divided between two tiles.
+int end_of_tile(int begin, int count, double origin, double resolution) {
+  int end = begin + kTile;
+  if (end >= count) return count;
+  const auto cell = [&](int k) {
+    return std::floor((origin + (k + 0.5) * resolution) / terrain::MemoryRules{}.resolution);
+  };
+  while (cell(end - 1) == cell(end)) --end;
+  return end;
+}
+
+// Of the cells from (i, j) to before (i_end, j_end).
+json tile_of(const HeightMap& map, int i, int j, int i_end, int j_end) {
   const Grid& grid = map.grid();
-  const int columns = std::min(kTile, grid.columns - i), rows = std::min(kTile, grid.rows - j);
+  const int columns = i_end - i, rows = j_end - j;
+  const auto cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   std::vector<float> heights, variances;
+  heights.reserve(cells);
+  variances.reserve(cells);
   for (int v = 0; v < rows; ++v) {
     for (int u = 0; u < columns; ++u) {
       heights.push_back(static_cast<float>(map.height(i + u, j + v)));
@@ -60,36 +77,51 @@ int put(const Context& context, const std::string& file, bool forget) {
   if (!map) return fail(context, kFailed, kName, error);
   auto client = connect(context, kName, daemon::Role::kCommand);
   if (!client) return kNoDaemon;
-  long long taken = 0;
-  for (int j = 0; j < map->grid().rows; j += kTile) {
-    for (int i = 0; i < map->grid().columns; i += kTile) {
-      json tile = tile_of(*map, i, j);
+  const Grid& grid = map->grid();
+  long long taken = 0, uncertain = 0, far = 0;
+  for (int j = 0, j_end = 0; j < grid.rows; j = j_end) {
+    j_end = end_of_tile(j, grid.rows, grid.origin.y(), grid.resolution);
+    for (int i = 0, i_end = 0; i < grid.columns; i = i_end) {
+      i_end = end_of_tile(i, grid.columns, grid.origin.x(), grid.resolution);
+      json tile = tile_of(*map, i, j, i_end, j_end);
       tile["forget"] = forget;
       const daemon::RpcResult result = client->call("map.put", tile);
       if (const auto* refused = std::get_if<daemon::RpcError>(&result)) {
         return fail(context, kName, "map.put", *refused);
       }
-      taken += std::get<json>(result).value("cells", 0);
+      const json& answer = std::get<json>(result);
+      taken += answer.value("cells", 0);
+      uncertain += answer.value("uncertain", 0);
+      far += answer.value("far", 0);
     }
   }
   if (context.json) {
-    std::cout << json_text({{"cells", taken}}) << std::flush;
-  } else {
-    std::printf("%lld of %d cells taken%s\n", taken, map->known_cells(),
-                taken < map->known_cells() ? "; the others are too far from the robot" : "");
+    std::cout << json_text({{"cells", taken}, {"uncertain", uncertain}, {"far", far}})
+              << std::flush;
+    return kDone;
   }
+  std::printf("%lld of %d cells taken", taken, map->known_cells());
+  if (uncertain > 0) std::printf("; %lld are too uncertain to step on", uncertain);
+  if (far > 0) std::printf("; %lld are too far from the robot", far);
+  std::printf("\n");
   return kDone;
 }
 
-// One answer of map.get as a map. Nothing: nothing is known there.
-std::optional<HeightMap> map_of(const json& answer) {
-  if (!answer.is_object() || !answer.contains("heights")) return std::nullopt;
+// Of one answer of map.get, which has one.
+Grid grid_of(const json& answer) {
   Grid grid;
   grid.columns = answer.at("columns");
   grid.rows = answer.at("rows");
   grid.resolution = answer.at("resolution");
   grid.origin.x() = answer.at("origin").at(0);
   grid.origin.y() = answer.at("origin").at(1);
+  return grid;
+}
+
+// Likewise, with its heights. Nothing: nothing is known there.
+std::optional<HeightMap> map_of(const json& answer) {
+  if (!answer.contains("heights")) return std::nullopt;
+  const Grid grid = grid_of(answer);
   const double scale = answer.at("scale");
   const std::string bytes = daemon::from_base64(answer.at("heights").get<std::string>());
   const auto count = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
@@ -107,19 +139,19 @@ std::optional<HeightMap> map_of(const json& answer) {
 // The whole map in its own cells, part by part. False: what went wrong has been said.
 bool get(const Context& context, RpcClient* client, const char* name, int* code,
          std::optional<HeightMap>* whole) {
-  const auto ask_for = [&](const json& params, std::optional<HeightMap>* map) {
+  const auto ask_for = [&](const json& params, json* answer) {
     const daemon::RpcResult result = client->call("map.get", params);
     if (const auto* error = std::get_if<daemon::RpcError>(&result)) {
       *code = fail(context, name, "map.get", *error);
       return false;
     }
-    *map = map_of(std::get<json>(result));
+    *answer = std::get<json>(result);
     return true;
   };
-  std::optional<HeightMap> coarse, part;
+  json coarse, answer;
   if (!ask_for(json::object(), &coarse)) return false;
-  if (!coarse) return true;
-  const Grid& extent = coarse->grid();
+  if (!coarse.contains("heights")) return true;
+  const Grid extent = grid_of(coarse);
   const Eigen::Vector2d size = extent.resolution * Eigen::Vector2d(extent.columns, extent.rows);
   const auto window = [&](double x, double y, double width) {
     const Eigen::Vector2d from = extent.origin + Eigen::Vector2d(x, y);
@@ -128,9 +160,10 @@ bool get(const Context& context, RpcClient* client, const char* name, int* code,
     return params;
   };
   // The first part tells how fine the cells are.
-  if (!ask_for(window(1e-6, 1e-6, 0.0), &part)) return false;
+  if (!ask_for(window(1e-6, 1e-6, 0.0), &answer)) return false;
+  if (!answer.contains("resolution")) return true;  // all has been forgotten meanwhile
   Grid grid = extent;
-  if (part) grid.resolution = part->grid().resolution;
+  grid.resolution = grid_of(answer).resolution;
   grid.columns = static_cast<int>(std::lround(size.x() / grid.resolution));
   grid.rows = static_cast<int>(std::lround(size.y() / grid.resolution));
   whole->emplace(grid);
@@ -140,9 +173,10 @@ bool get(const Context& context, RpcClient* client, const char* name, int* code,
       const double margin = 0.5 * grid.resolution;  // cells by their centres
       if (!ask_for(window(i * grid.resolution + margin, j * grid.resolution + margin,
                           width - 2.0 * margin),
-                   &part)) {
+                   &answer)) {
         return false;
       }
+      const std::optional<HeightMap> part = map_of(answer);
       if (!part) continue;
       const Grid& from = part->grid();
       for (int v = 0; v < from.rows; ++v) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/goto/live_ground.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -40,18 +41,45 @@ std::vector<Eigen::Vector3d> in_world(const GaitdFoothold& foothold) {
 // Of a map that is searched; of more, what lies around the robot.
 constexpr double kMostCells = 16e6;
 
-// `base` with what is known of `over`, which is centred on the robot, in its place.
-std::shared_ptr<const HeightMap> overlaid(const HeightMap& base, const HeightMap& over) {
-  terrain::Grid grid = base.grid();
+Eigen::AlignedBox2d extent_of(const terrain::Grid& grid) {
+  const Eigen::Vector2d size = grid.resolution * Eigen::Vector2d(grid.columns, grid.rows);
+  return {grid.origin, Eigen::Vector2d(grid.origin + size)};
+}
+
+// Without what is too uncertain to step on. Null stays null.
+std::shared_ptr<const HeightMap> certain(std::shared_ptr<const HeightMap> map) {
+  if (!map) return map;
+  const double unknown = terrain::MemoryRules{}.unknown;
+  std::shared_ptr<HeightMap> rest;
+  for (int j = 0; j < map->grid().rows; ++j) {
+    for (int i = 0; i < map->grid().columns; ++i) {
+      if (!map->known(i, j) || map->variance(i, j) < unknown * unknown) continue;
+      if (!rest) rest = std::make_shared<HeightMap>(*map);
+      rest->set(i, j, HeightMap::kUnknown);
+    }
+  }
+  if (rest) return rest;
+  return map;
+}
+
+// `base`, raised by `offset` (m), with what `over` says in its place, in the smaller cells of the
+// two; within `part` (m, W), if there is one.
+std::shared_ptr<const HeightMap> overlaid(const HeightMap& base, double offset,
+                                          const HeightMap& over,
+                                          const std::optional<Eigen::AlignedBox2d>& part) {
+  const bool finer = over.grid().resolution < base.grid().resolution;
+  terrain::Grid grid = finer ? over.grid() : base.grid();
   const double r = grid.resolution;
-  const Eigen::Vector2d reach =
-      over.grid().origin +
-      over.grid().resolution * Eigen::Vector2d(over.grid().columns, over.grid().rows);
-  Eigen::Vector2i low = grid.cell(over.grid().origin).cwiseMin(Eigen::Vector2i::Zero());
+  const Eigen::AlignedBox2d other = extent_of(finer ? base.grid() : over.grid());
+  Eigen::Vector2i low = grid.cell(other.min()).cwiseMin(Eigen::Vector2i::Zero());
   Eigen::Vector2i high =
-      grid.cell(reach).cwiseMax(Eigen::Vector2i(grid.columns - 1, grid.rows - 1));
+      grid.cell(other.max()).cwiseMax(Eigen::Vector2i(grid.columns - 1, grid.rows - 1));
+  if (part) {
+    low = low.cwiseMax(grid.cell(part->min()));
+    high = high.cwiseMin(grid.cell(part->max()));
+  }
   if ((high - low).cast<double>().prod() > kMostCells) {
-    const Eigen::Vector2i here = grid.cell(0.5 * (over.grid().origin + reach));
+    const Eigen::Vector2i here = grid.cell(extent_of(over.grid()).center());
     const auto half = Eigen::Vector2i::Constant(static_cast<int>(0.5 * std::sqrt(kMostCells)));
     low = low.cwiseMax(here - half);
     high = high.cwiseMin(here + half);
@@ -62,12 +90,13 @@ std::shared_ptr<const HeightMap> overlaid(const HeightMap& base, const HeightMap
   auto map = std::make_shared<HeightMap>(grid);
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
-      const Eigen::Vector2i c = over.grid().cell(grid.centre(i, j));
-      if (over.grid().contains(c.x(), c.y()) && over.known(c.x(), c.y())) {
-        map->set(i, j, over.height(c.x(), c.y()), over.variance(c.x(), c.y()));
-      } else if (base.grid().contains(i + low.x(), j + low.y())) {
-        map->set(i, j, base.height(i + low.x(), j + low.y()),
-                 base.variance(i + low.x(), j + low.y()));
+      const Eigen::Vector2i o = over.grid().cell(grid.centre(i, j));
+      const Eigen::Vector2i b = base.grid().cell(grid.centre(i, j));
+      if (over.grid().contains(o.x(), o.y()) &&
+          (over.known(o.x(), o.y()) || std::isinf(over.variance(o.x(), o.y())))) {
+        map->set(i, j, over.height(o.x(), o.y()), over.variance(o.x(), o.y()));
+      } else if (base.grid().contains(b.x(), b.y())) {
+        map->set(i, j, base.height(b.x(), b.y()) + offset, base.variance(b.x(), b.y()));
       }
     }
   }
@@ -78,9 +107,8 @@ std::shared_ptr<const HeightMap> overlaid(const HeightMap& base, const HeightMap
 
 LiveGround::LiveGround(const GaitdModel& model, std::shared_ptr<const HeightMap> base,
                        std::optional<Eye> eye)
-    : model_(model), base_(std::move(base)), eye_(std::move(eye)), kinematics_(model) {
+    : model_(model), base_(certain(std::move(base))), eye_(std::move(eye)), kinematics_(model) {
   if (eye_) sensor_.emplace(eye_->figures, model, eye_->seed);
-  known_.map = base_;
   memory_.move_to(Eigen::Vector2d::Zero());
 }
 
@@ -91,19 +119,42 @@ bool LiveGround::live() const {
 
 LiveGround::Known LiveGround::known() const {
   const std::scoped_lock lock(mutex_);
-  if (!told_ && !felt_ && !eye_) {
-    known_ = {base_, memory_.revision(), cleared_};
-  } else if (known_.revision != memory_.revision() || known_time_ != time_) {
-    // The time as well: what one asks for does not change what another one gets.
-    known_time_ = time_;
-    auto map = std::make_shared<const HeightMap>(memory_.map(time_));
-    known_ = {base_ && !eye_ ? overlaid(*base_, *map) : std::move(map), memory_.revision(),
-              cleared_};
-  }
-  return known_;
+  return made(&whole_, std::nullopt);
 }
 
-int LiveGround::put(const HeightMap& tile, bool forget) {
+LiveGround::Known LiveGround::known_towards(const std::optional<Eigen::Vector2d>& goal) const {
+  const std::scoped_lock lock(mutex_);
+  if (!told_ || !base_ || eye_) return made(&whole_, std::nullopt);
+  Eigen::AlignedBox2d part = extent_of(memory_.grid());
+  const Eigen::Vector2d half = 0.5 * part.sizes();
+  if (goal) part.extend(Eigen::AlignedBox2d(*goal - half, *goal + half));
+  return made(&planned_, part);
+}
+
+const LiveGround::Known& LiveGround::made(Made* last,
+                                          const std::optional<Eigen::AlignedBox2d>& part) const {
+  const bool changes = told_ || eye_;
+  const bool same_part =
+      part ? last->part && last->part->min() == part->min() && last->part->max() == part->max()
+           : !last->part;
+  // The time as well, where what is known grows old: what one asks for does not change what another
+  // one gets.
+  if (same_part && last->known.revision == memory_.revision() &&
+      (!changes || last->time == time_)) {
+    return last->known;
+  }
+  last->time = time_;
+  last->part = part;
+  last->known = {base_, memory_.revision(), cleared_};
+  if (changes || felt_) {
+    auto map = std::make_shared<const HeightMap>(memory_.map(time_));
+    last->known.map =
+        base_ && !eye_ ? overlaid(*base_, told_ ? offset_ : 0.0, *map, part) : std::move(map);
+  }
+  return last->known;
+}
+
+terrain::GroundMemory::Taken LiveGround::put(const HeightMap& tile, bool forget) {
   const std::scoped_lock lock(mutex_);
   told_ = true;
   return memory_.put(tile, forget, time_);
@@ -111,20 +162,22 @@ int LiveGround::put(const HeightMap& tile, bool forget) {
 
 void LiveGround::clear() {
   const std::scoped_lock lock(mutex_);
-  forget();
-}
-
-void LiveGround::forget() {
   told_ = felt_ = false;
   ++cleared_;
   memory_.clear();
 }
 
+void LiveGround::begin_anew() {
+  felt_ = false;
+  ++cleared_;
+  memory_.clear_found();
+}
+
 void LiveGround::look(const Sight& sight) {
   const std::scoped_lock lock(mutex_);
-  // What was told still holds; what was seen and felt was so from where the robot is no longer.
-  if (sight.anew && !told_) forget();
+  if (sight.anew) begin_anew();
   time_ = sight.time;
+  offset_ = sight.height_offset;
   memory_.move_to(sdk::view(sight.pelvis.position).head<2>());
   if (told_ || eye_) stand_on_soles(sight);
   if (told_ || eye_ || base_) feel(sight);

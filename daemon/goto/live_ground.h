@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -31,9 +32,8 @@ class LiveGround {
 
   /// What is seen from there, and where the robot stands.
   void look(const Sight& sight);
-  /// What another process knows: GroundMemory::put. How many cells were taken: the others are too
-  /// far from the robot.
-  int put(const terrain::HeightMap& tile, bool forget);
+  /// What another process knows: GroundMemory::put.
+  terrain::GroundMemory::Taken put(const terrain::HeightMap& tile, bool forget);
   /// Forgets everything but what was known from the beginning.
   void clear();
 
@@ -43,12 +43,23 @@ class LiveGround {
   struct Known {
     std::shared_ptr<const terrain::HeightMap> map;  ///< null: level ground
     std::uint64_t revision = 0;
-    int cleared = 0;  ///< how often clear() was called
+    int cleared = 0;  ///< how often all that was seen has been forgotten
   };
   Known known() const;
+  /// What to plan on: where a map that was known from the beginning changes all the time, as much
+  /// of it as is remembered around the robot, around `goal` (m, W), if there is one, and between.
+  Known known_towards(const std::optional<Eigen::Vector2d>& goal) const;
 
  private:
-  void forget();  // locked
+  // What was last asked for.
+  struct Made {
+    Known known;
+    double time = 0.0;  // s
+    std::optional<Eigen::AlignedBox2d> part;
+  };
+  const Known& made(Made* last, const std::optional<Eigen::AlignedBox2d>& part) const;
+  // What was told still holds; what was seen and felt was so from where the robot is no longer.
+  void begin_anew();
   void stand_on_soles(const Sight& sight);
   // Of feet that stand half in the air.
   void feel(const Sight& sight);
@@ -57,10 +68,10 @@ class LiveGround {
   const std::shared_ptr<const terrain::HeightMap> base_;
   mutable std::mutex mutex_;
   bool told_ = false, felt_ = false;
-  double time_ = 0.0;  // s, of the last sight
+  double time_ = 0.0;    // s, of the last sight
+  double offset_ = 0.0;  // m, of W above the frame of commands, which base_ is in; likewise
   terrain::GroundMemory memory_;
-  mutable Known known_;
-  mutable double known_time_ = 0.0;  // s
+  mutable Made whole_, planned_;
   int cleared_ = 0;
   // Of the simulated sensor.
   std::optional<Eye> eye_;

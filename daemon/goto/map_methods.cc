@@ -93,8 +93,8 @@ RpcResult put(const json& params, LiveGround* ground) {
   const bool forget = map.boolean("forget").value_or(false);
   map.finish();
   if (!issues.ok() || !tile) return RpcError{rpc_code::kInvalidParams, issues.error_text()};
-  const int taken = ground->put(*tile, forget);
-  return json{{"cells", taken}};
+  const terrain::GroundMemory::Taken taken = ground->put(*tile, forget);
+  return json{{"cells", taken.cells}, {"uncertain", taken.uncertain}, {"far", taken.far}};
 }
 
 // The cells whose centres are within [x, y, x, y], least first (m, W).
@@ -151,13 +151,18 @@ double scale_of(const HeightMap& map) {
 
 json map_json(const LiveGround::Known& known, double resolution) {
   json result = {{"revision", known.revision}};
-  if (!known.map || known.map->known_cells() == 0) return result;
+  if (!known.map) return result;
   const HeightMap& map = *known.map;
   const Grid& grid = map.grid();
   const double cells = static_cast<double>(grid.columns) * static_cast<double>(grid.rows);
   const double least = std::max(resolution / grid.resolution, std::sqrt(cells / kMapCells));
   const int by = std::max(1, static_cast<int>(std::ceil(least - 1e-9)));
   const int columns = (grid.columns + by - 1) / by, rows = (grid.rows + by - 1) / by;
+  result.update({{"columns", columns},
+                 {"rows", rows},
+                 {"resolution", by * grid.resolution},
+                 {"origin", {grid.origin.x(), grid.origin.y()}}});
+  if (map.known_cells() == 0) return result;
   const double scale = scale_of(map);
   std::vector<std::int16_t> heights(
       static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), kUnknown);
@@ -173,12 +178,7 @@ json map_json(const LiveGround::Known& known, double resolution) {
   }
   const std::string_view bytes(reinterpret_cast<const char*>(heights.data()),
                                heights.size() * sizeof(std::int16_t));
-  result.update({{"columns", columns},
-                 {"rows", rows},
-                 {"resolution", by * grid.resolution},
-                 {"origin", {grid.origin.x(), grid.origin.y()}},
-                 {"scale", scale},
-                 {"heights", base64(bytes)}});
+  result.update({{"scale", scale}, {"heights", base64(bytes)}});
   return result;
 }
 

@@ -16,13 +16,24 @@ namespace {
 
 // The control thread cannot wake anybody: requests are looked for.
 constexpr std::chrono::milliseconds kPoll{2};
-constexpr double kSamePlace = 0.02;   // m: a footstep is that one of the route
+constexpr double kSamePlace = 0.02;   // m, and
+constexpr double kSameYaw = 0.05;     // rad: a footstep is that one of the route
 constexpr double kEndsThere = 0.02;   // m, from the goal to a plan that ends there
 constexpr double kMuchBetter = 0.85;  // of the cost of the way that was begun
 
 void raise(double by, GaitdFootstep* step) {
   step->pose.position[2] += by;
   for (int i = 0; i < step->region_count; ++i) step->landing_region[i][2] += by;
+}
+
+bool same_place(const GaitdFootstep& a, const GaitdFootstep& b) {
+  const auto yaw = [](const GaitdFootstep& step) {
+    return sdk::yaw_of(sdk::quaternion(step.pose.orientation));
+  };
+  return a.side == b.side &&
+         std::hypot(a.pose.position[0] - b.pose.position[0],
+                    a.pose.position[1] - b.pose.position[1]) < kSamePlace &&
+         std::abs(std::remainder(yaw(a) - yaw(b), 2.0 * M_PI)) < kSameYaw;
 }
 
 // Whether the feet come to stand at the goal, and not beside a place that was not good yet.
@@ -92,8 +103,10 @@ void PlanService::answer_all(PlanPort* port) {
   for (const footsteps::Plan* plan = nullptr; port->next_retired(plan);) delete plan;
 }
 
-footsteps::FootstepPlanner& PlanService::planner() {
-  const LiveGround::Known known = parts_.ground->known();
+footsteps::FootstepPlanner& PlanService::planner(const PlanRequest& request) {
+  std::optional<Eigen::Vector2d> goal;
+  if (request.kind != PlanKind::kRefine) goal.emplace(request.goal.x, request.goal.y);
+  const LiveGround::Known known = parts_.ground->known_towards(goal);
   if (!planner_ || known.map != known_.map) {
     if (known.cleared != known_.cleared) ways_->clear();
     known_ = known;
@@ -124,10 +137,11 @@ double PlanService::above_map(const PlanRequest& request) const {
 }
 
 footsteps::Plan PlanService::answer(const PlanRequest& request, bool* unchanged) {
-  footsteps::FootstepPlanner& planner = this->planner();
+  footsteps::FootstepPlanner& planner = this->planner(request);
   const double bias = above_map(request);
   if (offered_ && offered_->first == request.taken) {
     route_ = std::move(offered_->second);
+    on_route_ = 0;
     offered_.reset();
   }
   PlanRequest on_map = request;
@@ -137,9 +151,10 @@ footsteps::Plan PlanService::answer(const PlanRequest& request, bool* unchanged)
   footsteps::Plan plan;
   switch (request.kind) {
     case PlanKind::kGoto:
-      exhausted_.clear();
       plan = planner.plan(on_map.start, on_map.goal, on_map.parameters);
-      if (plan.refusal.empty()) offered_ = {request.serial, plan};
+      if (!plan.refusal.empty()) break;  // what is under way goes on
+      exhausted_.clear();
+      offered_ = {request.serial, plan};
       break;
     case PlanKind::kRevise:
       on_map.goal.exhausted = exhausted_;
@@ -156,19 +171,22 @@ footsteps::Plan PlanService::answer(const PlanRequest& request, bool* unchanged)
   return plan;
 }
 
-// The footsteps of the route behind the one that is under way; nothing if that is none of them.
-std::optional<std::vector<GaitdFootstep>> PlanService::left_of_route(
-    const PlanRequest& request) const {
+// The footsteps of the route behind the one that is under way; nothing if that is none of them. Of
+// several at one place it is the nearest to the one before: routes come back to where they were.
+std::optional<std::vector<GaitdFootstep>> PlanService::left_of_route(const PlanRequest& request) {
   if (!request.start.under_way) return std::nullopt;
   const GaitdFootstep& now = *request.start.under_way;
   const auto& steps = route_.footsteps;
-  const auto at = std::find_if(steps.begin(), steps.end(), [&now](const GaitdFootstep& step) {
-    return step.side == now.side &&
-           std::hypot(step.pose.position[0] - now.pose.position[0],
-                      step.pose.position[1] - now.pose.position[1]) < kSamePlace;
-  });
-  if (at == steps.end()) return std::nullopt;
-  return std::vector<GaitdFootstep>(at + 1, steps.end());
+  const auto off = [this](std::ptrdiff_t i) { return std::abs(i - on_route_); };
+  const auto count = static_cast<std::ptrdiff_t>(steps.size());
+  std::ptrdiff_t at = count;
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    if (!same_place(steps[static_cast<std::size_t>(i)], now)) continue;
+    if (at == count || off(i) < off(at)) at = i;
+  }
+  if (at == count) return std::nullopt;
+  on_route_ = at;
+  return std::vector<GaitdFootstep>(steps.begin() + at + 1, steps.end());
 }
 
 // The same footsteps as long as they can be taken and lead to the goal. Else another way; and if
@@ -214,7 +232,9 @@ void PlanService::go_on(const PlanRequest& request, const footsteps::Plan& begun
   const bool better = plan->refusal.empty() && plan->partial <= on.partial &&
                       plan->cost < kMuchBetter * (begun.cost + on.cost);
   if (better) return;
+  const bool ends = on.footsteps.empty();
   on.footsteps.insert(on.footsteps.begin(), begun.footsteps.begin(), begun.footsteps.end());
+  if (!ends) on.footsteps[begun.footsteps.size() - 1].closing = 0;
   on.cost += begun.cost;
   *plan = std::move(on);
 }

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -40,12 +41,12 @@ class PlanService {
   void run();
   void answer_all(PlanPort* port);
   void look_around();
-  footsteps::FootstepPlanner& planner();
+  footsteps::FootstepPlanner& planner(const PlanRequest& request);
   double above_map(const PlanRequest& request) const;
   footsteps::Plan answer(const PlanRequest& request, bool* unchanged);
   footsteps::Plan revise(const PlanRequest& request, bool* unchanged);
   void go_on(const PlanRequest& request, const footsteps::Plan& begun, footsteps::Plan* plan) const;
-  std::optional<std::vector<GaitdFootstep>> left_of_route(const PlanRequest& request) const;
+  std::optional<std::vector<GaitdFootstep>> left_of_route(const PlanRequest& request);
 
   const Parts parts_;
   PlanPort port_, refinements_;
@@ -57,7 +58,8 @@ class PlanService {
   LiveGround::Known known_;
   std::unique_ptr<footsteps::FootstepPlanner> planner_;  // on known_
   const std::shared_ptr<footsteps::WayMemory> ways_ = std::make_shared<footsteps::WayMemory>();
-  footsteps::Plan route_;  // what is being walked: of the last goto, as it was revised
+  footsteps::Plan route_;        // what is being walked: of the last goto, as it was revised
+  std::ptrdiff_t on_route_ = 0;  // of its footsteps, the last that was found to be under way
   // The last plan that was made, by the serial of its request: it becomes the route when all of it
   // was taken. One that came too late, or was refused, never does.
   std::optional<std::pair<std::uint64_t, footsteps::Plan>> offered_;

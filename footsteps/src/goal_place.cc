@@ -24,6 +24,7 @@ GoalPlace find_goal_place(const StepMaker& steps, const Place& wanted, double ce
   goal.middle = wanted;
   const int reach = static_cast<int>(kReach / cell);
   double nearest = std::numeric_limits<double>::infinity();
+  bool unknown = false;
   for (int i = -reach; i <= reach; ++i) {
     for (int j = -reach; j <= reach; ++j) {
       const double distance = cell * std::hypot(i, j);
@@ -35,6 +36,8 @@ GoalPlace find_goal_place(const StepMaker& steps, const Place& wanted, double ce
       };
       const Foothold left = look(GAITD_LEFT), right = look(GAITD_RIGHT);
       const bool good = left.state == FootholdState::kGood && right.state == FootholdState::kGood;
+      unknown = unknown || left.state == FootholdState::kUnknown ||
+                right.state == FootholdState::kUnknown;
       if (i == 0 && j == 0) {
         goal.problem = left.state != FootholdState::kGood ? left.state : right.state;
       }
@@ -45,6 +48,7 @@ GoalPlace find_goal_place(const StepMaker& steps, const Place& wanted, double ce
       goal.found = true;
     }
   }
+  if (!goal.found && unknown) goal.problem = FootholdState::kUnknown;
   return goal;
 }
 

@@ -14,7 +14,8 @@ namespace gaitd::footsteps {
 struct GoalPlace {
   Place middle;  // of the feet
   std::array<Foothold, GAITD_MAX_FEET> footholds;
-  // Of what was asked for; kGood: both feet stand at `middle`.
+  // Where none was found: kUnknown if there may be one where the ground is not known, else of what
+  // was asked for.
   FootholdState problem = FootholdState::kGood;
   bool found = false;
 };

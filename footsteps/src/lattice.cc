@@ -372,6 +372,7 @@ class Lattice::Search {
 
 Plan Lattice::plan(const Start& start, const Goal& goal,
                    const walking::GaitParameters& parameters) {
+  steps_->set_level(start);
   Search search(*this, start, goal, parameters);
   Plan plan = search.run();
   if (plan.refusal.empty()) steps_->finish(start, parameters, &plan);

@@ -79,9 +79,9 @@ Plan MapPlanner::adapt(const Start& start, const std::vector<GaitdFootstep>& ahe
   return plan;
 }
 
-MapPlanner::Put MapPlanner::put_on_ground(const GaitdPose& stance, const GaitdPose& from,
-                                          const walking::GaitParameters& parameters,
-                                          GaitdFootstep* step) const {
+bool MapPlanner::put_on_ground(const GaitdPose& stance, const GaitdPose& from,
+                               const walking::GaitParameters& parameters,
+                               GaitdFootstep* step) const {
   const Place wanted = place_of(step->pose);
   const double c = std::cos(wanted.yaw), s = std::sin(wanted.yaw);
   const int reach = static_cast<int>(std::lround(kAside / kAsideStep));
@@ -99,7 +99,7 @@ MapPlanner::Put MapPlanner::put_on_ground(const GaitdPose& stance, const GaitdPo
                         wanted.yaw};
       if (region.size() > 2 && region.inside_distance({place.x, place.y}) < -1e-6) continue;
       const Foothold foothold = steps_->footholds().at(step->side, place, walking::kMaxStepTilt);
-      if (foothold.state == FootholdState::kUnknown && i == 0 && j == 0) return Put::kUnknown;
+      if (foothold.state == FootholdState::kUnknown && i == 0 && j == 0) return false;
       if (foothold.state != FootholdState::kGood || cost + foothold.cost >= least) continue;
       GaitdFootstep candidate = *step;
       candidate.pose = Footholds::pose_of(place, foothold);
@@ -108,9 +108,9 @@ MapPlanner::Put MapPlanner::put_on_ground(const GaitdPose& stance, const GaitdPo
       best = candidate;
     }
   }
-  if (!std::isfinite(least)) return Put::kNoPlace;
+  if (!std::isfinite(least)) return false;
   *step = best;
-  return Put::kDone;
+  return true;
 }
 
 std::vector<GaitdFootstep> MapPlanner::refine(const Start& start,
@@ -124,8 +124,7 @@ std::vector<GaitdFootstep> MapPlanner::refine(const Start& start,
     const GaitdFootstep before = step;
     const GaitdPose& stance = feet[other_side(step.side)];
     const GaitdPose& from = feet[step.side];
-    const Put put = put_on_ground(stance, from, parameters, &step);
-    if (put == Put::kDone) {
+    if (put_on_ground(stance, from, parameters, &step)) {
       raised = step.pose.position[2] - before.pose.position[2];
       // A foot that strikes something all the same goes as high as it was told to.
       static_cast<void>(steps_->raise_swing(stance, from, parameters, &step));
@@ -136,7 +135,7 @@ std::vector<GaitdFootstep> MapPlanner::refine(const Start& start,
       } else {
         steps_->footholds().add_landing_region(&step);
       }
-    } else if (put == Put::kUnknown) {
+    } else {  // level with those before, not where blind footsteps would be
       step.pose.position[2] += raised;
       raise_region(raised, &step);
     }

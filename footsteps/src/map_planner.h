@@ -28,10 +28,9 @@ class MapPlanner : public FootstepPlanner {
   std::shared_ptr<StepMaker> steps_;
 
  private:
-  // Onto the map below it or beside it; or nothing is known there, or no place near it is good.
-  enum class Put { kDone, kUnknown, kNoPlace };
-  Put put_on_ground(const GaitdPose& stance, const GaitdPose& from,
-                    const walking::GaitParameters& parameters, GaitdFootstep* step) const;
+  // Onto the map below it or beside it. False: nothing is known there, or no place near it is good.
+  bool put_on_ground(const GaitdPose& stance, const GaitdPose& from,
+                     const walking::GaitParameters& parameters, GaitdFootstep* step) const;
 };
 
 }  // namespace gaitd::footsteps

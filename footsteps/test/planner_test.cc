@@ -253,6 +253,31 @@ TEST(Lattice, ItSaysWhyThereIsNoWay) {
       << short_search;
 }
 
+TEST(Lattice, WithoutAMapTheGroundIsAsHighAsTheFeet) {
+  const auto planner = make_planner("lattice", atlas(), nullptr);
+  const auto gait = standing_gait(0, 0, 0, 0.4);
+  const Plan plan = planner->plan(start_of(*gait), {1, 0, 0}, gait->parameters());
+  ASSERT_EQ(plan.refusal, "");
+  EXPECT_EQ(refusal_of(gait.get(), plan), "");
+  expect_at(middle_of(plan), {1, 0, 0}, 1e-6);
+  for (const GaitdFootstep& step : plan.footsteps) EXPECT_NEAR(step.pose.position[2], 0.4, 1e-9);
+}
+
+// Of a goal where one foot would stand on rubble and the other where nothing is known.
+TEST(Lattice, AGoalOnUnknownGroundIsOneWhicheverFootItIsOf) {
+  for (const double side : {1.0, -1.0}) {
+    const auto map = field({-1, -1}, {4, 1}, [side](double x, double y) {
+      if (x < 2.0) return 0.0;
+      return side * y > 0.0 ? NAN : 0.03 * std::sin(50 * x) * std::sin(45 * y);
+    });
+    const auto planner = make_planner("lattice", atlas(), map, {.explore = true});
+    const auto gait = standing_gait(0, 0, 0);
+    const Plan plan = planner->plan(start_of(*gait), {3, 0, 0}, gait->parameters());
+    EXPECT_EQ(plan.refusal, "") << side;
+    EXPECT_TRUE(plan.partial) << side;
+  }
+}
+
 TEST(Lattice, AGoalOnAnEdgeIsTakenBesideIt) {
   const auto map = field({-1, -1}, {4, 1}, [](double x, double) { return x < 2.0 ? 0.0 : 0.15; });
   const auto planner = make_planner("lattice", atlas(), map);
@@ -287,6 +312,34 @@ TEST(Planners, AStepThatIsUnderWayComesFirst) {
       EXPECT_EQ(refusal_of(gait.get(), plan), "") << name;
     }
   }
+}
+
+// Of footsteps that know nothing of a platform the last one finds no place on it to stand.
+TEST(Planners, WhereNoPlaceIsGoodAFootstepIsAsHighAsTheOneBefore) {
+  const auto map = field({1, -1}, {5, 1}, [](double x, double y) {
+    if (x < 2.5) return 0.0;
+    return x < 3.0 ? 0.1 : 0.1 + 0.03 * std::sin(50 * x) * std::sin(45 * y);
+  });
+  const auto planner = make_planner("auto", atlas(), map);
+  const auto gait = standing_gait(2.25, 0, 0);
+  const Start start = start_of(*gait);
+  std::vector<GaitdFootstep> ahead;
+  ahead.reserve(3);
+  for (const double x : {2.7, 2.8, 3.2}) {
+    GaitdFootstep step{};
+    step.side = ahead.size() % 2 == 0 ? GAITD_LEFT : GAITD_RIGHT;
+    step.id = static_cast<std::uint32_t>(10 + ahead.size());
+    step.pose = start.feet[step.side];
+    step.pose.position[0] = x;
+    step.swing_duration = 0.8;
+    step.transfer_duration = 0.3;
+    step.swing_height = 0.12;
+    ahead.push_back(step);
+  }
+  const std::vector<GaitdFootstep> refined = planner->refine(start, ahead, gait->parameters());
+  ASSERT_EQ(refined.size(), 3U);
+  for (const GaitdFootstep& step : refined) EXPECT_NEAR(step.pose.position[2], 0.1, 0.005);
+  EXPECT_NEAR(refined[2].pose.position[0], 3.2, 1e-9) << "it stays where it was";
 }
 
 TEST(Planners, AutoGoesStraightWhereThatGoesAndSearchesWhereNot) {

@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <random>
+#include <utility>
+#include <vector>
 
 #include "footsteps/test/fields.h"
+#include "window.h"
 
 namespace gaitd::footsteps {
 namespace {
@@ -97,6 +103,34 @@ TEST(WayEstimate, AWallThatLeftTheMapIsStillInTheWay) {
   WayEstimate anew(end, kLevel, kUneven, &memory);
   anew.lead_to(goal);
   EXPECT_NEAR(anew.from(corner), forgetful.from(corner), 1e-9);
+}
+
+TEST(Window, TheBestAroundIsTheBestOfAllThatAreNear) {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> drawn(-6, 6);
+  for (const auto& [columns, rows] : {std::pair{23, 17}, {1, 9}, {9, 1}, {2, 40}}) {
+    const terrain::Grid grid{columns, rows, 0.02, {0.0, 0.0}};
+    std::vector<float> values(static_cast<std::size_t>(columns * rows));
+    for (float& value : values) {
+      const int height = drawn(random);
+      value = height < -3 ? -INFINITY : static_cast<float>(height);
+    }
+    for (const int around : {0, 1, 4, 50}) {
+      const std::vector<float> highest = best_around(grid, values, around, std::greater<>());
+      for (int j = 0; j < rows; ++j) {
+        for (int i = 0; i < columns; ++i) {
+          float expected = -INFINITY;
+          for (int v = std::max(0, j - around); v <= std::min(rows - 1, j + around); ++v) {
+            for (int u = std::max(0, i - around); u <= std::min(columns - 1, i + around); ++u) {
+              expected = std::max(expected, values[static_cast<std::size_t>(v * columns + u)]);
+            }
+          }
+          ASSERT_EQ(highest[static_cast<std::size_t>(j * columns + i)], expected)
+              << i << ' ' << j << " of " << columns << " x " << rows << ", " << around;
+        }
+      }
+    }
+  }
 }
 
 TEST(WayMemory, MovesWithTheRobotAndForgetsWhatIsFar) {

@@ -57,8 +57,11 @@ struct Writer {
   png_infop info;
 };
 
-std::string size_text(png_uint_32 width, png_uint_32 height) {
-  return std::to_string(width) + " x " + std::to_string(height);
+// "" or why an image of that size is none.
+std::string wrong_size(std::uint64_t width, std::uint64_t height) {
+  if (width >= 2 && height >= 2 && width * height <= kMaxPixels) return "";
+  return "expected at least 2 pixels either way and at most " + std::to_string(kMaxPixels) +
+         " of them, got " + std::to_string(width) + " x " + std::to_string(height);
 }
 
 bool read_header(Reader* reader, Failure* failure, std::FILE* file) {
@@ -127,10 +130,7 @@ std::string read_grey_png(const std::string& name, GreyImage* image) {
     return "expected one channel of grey with 16 bit, got " + std::to_string(channels) +
            (channels == 1 ? " channel of " : " channels of ") + std::to_string(bits) + " bit";
   }
-  if (width < 2 || height < 2 || width > kMaxImageSide || height > kMaxImageSide) {
-    return "expected 2 to " + std::to_string(kMaxImageSide) + " pixels either way, got " +
-           size_text(width, height);
-  }
+  if (std::string problem = wrong_size(width, height); !problem.empty()) return problem;
   image->width = static_cast<int>(width);
   image->height = static_cast<int>(height);
   image->pixels.assign(std::size_t{1} * width * height, 0);
@@ -139,6 +139,11 @@ std::string read_grey_png(const std::string& name, GreyImage* image) {
 }
 
 std::string write_grey_png(const GreyImage& image, const std::string& name) {
+  if (std::string problem = wrong_size(static_cast<std::uint64_t>(image.width),
+                                       static_cast<std::uint64_t>(image.height));
+      !problem.empty()) {
+    return problem;
+  }
   const File file(std::fopen(name.c_str(), "wb"));
   if (!file) return std::string("cannot be written: ") + std::strerror(errno);
   Failure failure;

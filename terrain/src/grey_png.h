@@ -15,7 +15,8 @@ struct GreyImage {
   std::vector<std::uint16_t> pixels;
 };
 
-inline constexpr int kMaxImageSide = 2048;
+// Of an image that is read or written: a little more than the largest map that plans are made on.
+inline constexpr std::uint64_t kMaxPixels = 4096 * 4096;
 
 // "" or what is wrong.
 std::string read_grey_png(const std::string& file, GreyImage* image);

@@ -46,6 +46,14 @@ void GroundMemory::clear() {
   ++revision_;
 }
 
+void GroundMemory::clear_found() {
+  for (Cell& cell : cells_) {
+    if (!cell.told) cell = {};
+    cell.doubts = 0;
+  }
+  ++revision_;
+}
+
 void GroundMemory::move_to(const Eigen::Vector2d& middle) {
   const double half = 0.5 * grid_.resolution * grid_.columns;
   const Eigen::Vector2d wanted = middle - Eigen::Vector2d::Constant(half);
@@ -71,6 +79,7 @@ void GroundMemory::move_to(const Eigen::Vector2d& middle) {
     }
   }
   grid_.origin = origin;
+  if (!cells_.empty()) ++revision_;
 }
 
 double GroundMemory::variance_at(const Cell& cell, double time) const {
@@ -183,36 +192,64 @@ void GroundMemory::sink(std::span<const Eigen::Vector3d> outline,
     cell.height = static_cast<float>(height - rules_.hollow);
     cell.variance = 0.0F;
     cell.seen = static_cast<float>(time);
+    cell.told = false;
     cell.doubts = kFelt;
     learned = true;
   });
   if (learned) ++revision_;
 }
 
-int GroundMemory::put(const HeightMap& tile, bool forget, double time) {
+std::optional<GroundMemory::Cell> GroundMemory::told_by(const HeightMap& tile,
+                                                        const Eigen::Vector2i& low,
+                                                        const Eigen::Vector2i& high, bool forget,
+                                                        double time) const {
+  Cell unknown;
+  unknown.told = true;
+  Cell highest = unknown;
+  highest.seen = static_cast<float>(time);
+  for (int v = low.y(); v <= high.y(); ++v) {
+    for (int u = low.x(); u <= high.x(); ++u) {
+      if (!tile.known(u, v)) {
+        if (forget) return unknown;
+        continue;
+      }
+      if (!(tile.variance(u, v) < rules_.unknown * rules_.unknown)) return unknown;
+      const auto height = static_cast<float>(tile.height(u, v));
+      if (highest.variance >= 0.0F && height <= highest.height) continue;
+      highest.height = height;
+      highest.variance = static_cast<float>(tile.variance(u, v));
+    }
+  }
+  return highest.variance >= 0.0F ? std::optional(highest) : std::nullopt;
+}
+
+GroundMemory::Taken GroundMemory::put(const HeightMap& tile, bool forget, double time) {
   prepare();
-  int taken = 0;
   const Grid& from = tile.grid();
+  Taken taken;
+  for (int j = 0; j < from.rows; ++j) {
+    for (int i = 0; i < from.columns; ++i) {
+      if (!tile.known(i, j)) continue;
+      const Eigen::Vector2i c = grid_.cell(from.centre(i, j));
+      const bool certain = tile.variance(i, j) < rules_.unknown * rules_.unknown;
+      ++(!grid_.contains(c.x(), c.y()) ? taken.far : certain ? taken.cells : taken.uncertain);
+    }
+  }
   const Eigen::Vector2d size = from.resolution * Eigen::Vector2d(from.columns, from.rows);
   const Eigen::Vector2i first = grid_.cell(from.origin).cwiseMax(Eigen::Vector2i::Zero());
   const Eigen::Vector2i last =
       grid_.cell(from.origin + size).cwiseMin(Eigen::Vector2i(grid_.columns - 1, grid_.rows - 1));
+  // From the middle of a cell to the furthest cells of the tile whose middles are in it; larger
+  // ones have none in it, and count where they are.
+  const Eigen::Vector2d reach =
+      Eigen::Vector2d::Constant(std::max(0.0, 0.5 * (grid_.resolution - from.resolution)));
   for (int j = first.y(); j <= last.y(); ++j) {
     for (int i = first.x(); i <= last.x(); ++i) {
-      const Eigen::Vector2i c = from.cell(grid_.centre(i, j));
-      if (!from.contains(c.x(), c.y())) continue;
-      const bool known =
-          tile.known(c.x(), c.y()) && tile.variance(c.x(), c.y()) < rules_.unknown * rules_.unknown;
-      if (!known && !forget) continue;
-      Cell cell;
-      if (known) {
-        ++taken;
-        cell.height = static_cast<float>(tile.height(c.x(), c.y()));
-        cell.variance = static_cast<float>(tile.variance(c.x(), c.y()));
-        cell.seen = static_cast<float>(time);
-        cell.told = true;
-      }
-      at(i, j) = cell;
+      const Eigen::Vector2i low = from.cell(grid_.centre(i, j) - reach);
+      const Eigen::Vector2i high = from.cell(grid_.centre(i, j) + reach);
+      // What a tile fills in part is left to the one that fills it.
+      if (!from.contains(low.x(), low.y()) || !from.contains(high.x(), high.y())) continue;
+      if (const auto cell = told_by(tile, low, high, forget, time)) at(i, j) = *cell;
     }
   }
   ++revision_;
@@ -224,7 +261,7 @@ HeightMap GroundMemory::map(double time) const {
   const double worst = rules_.unknown * rules_.unknown;
   for (int j = 0; !cells_.empty() && j < grid_.rows; ++j) {
     for (int i = 0; i < grid_.columns; ++i) {
-      if (at(i, j).variance < 0.0F) continue;
+      if (at(i, j).variance < 0.0F && !at(i, j).told) continue;
       first = first.cwiseMin(Eigen::Vector2i(i, j));
       last = last.cwiseMax(Eigen::Vector2i(i, j));
     }
@@ -239,7 +276,10 @@ HeightMap GroundMemory::map(double time) const {
     for (int i = 0; i < part.columns; ++i) {
       if (!grid_.contains(i + first.x(), j + first.y())) continue;
       const Cell& cell = at(i + first.x(), j + first.y());
-      if (cell.variance < 0.0F) continue;
+      if (cell.variance < 0.0F) {
+        if (cell.told) raw.set(i, j, HeightMap::kUnknown, INFINITY);
+        continue;
+      }
       const double variance = variance_at(cell, time);
       if (variance < worst) raw.set(i, j, static_cast<double>(cell.height), variance);
     }

@@ -71,7 +71,9 @@ TEST(GroundMemory, TheSquareMovesInWholeCellsAndForgetsWhatLeavesIt) {
   memory.move_to({0.0, 0.0});
   memory.see(scan(0.1, 1), kCommon, 0.0);
   const double before = memory.map(0.0).surface({0.3, 0.1})->height;
+  const std::uint64_t revision = memory.revision();
   memory.move_to({1.0, 0.013});
+  EXPECT_GT(memory.revision(), revision);
   const HeightMap map = memory.map(0.0);
   ASSERT_TRUE(map.surface({0.3, 0.1}));
   EXPECT_NEAR(map.surface({0.3, 0.1})->height, before, 1e-9);
@@ -142,6 +144,74 @@ TEST(GroundMemory, ATileTakesThePlaceOfWhatWasKnown) {
   EXPECT_EQ(memory.map(1.0).known_cells(), 0);
 }
 
+// Of cells of `resolution` (m) over a square of `size` (m) with a corner at `corner` (m).
+HeightMap tile_of(double corner, double size, double resolution, double height, double variance) {
+  const int count = static_cast<int>(std::lround(size / resolution));
+  HeightMap tile(Grid{count, count, resolution, {corner, corner}});
+  for (int j = 0; j < count; ++j) {
+    for (int i = 0; i < count; ++i) tile.set(i, j, height, variance);
+  }
+  return tile;
+}
+
+TEST(GroundMemory, WhatIsToldAndUncertainIsNotKnown) {
+  GroundMemory memory;
+  memory.move_to({0.0, 0.0});
+  for (unsigned k = 0; k < 5; ++k) memory.see(scan(0.0, k), kCommon, 0.1 * k);
+  ASSERT_TRUE(memory.map(0.5).surface({0.0, 0.0}));
+  const GroundMemory::Taken taken =
+      memory.put(tile_of(-0.2, 0.4, 0.02, 0.0, 0.04 * 0.04), false, 0.5);
+  EXPECT_EQ(taken.cells, 0);
+  EXPECT_EQ(taken.uncertain, 400);
+  EXPECT_EQ(taken.far, 0);
+  const HeightMap map = memory.map(0.5);
+  const Eigen::Vector2i c = map.grid().cell({0.01, 0.01});
+  EXPECT_FALSE(map.known(c.x(), c.y()));
+  EXPECT_TRUE(std::isinf(map.variance(c.x(), c.y()))) << "somebody says so";
+  EXPECT_EQ(memory.put(tile_of(5.8, 0.4, 0.02, 0.0, 1e-6), false, 0.5).far, 300);
+}
+
+TEST(GroundMemory, OfSmallerCellsTheHighestCounts) {
+  GroundMemory memory;
+  memory.move_to({0.0, 0.0});
+  HeightMap tile = tile_of(0.0, 0.4, 0.005, 0.0, 1e-6);
+  for (int j = 0; j < 80; ++j) tile.set(40, j, 0.5, 1e-6);  // none is in the middle of a larger one
+  for (int j = 0; j < 80; ++j) {
+    for (int i = 60; i < 80; i += 4) tile.set(i, j, HeightMap::kUnknown);
+  }
+  EXPECT_EQ(memory.put(tile, false, 0.0).cells, 80 * 75);
+  const auto height = [&memory](double x) {
+    const HeightMap map = memory.map(0.0);
+    const Eigen::Vector2i c = map.grid().cell({x, 0.25});
+    return map.height(c.x(), c.y());
+  };
+  EXPECT_NEAR(height(0.19), 0.0, 1e-6);
+  EXPECT_NEAR(height(0.21), 0.5, 1e-6);
+  EXPECT_NEAR(height(0.23), 0.0, 1e-6);
+  EXPECT_NEAR(height(0.35), 0.0, 1e-6) << "unknown cells say nothing";
+  memory.put(tile, true, 0.0);
+  EXPECT_TRUE(std::isnan(height(0.35)));
+  EXPECT_NEAR(height(0.21), 0.5, 1e-6);
+  // A cell that a tile fills in part is left as it is.
+  memory.put(tile_of(0.205, 0.1, 0.005, 0.0, 1e-6), false, 0.0);
+  EXPECT_NEAR(height(0.21), 0.5, 1e-6);
+  EXPECT_NEAR(height(0.23), 0.0, 1e-6);
+}
+
+TEST(GroundMemory, WhatWasFoundIsForgottenApartFromWhatWasTold) {
+  GroundMemory memory;
+  memory.move_to({0.0, 0.0});
+  for (unsigned k = 0; k < 5; ++k) memory.see(scan(0.0, k), kCommon, 0.1 * k);
+  memory.put(tile_of(0.2, 0.2, 0.02, 0.5, 1e-6), false, 0.5);
+  const std::uint64_t revision = memory.revision();
+  memory.clear_found();
+  EXPECT_GT(memory.revision(), revision);
+  const HeightMap map = memory.map(0.5);
+  EXPECT_FALSE(map.surface({-0.3, 0.0}));
+  ASSERT_TRUE(map.surface({0.3, 0.3}));
+  EXPECT_NEAR(map.surface({0.3, 0.3})->height, 0.5, 1e-6);
+}
+
 TEST(GroundMemory, WhatWasToldHolds) {
   GroundMemory memory;
   memory.move_to({0.0, 0.0});
@@ -149,7 +219,7 @@ TEST(GroundMemory, WhatWasToldHolds) {
   for (int j = 0; j < 10; ++j) {
     for (int i = 0; i < 10; ++i) tile.set(i, j, 0.5, i < 5 ? 1e-6 : 1e-3);
   }
-  EXPECT_EQ(memory.put(tile, false, 1.0), 50) << "the others are too uncertain to step on";
+  EXPECT_EQ(memory.put(tile, false, 1.0).cells, 50) << "the others are too uncertain to step on";
   EXPECT_NEAR(memory.map(1e5).surface({0.04, 0.1})->height, 0.5, 1e-6);
   for (unsigned k = 0; k < 3; ++k) memory.see(scan(0.5, k), kCommon, 2.0 + k);
   EXPECT_NEAR(memory.map(1e5).surface({0.04, 0.1})->height, 0.5, 0.02) << "and was seen";
@@ -165,7 +235,8 @@ TEST(GroundMemory, PointsThatAreNoNumbersOrFarAwayAreLeftOut) {
       {{NAN, 0, 0}, 1e-4}, {{0, 0, INFINITY}, 1e-4}, {{1e9, 0, 0}, 1e-4}, {{0, 0, 0}, 0.0}};
   memory.see(wrong, kCommon, 0.0);
   EXPECT_EQ(memory.map(0.0).known_cells(), 0);
-  EXPECT_EQ(memory.revision(), 0U);
+  EXPECT_EQ(memory.revision(), GroundMemory().revision());
+  EXPECT_NE(memory.revision(), 0U) << "who asks has seen none yet";
 }
 
 }  // namespace

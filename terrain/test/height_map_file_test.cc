@@ -124,7 +124,8 @@ TEST_F(HeightMapFile, ImagesThatDoNotFitAreRefused) {
             std::string::npos);
   image("thin.png", PNG_FORMAT_LINEAR_Y, 1, 3);
   EXPECT_NE(error_of(write("b.yaml", std::string("image: thin.png") + rest))
-                .find("expected 2 to 2048 pixels either way, got 1 x 3"),
+                .find("expected at least 2 pixels either way and at most 16777216 of them, got 1 x "
+                      "3"),
             std::string::npos);
   image("good.png", PNG_FORMAT_LINEAR_Y, 4, 3);
   image("other.png", PNG_FORMAT_LINEAR_Y, 5, 3);
@@ -151,6 +152,21 @@ TEST_F(HeightMapFile, WhatIsNoYamlMapIsRefused) {
   EXPECT_NE(error_of(write("bad.yaml", "a: [1\n")).find("expected YAML"), std::string::npos);
   EXPECT_NE(error_of(write("large.yaml", std::string(70000, '#'))).find("at most 64 KiB"),
             std::string::npos);
+}
+
+// What is written can be read: a long map can, and what is too large is refused when it is written.
+TEST_F(HeightMapFile, WhatIsTooLargeIsNotWritten) {
+  HeightMap strip(Grid{5000, 2, 0.02, {0.0, 0.0}});
+  strip.set(4999, 1, 0.5);
+  ASSERT_EQ(save_height_map(strip, file("strip.yaml")), "");
+  std::string error;
+  const auto again = load_height_map(file("strip.yaml"), &error);
+  ASSERT_TRUE(again) << error;
+  EXPECT_EQ(again->known_cells(), 1);
+  const HeightMap large(Grid{4097, 4097, 0.02, {0.0, 0.0}});
+  EXPECT_NE(save_height_map(large, file("large.yaml")).find("at most 16777216 of them"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(file("large.yaml")));
 }
 
 TEST_F(HeightMapFile, WhatCannotBeWrittenSaysSo) {

@@ -36,11 +36,20 @@ class GotoTaskTest : public ::testing::Test {
     EXPECT_EQ(lent_, 0) << "plans that were not given back";
   }
 
-  void begin() {
+  void begin(double x = 2.0) {
     Command command;
     command.type = CommandType::kGoto;
-    command.target = {2.0, 0.5, 1.0, true};
+    command.target = {x, 0.5, 1.0, true};
     task_.begin(command, true, gait_);
+  }
+  // Until the gait machine has all of the plan of the last begin().
+  void take(const footsteps::Plan& plan) {
+    answer(plan);
+    ASSERT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kFootsteps);
+    ASSERT_FALSE(
+        gait_.footsteps(out_->footsteps.data(), out_->footstep_count, out_->replace).refused());
+    task_.taken();
+    ASSERT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kDone);
   }
   // The planner's side: takes the next request and answers it.
   PlanRequest answer(const footsteps::Plan& plan) {
@@ -102,6 +111,56 @@ TEST_F(GotoTaskTest, ARefusalIsToldAndNothingIsWalked) {
   EXPECT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kRefused);
   EXPECT_STREQ(task_.message(), "no way");
   EXPECT_FALSE(task_.active());
+}
+
+// On a map that grows.
+TEST_F(GotoTaskTest, OneThatIsRefusedLeavesTheOneUnderWay) {
+  port_.set_live(true);
+  const footsteps::Plan plan = walk_of(4);
+  begin(2.0);
+  take(plan);
+  EXPECT_FALSE(task_.settle(true)) << "there was none before";
+  begin(7.0);
+  EXPECT_FALSE(task_.answered());
+  EXPECT_TRUE(task_.replaces());
+  footsteps::Plan none;
+  none.refusal = "no way";
+  EXPECT_EQ(answer(none).goal.x, 7.0);
+  ASSERT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kRefused);
+  EXPECT_STREQ(task_.message(), "no way");
+  EXPECT_EQ(task_.command().target.x, 7.0) << "who asked for it is told";
+  EXPECT_FALSE(task_.settle(false)) << "nothing is given up";
+  EXPECT_TRUE(task_.active());
+  EXPECT_TRUE(task_.answered());
+  EXPECT_EQ(task_.command().target.x, 2.0);
+  for (int i = 0; i < 4000 && gait_.state().phase != GAITD_PHASE_SWING; ++i) tick();
+  EXPECT_EQ(task_.step(gait_, out_.get()), GotoTask::Step::kWait);
+  PlanRequest request;
+  ASSERT_TRUE(port_.next_request(request)) << "its way is looked at again at every step";
+  EXPECT_EQ(request.kind, PlanKind::kRevise);
+  EXPECT_EQ(request.goal.x, 2.0);
+}
+
+TEST_F(GotoTaskTest, OneThatIsAcceptedTakesThePlaceOfTheOneUnderWay) {
+  port_.set_live(true);
+  const footsteps::Plan plan = walk_of(4);
+  begin(2.0);
+  take(plan);
+  task_.settle(true);
+  begin(7.0);
+  begin(8.0);
+  EXPECT_TRUE(task_.replaces()) << "the one between was never under way";
+  PlanRequest between;
+  ASSERT_TRUE(port_.next_request(between));
+  take(plan);
+  EXPECT_TRUE(task_.settle(true)) << "the first one is given up";
+  EXPECT_FALSE(task_.replaces());
+  EXPECT_EQ(task_.command().target.x, 8.0);
+  begin(9.0);
+  task_.drop();
+  EXPECT_FALSE(task_.active());
+  EXPECT_FALSE(task_.settle(false));
+  EXPECT_FALSE(task_.active()) << "nor does the one before come back";
 }
 
 TEST_F(GotoTaskTest, NoFootstepsMeanThatItStandsThere) {

@@ -97,7 +97,7 @@ TEST(LiveGround, WithoutEyesItIsWhatWasKnownUntilSomebodyTellsMore) {
   for (int j = 0; j < 20; ++j) {
     for (int i = 0; i < 20; ++i) tile.set(i, j, 0.5);
   }
-  EXPECT_EQ(ground.put(tile, false), 400);
+  EXPECT_EQ(ground.put(tile, false).cells, 400);
   EXPECT_TRUE(ground.live());
   const auto map = ground.known().map;
   EXPECT_NEAR(map->surface({0.5, 0.2})->height, 0.3, 1e-6);
@@ -105,6 +105,89 @@ TEST(LiveGround, WithoutEyesItIsWhatWasKnownUntilSomebodyTellsMore) {
   EXPECT_NEAR(map->surface({1.2, 0.2})->height, 0.5, 1e-6);
   ground.clear();
   EXPECT_NEAR(ground.known().map->surface({0.95, 0.2})->height, 0.3, 1e-6);
+}
+
+std::shared_ptr<terrain::HeightMap> level_map(const terrain::Grid& grid, double height,
+                                              double variance = 0.0) {
+  auto map = std::make_shared<terrain::HeightMap>(grid);
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) map->set(i, j, height, variance);
+  }
+  return map;
+}
+
+TEST(LiveGround, WhatIsTooUncertainIsUnknownWhoeverSaysIt) {
+  constexpr double kUncertain = 0.04 * 0.04;  // m^2
+  const auto base = level_map({200, 200, 0.02, {-2.0, -2.0}}, 0.3);
+  for (int j = 0; j < 200; ++j) base->set(0, j, 0.3, kUncertain);
+  LiveGround ground(atlas(), base, std::nullopt);
+  EXPECT_EQ(ground.known().map->known_cells(), 199 * 200);
+  const auto tile = level_map({20, 20, 0.02, {0.4, 0.0}}, 0.3, kUncertain);
+  EXPECT_EQ(ground.put(*tile, false).uncertain, 400);
+  EXPECT_FALSE(ground.known().map->surface({0.6, 0.2})) << "and not what was known before";
+  EXPECT_TRUE(ground.known().map->surface({0.2, 0.2}));
+}
+
+TEST(LiveGround, OnACoarseMapTilesAreAsFineAsTheyAre) {
+  LiveGround ground(atlas(), level_map({40, 40, 0.1, {-2.0, -2.0}}, 0.3), std::nullopt);
+  const auto tile = level_map({20, 20, 0.02, {0.4, 0.0}}, 0.3, 1e-6);
+  for (int j = 0; j < 20; ++j) tile->set(3, j, 0.5, 1e-6);
+  ground.put(*tile, false);
+  const auto map = ground.known().map;
+  EXPECT_EQ(map->grid().resolution, 0.02);
+  EXPECT_NEAR(map->surface({0.47, 0.2})->height, 0.5, 1e-6);
+  EXPECT_NEAR(map->surface({0.43, 0.2})->height, 0.3, 1e-6);
+  EXPECT_NEAR(map->surface({-1.5, 1.5})->height, 0.3, 1e-6);
+}
+
+// A map of before is in the frame of commands; what is told later is in the world.
+TEST(LiveGround, AMapOfBeforeIsWhereTheRobotBelievesItOnceSomebodyTells) {
+  LiveGround ground(atlas(), level_map({200, 200, 0.02, {-2.0, -2.0}}, 0.0), std::nullopt);
+  Sight sight = standing(0.1, 0.0, 0.05);
+  sight.height_offset = 0.05;
+  ground.look(sight);
+  EXPECT_NEAR(ground.known().map->surface({1.0, 1.0})->height, 0.0, 1e-6);
+  ground.put(*level_map({20, 20, 0.02, {0.4, 0.0}}, 0.05, 1e-6), false);
+  ground.look(sight);
+  const auto map = ground.known().map;
+  for (const Eigen::Vector2d& p : {Eigen::Vector2d(1.0, 1.0), Eigen::Vector2d(0.6, 0.2),
+                                   Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.4, 0.2)}) {
+    EXPECT_NEAR(map->surface(p)->height, 0.05, 0.002) << p.transpose();
+  }
+}
+
+TEST(LiveGround, OfALargeMapThatChangesPlansGetThePartAroundTheRobotAndItsGoal) {
+  const auto base = level_map({2000, 200, 0.02, {-20.0, -2.0}}, 0.0);
+  LiveGround ground(atlas(), base, std::nullopt);
+  EXPECT_EQ(ground.known_towards(std::nullopt).map, base) << "it does not change";
+  ground.put(*level_map({20, 20, 0.02, {0.4, 0.0}}, 0.05, 1e-6), false);
+  EXPECT_TRUE(ground.known().map->surface({-19.0, 0.0}));
+  const auto here = ground.known_towards(std::nullopt).map;
+  EXPECT_NEAR(here->surface({0.6, 0.2})->height, 0.05, 1e-6);
+  EXPECT_TRUE(here->surface({-5.9, 0.0}));
+  EXPECT_FALSE(here->surface({-6.1, 0.0}));
+  EXPECT_FALSE(here->surface({6.1, 0.0}));
+  const auto there = ground.known_towards(Eigen::Vector2d(10.0, 0.0)).map;
+  EXPECT_TRUE(there->surface({-5.9, 0.0}));
+  EXPECT_TRUE(there->surface({15.9, 0.0}));
+  EXPECT_FALSE(there->surface({16.1, 0.0}));
+  EXPECT_EQ(ground.known_towards(Eigen::Vector2d(10.0, 0.0)).map, there) << "nothing is new";
+}
+
+TEST(LiveGround, WhenTheSimulationBeginsAnewOnlyWhatWasToldHolds) {
+  LiveGround ground(atlas(), nullptr, eye_on_a_step("lidar"));
+  for (int k = 0; k < 15; ++k) ground.look(standing(0.1 * k));
+  ground.put(*level_map({20, 20, 0.02, {-3.0, -3.0}}, 0.2, 1e-6), false);
+  ASSERT_TRUE(ground.known().map->surface({0.6, 0.0}));
+  const int cleared = ground.known().cleared;
+  Sight sight = standing(0.1);
+  sight.anew = true;
+  sight.has_truth = false;  // it sees nothing yet
+  ground.look(sight);
+  const LiveGround::Known known = ground.known();
+  EXPECT_GT(known.cleared, cleared) << "nor are the ways remembered";
+  EXPECT_FALSE(known.map->surface({0.6, 0.0}));
+  EXPECT_NEAR(known.map->surface({-2.8, -2.8})->height, 0.2, 1e-6);
 }
 
 // The left foot hangs over an edge behind the middle of its sole, which no map shows.
@@ -201,8 +284,43 @@ TEST_F(MapMethods, WhatIsPutIsWhatOneGets) {
   const json part = std::get<json>(call("map.get", {{"window", {0.521, 0.001, 0.539, 0.019}}}));
   EXPECT_EQ(part["columns"], 1);
   EXPECT_NEAR(part["origin"][0], 0.52, 1e-9);
+  const json hole = std::get<json>(call("map.get", {{"window", {0.541, 0.001, 0.559, 0.019}}}));
+  EXPECT_FALSE(hole.contains("heights")) << "nothing is known there";
+  EXPECT_EQ(hole["resolution"], map["resolution"]);
+  EXPECT_EQ(hole["columns"], 1);
   call("map.clear", json());
   EXPECT_FALSE(std::get<json>(call("map.get", json::object())).contains("heights"));
+}
+
+TEST_F(MapMethods, OfWhatIsPutItIsSaidWhatBecameOfIt) {
+  json some = tile();
+  some["variances"] = floats({0.0F, 1e-2F, 0.0F, 0.0F, 0.0F, 0.0F});
+  EXPECT_EQ(std::get<json>(call("map.put", some)),
+            json({{"cells", 4}, {"uncertain", 1}, {"far", 0}}));
+  json away = tile();
+  away["origin"] = {5.98, 0.0};
+  EXPECT_EQ(std::get<json>(call("map.put", away)),
+            json({{"cells", 2}, {"uncertain", 0}, {"far", 3}}));
+  json fine = tile();
+  fine["resolution"] = 0.01;
+  EXPECT_EQ(std::get<json>(call("map.put", fine))["cells"], 5) << "in cells of the tile";
+}
+
+// A map that never changes is sent once.
+TEST(MapMethodsOfAKnownMap, WhatIsStillTheSameIsNotSentAgain) {
+  LiveGround ground(atlas(), level_map({50, 50, 0.02, {0.0, 0.0}}, 0.1), std::nullopt);
+  Methods methods;
+  add_map_methods(&methods, &ground);
+  const auto get = [&methods](const json& since) {
+    json answer;
+    Caller caller;
+    (*methods.find("map.get"))({{"since", since}}, caller,
+                               [&answer](RpcResult r) { answer = std::get<json>(std::move(r)); });
+    return answer;
+  };
+  const json first = get(0);
+  ASSERT_TRUE(first.contains("heights"));
+  EXPECT_FALSE(get(first["revision"]).contains("heights"));
 }
 
 TEST_F(MapMethods, GroundFarAboveTheOriginKeepsItsHeight) {

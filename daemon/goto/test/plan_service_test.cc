@@ -143,6 +143,76 @@ TEST(PlanService, BeyondTheMapAPlanLeadsToItsEnd) {
   service.port().retire(answer.plan);
 }
 
+// All of `route` was taken, and its footstep `at` swings.
+PlanRequest under_way(PlanRequest request, const std::vector<GaitdFootstep>& route,
+                      std::size_t at) {
+  request.kind = PlanKind::kRevise;
+  request.taken = request.serial++;
+  for (std::size_t k = 0; k <= at; ++k) request.start.feet[route[k].side] = route[k].pose;
+  request.start.under_way = route[at];
+  request.start.first_side = walking::other_side(route[at].side);
+  return request;
+}
+
+void level_tile(LiveGround* ground, const terrain::Grid& grid, double height) {
+  terrain::HeightMap tile(grid);
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) tile.set(i, j, height, 1e-6);
+  }
+  ground->put(tile, false);
+}
+
+// A way that ended where the map did goes on: its last footstep is none that closes any more.
+TEST(PlanService, OnlyTheLastFootstepOfAWayCloses) {
+  const auto ground = ground_with_block(10.0, 0.0);
+  PlanService service({&atlas(), ground, "auto", {}});
+  service.start();
+  const PlanRequest request = request_to(5.0, 1);
+  ASSERT_TRUE(service.port().request(request));
+  const PlanAnswer first = wait_for_answer(&service.port());
+  ASSERT_TRUE(first.plan->partial);
+  const std::vector<GaitdFootstep> route = first.plan->footsteps;
+  service.port().retire(first.plan);
+  level_tile(ground.get(), {140, 150, 0.02, {3.0, -1.5}}, 0.0);
+  ASSERT_TRUE(service.port().request(under_way(request, route, 0)));
+  const PlanAnswer on = wait_for_answer(&service.port());
+  ASSERT_EQ(on.plan->refusal, "");
+  EXPECT_FALSE(on.plan->partial);
+  ASSERT_GT(on.plan->footsteps.size(), route.size());
+  for (std::size_t k = 0; k + 1 < on.plan->footsteps.size(); ++k) {
+    EXPECT_EQ(on.plan->footsteps[k].closing, 0) << k;
+  }
+  EXPECT_EQ(on.plan->footsteps.back().closing, 1);
+  service.port().retire(on.plan);
+}
+
+// A foot that turns on the spot comes down twice within 2 cm: at its end nothing is left, whatever
+// the ground does.
+TEST(PlanService, AFootstepOfTheRouteIsKnownByItsHeadingToo) {
+  const auto ground = ground_with_block(10.0, 0.0);
+  PlanService service({&atlas(), ground, "turn_walk_turn", {}});
+  service.start();
+  PlanRequest request = request_to(0.0, 1);
+  const GaitdPose middle =
+      walking::middle_pose(request.start.feet[GAITD_LEFT], request.start.feet[GAITD_RIGHT]);
+  request.goal = {middle.position[0], middle.position[1], 0.3505};
+  ASSERT_TRUE(service.port().request(request));
+  const PlanAnswer first = wait_for_answer(&service.port());
+  ASSERT_EQ(first.plan->refusal, "");
+  const std::vector<GaitdFootstep> route = first.plan->footsteps;
+  service.port().retire(first.plan);
+  ASSERT_EQ(route.size(), 3U);
+  ASSERT_EQ(route[0].side, route[2].side);
+  ASSERT_LT(std::hypot(route[0].pose.position[0] - route[2].pose.position[0],
+                       route[0].pose.position[1] - route[2].pose.position[1]),
+            0.02);
+  level_tile(ground.get(), {200, 150, 0.02, {-1.0, -1.5}}, 0.01);
+  ASSERT_TRUE(service.port().request(under_way(request, route, 2)));
+  const PlanAnswer end = wait_for_answer(&service.port());
+  EXPECT_TRUE(end.unchanged);
+  service.port().retire(end.plan);
+}
+
 // Another footstep of `request`, of one side, to `x` (m, W); its id counts from 10.
 GaitdFootstep& step_ahead(PlanRequest* request, int side, double x) {
   const auto id = static_cast<std::uint32_t>(10 + request->ahead_count);

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,8 +38,10 @@ class GroundMemory {
  public:
   explicit GroundMemory(const MemoryRules& rules = {});
 
-  // Goes up whenever something was learned.
+  // Goes up whenever something was learned, or has left the square; never 0.
   std::uint64_t revision() const { return revision_; }
+  // The square as it lies now, all of it.
+  const Grid& grid() const { return grid_; }
   const MemoryRules& rules() const { return rules_; }
 
   // The robot is at `middle` (m, W). The first call decides where cells begin.
@@ -58,15 +61,25 @@ class GroundMemory {
   void sink(std::span<const Eigen::Vector3d> outline, std::span<const Eigen::Vector3d> bears,
             double time);
 
-  // What another process knows: its known cells take the place of what is there, cell by cell of
-  // this map, and stay as certain as they are. Where `forget`, its unknown ones do as well. How
-  // many cells became known; those that are too uncertain to step on are not.
-  int put(const HeightMap& tile, bool forget, double time);
+  // Of the cells of a tile that have a height, by their middles.
+  struct Taken {
+    int cells = 0;      // that count now
+    int uncertain = 0;  // too uncertain to step on: nothing is known there any more
+    int far = 0;        // beside the square
+  };
+  // What another process knows: it takes the place of what is there, cell by cell of this map, and
+  // stays as certain as it is. Cells of the tile that are smaller count where they fill one of this
+  // map, as the highest of them, and as unknown if one is too uncertain to step on. Where `forget`,
+  // unknown ones do so as well; else they say nothing.
+  Taken put(const HeightMap& tile, bool forget, double time);
 
   void clear();
+  // All but what another process has put.
+  void clear_found();
 
   // The part of the square in which something is known, as it is at `time`: holes of a cell or two
-  // between heights that agree are closed, and noise is averaged, not across edges.
+  // between heights that agree are closed, and noise is averaged, not across edges. The variance of
+  // an unknown cell is infinite if another process has put that nothing is known there.
   HeightMap map(double time) const;
 
  private:
@@ -91,12 +104,15 @@ class GroundMemory {
   template <class Visit>
   void visit(std::span<const Eigen::Vector3d> outline, const Visit& visit);
   void learn(Cell* cell, double height, double variance, double time) const;
+  // What the cells of `tile` from `low` to `high` say; nothing: they say nothing.
+  std::optional<Cell> told_by(const HeightMap& tile, const Eigen::Vector2i& low,
+                              const Eigen::Vector2i& high, bool forget, double time) const;
 
   MemoryRules rules_;
   Grid grid_;
   bool placed_ = false;
   std::vector<Cell> cells_;
-  std::uint64_t revision_ = 0;
+  std::uint64_t revision_ = 1;
   // Of one scan.
   std::vector<float> highest_, sum_, weight_;
   std::vector<int> touched_;
