@@ -10,8 +10,9 @@
 
 namespace gaitd::cli {
 
-/// While it lives longer than two seconds, and standard error is a terminal, that says what takes
-/// so long, and for how long; nothing of it stays. For work that does not know how far it is.
+/// While it lives longer than two seconds, and standard error is a terminal that knows escape
+/// codes, that says what takes so long, and for how long; nothing of it stays. For work that does
+/// not know how far it is.
 class Waiting {
  public:
   explicit Waiting(std::string what);
@@ -29,8 +30,8 @@ class Waiting {
   std::thread thread_;
 };
 
-/// run_scenario, the simulated time on the standard error of a terminal; elsewhere one line says
-/// what runs: `what`.
+/// run_scenario, the simulated time on the standard error of such a terminal; elsewhere one line
+/// says what runs: `what`.
 RunReport run_with_progress(const std::string& scenario, const RunOptions& options,
                             const std::string& what);
 

@@ -165,6 +165,10 @@ daemon::RpcResult result_of(const json& answer) {
       message.is_string() ? message.get<std::string>() : error.dump(), error.value("data", json())};
 }
 
+daemon::RpcError no_answer() {
+  return broken("gaitd did not answer in time; it may hang, see its log or journalctl -u gaitd");
+}
+
 std::unique_ptr<RpcClient> RpcClient::connect(const Destination& destination, std::string* error) {
   std::string path;
   const int fd = connect_to_gaitd(destination, &path, error);
@@ -175,10 +179,14 @@ RpcClient::~RpcClient() { close(fd_); }
 
 daemon::RpcResult RpcClient::call(const std::string& method, const json& params,
                                   std::chrono::milliseconds timeout) {
-  const int id = next_id_++;
-  json request = {{"jsonrpc", "2.0"}, {"id", id}, {"method", method}};
-  if (!params.is_null()) request["params"] = params;
   const Clock::time_point deadline = Clock::now() + timeout;
+  if (auto problem = ask(method, params)) return *std::move(problem);
+  return answer(deadline).value_or(no_answer());
+}
+
+std::optional<daemon::RpcError> RpcClient::ask(const std::string& method, const json& params) {
+  json request = {{"jsonrpc", "2.0"}, {"id", ++id_}, {"method", method}};
+  if (!params.is_null()) request["params"] = params;
   if (!send_all(request.dump(-1, ' ', false, json::error_handler_t::replace) + "\n")) {
     // The daemon may have said why before it closed.
     if (errno == EAGAIN) {
@@ -188,18 +196,23 @@ daemon::RpcResult RpcClient::call(const std::string& method, const json& params,
       return broken(std::string("cannot send to gaitd: ") + std::strerror(errno));
     }
   }
+  return std::nullopt;
+}
+
+std::optional<daemon::RpcResult> RpcClient::answer(Clock::time_point deadline) {
   for (;;) {
     daemon::RpcError problem;
-    const std::string line = read_line(deadline, &problem);
+    const std::optional<std::string> line = read_line(deadline, &problem);
     if (!problem.message.empty()) return problem;
-    const json answer = json::parse(line, nullptr, false);
-    if (answer.is_object() && answer.contains("method")) continue;  // of a subscription
-    if (!is_answer(answer)) {
+    if (!line) return std::nullopt;
+    const json said = json::parse(*line, nullptr, false);
+    if (said.is_object() && said.contains("method")) continue;  // of a subscription
+    if (!is_answer(said)) {
       return broken("what listens on the socket does not speak the protocol of gaitd");
     }
-    const json answered = answer.value("id", json());
-    if (answered != id && !answered.is_null()) continue;  // to a request that we gave up
-    return result_of(answer);
+    const json answered = said.value("id", json());
+    if (answered != id_ && !answered.is_null()) continue;  // to a request that we gave up
+    return result_of(said);
   }
 }
 
@@ -214,7 +227,8 @@ bool RpcClient::send_all(const std::string& bytes) {
   return true;
 }
 
-std::string RpcClient::read_line(Clock::time_point deadline, daemon::RpcError* problem) {
+std::optional<std::string> RpcClient::read_line(Clock::time_point deadline,
+                                                daemon::RpcError* problem) {
   for (std::size_t searched = 0;;) {
     const std::size_t end = buffer_.find('\n', searched);
     if (end != std::string::npos) {
@@ -228,17 +242,13 @@ std::string RpcClient::read_line(Clock::time_point deadline, daemon::RpcError* p
     pollfd entry{fd_, POLLIN, 0};
     const int ready = left <= 0 ? 0 : poll(&entry, 1, static_cast<int>(left));
     if (ready < 0 && errno == EINTR) continue;
-    if (ready <= 0) {
-      *problem =
-          broken("gaitd did not answer in time; it may hang, see its log or journalctl -u gaitd");
-      return "";
-    }
+    if (ready <= 0) return std::nullopt;
     char chunk[65536];
     const ssize_t n = recv(fd_, chunk, sizeof(chunk), 0);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) {
       *problem = {kConnectionLost, kGone, nullptr};
-      return "";
+      return std::nullopt;
     }
     buffer_.append(chunk, static_cast<std::size_t>(n));
   }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,6 +40,9 @@ int connect_to_gaitd(const Destination& destination, std::string* reached, std::
 bool is_answer(const nlohmann::json& line);
 daemon::RpcResult result_of(const nlohmann::json& answer);
 
+/// What is said of a gaitd that keeps silent.
+daemon::RpcError no_answer();
+
 /// A blocking connection to gaitd, one request at a time.
 class RpcClient {
  public:
@@ -55,15 +59,21 @@ class RpcClient {
   daemon::RpcResult call(const std::string& method, const nlohmann::json& params,
                          std::chrono::milliseconds timeout = std::chrono::seconds(10));
 
+  /// The two parts of a call, for who has something else to do meanwhile. ask() gives what went
+  /// wrong, answer() nothing until there is one.
+  std::optional<daemon::RpcError> ask(const std::string& method, const nlohmann::json& params);
+  std::optional<daemon::RpcResult> answer(std::chrono::steady_clock::time_point deadline);
+
  private:
   RpcClient(int fd, std::string path) : fd_(fd), path_(std::move(path)) {}
   bool send_all(const std::string& bytes);
-  // The next line, or empty with what went wrong in `problem`.
-  std::string read_line(std::chrono::steady_clock::time_point deadline, daemon::RpcError* problem);
+  // The next line; nothing after the deadline, or with what went wrong in `problem`.
+  std::optional<std::string> read_line(std::chrono::steady_clock::time_point deadline,
+                                       daemon::RpcError* problem);
 
   int fd_;
   std::string path_;
-  int next_id_ = 1;
+  int id_ = 0;  // of the last request
   std::string buffer_;
 };
 

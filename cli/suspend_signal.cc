@@ -29,7 +29,10 @@ bool SuspendSignal::requested() { return suspend_requested != 0; }
 
 void SuspendSignal::suspend() {
   suspend_requested = 0;
-  raise(SIGSTOP);
+  // Not SIGSTOP: that also stops whoever has no shell that could let him go on, as under `ssh -t`.
+  handle_signal(SIGTSTP, SIG_DFL);
+  raise(SIGTSTP);
+  handle_signal(SIGTSTP, request_suspend);
 }
 
 }  // namespace gaitd::cli

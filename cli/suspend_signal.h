@@ -15,7 +15,7 @@ class SuspendSignal {
   SuspendSignal& operator=(const SuspendSignal&) = delete;
 
   static bool requested();
-  /// Stops this process; returns when it goes on.
+  /// Stops this process; returns when it goes on. At once where no shell could let it go on.
   static void suspend();
 };
 

@@ -20,6 +20,7 @@
 #include "cli/rpc_client.h"
 #include "cli/status_view.h"
 #include "cli/stop_signals.h"
+#include "cli/teleop/console.h"
 #include "cli/terminal.h"
 #include "daemon/server/socket_path.h"
 
@@ -28,6 +29,11 @@ namespace {
 
 using nlohmann::json;
 using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+constexpr milliseconds kWatchRound{200};       // until keys and signals are looked at
+constexpr milliseconds kWatchSilent{1000};     // then the user is told
+constexpr milliseconds kWatchPatience{10000};  // with a gaitd that hangs
 
 struct WatchOptions {
   double interval = 0.2;  // s
@@ -39,21 +45,33 @@ struct WatchOptions {
 class Output {
  public:
   Output(bool json, bool once) : json_(json) {
-    if (!json && !once && isatty(STDOUT_FILENO) != 0) screen_.emplace();
+    if (!json && !once && isatty(STDOUT_FILENO) != 0 && !teleop::is_dumb()) {
+      screen_.emplace();
+    }
   }
 
   // False if nobody takes them any more.
   bool show(const json& status) {
     if (screen_) {
-      std::vector<std::string> lines = status_screen(status);
-      lines.push_back("");
-      lines.push_back("q or Ctrl-C ends it");
-      return screen_->draw(lines);
+      lines_ = status_screen(status);
+      lines_.emplace_back();
+      lines_.emplace_back("q or Ctrl-C ends it");
+      return screen_->draw(lines_);
     }
     std::cout << (json_ ? status.dump(-1, ' ', false, json::error_handler_t::replace)
                         : status_line(status))
               << std::endl;
     return static_cast<bool>(std::cout);
+  }
+  // Above the last status, which is old. Not between the lines of a script.
+  bool show_silence(milliseconds silent) {
+    if (!screen_) return true;
+    std::vector<std::string> lines = {"gaitd has not answered for " +
+                                          std::to_string(silent.count() / 1000) +
+                                          " s: what stands below is old",
+                                      ""};
+    lines.insert(lines.end(), lines_.begin(), lines_.end());
+    return screen_->draw(lines);
   }
   // While there is no daemon. Not between the lines of a script.
   bool show_waiting(const std::string& why) {
@@ -72,7 +90,21 @@ class Output {
  private:
   bool json_;
   std::optional<Screen> screen_;
+  std::vector<std::string> lines_;  // on it
 };
+
+// Of the daemon, or what went wrong; `patient` with one that hangs. Nothing if the user is done.
+std::optional<daemon::RpcResult> ask_status(RpcClient* client, bool patient, Output* output) {
+  if (auto problem = client->ask("status", nullptr)) return *std::move(problem);
+  const Clock::time_point asked = Clock::now();
+  for (;;) {
+    if (auto answer = client->answer(Clock::now() + kWatchRound)) return answer;
+    const auto silent = std::chrono::duration_cast<milliseconds>(Clock::now() - asked);
+    if (!patient && silent > kWatchPatience) return no_answer();
+    if (silent > kWatchSilent && !output->show_silence(silent)) return std::nullopt;
+    if (!output->wait(milliseconds(20))) return std::nullopt;
+  }
+}
 
 int watch(const Context& context, const WatchOptions& options) {
   const StopSignals signals;
@@ -89,13 +121,14 @@ int watch(const Context& context, const WatchOptions& options) {
       if (!output.show_waiting(error)) return kDone;
       continue;
     }
-    const daemon::RpcResult result = client->call("status", nullptr);
-    if (const json* status = std::get_if<json>(&result)) {
+    const auto result = ask_status(client.get(), options.reconnect, &output);
+    if (!result) return kDone;
+    if (const json* status = std::get_if<json>(&*result)) {
       if (!output.show(*status) || options.once) return kDone;
       continue;
     }
     if (StopSignals::requested()) return kDone;
-    const auto& problem = std::get<daemon::RpcError>(result);
+    const auto& problem = std::get<daemon::RpcError>(*result);
     const bool gone =
         problem.code == kConnectionLost || problem.code == daemon::rpc_code::kStopping;
     if (gone && options.reconnect) {
@@ -121,8 +154,9 @@ void add_watch_command(CLI::App* app, Context* context) {
       ->check(CLI::Range(0.02, 3600.0))
       ->type_name("S")
       ->capture_default_str();
-  command->add_flag("--reconnect", options->reconnect,
-                    "Wait for a daemon if there is none, and for the next when it ends");
+  command->add_flag(
+      "--reconnect", options->reconnect,
+      "Wait for a daemon if there is none or it hangs, and for the next when it ends");
   command->callback([context, options] {
     context->action = [context, options] { return watch(*context, *options); };
   });

@@ -8,7 +8,7 @@
 namespace gaitd::cli {
 
 /// Adds `watch`, which shows the status of the daemon again and again: a table that stays in place
-/// on a terminal, a line each time otherwise.
+/// on a terminal that can do so, a line each time otherwise.
 void add_watch_command(CLI::App* app, Context* context);
 
 }  // namespace gaitd::cli

@@ -21,6 +21,8 @@ constexpr std::chrono::seconds kDiagnostics{1};
 constexpr std::chrono::seconds kTroubleShown{5};
 constexpr std::chrono::milliseconds kEstopAgain{300};  // between two tries
 constexpr std::chrono::seconds kEstopPatience{10};     // of all of them
+constexpr std::chrono::seconds kEstopAnswer{1};        // until the first connection is given up
+constexpr const char* kNoAnswer = "gaitd does not answer";
 
 // Two that drive at a time are told apart by it.
 std::int64_t new_session() {
@@ -153,7 +155,9 @@ void Bridge::on_twist(const void* message) {
 void Bridge::on_estop() {
   drive_.hold("the robot was stopped by /e_stop");
   if (estop_until_ && Clock::now() < *estop_until_) return;
-  estop_until_ = Clock::now() + kEstopPatience;
+  estop_heard_ = Clock::now();
+  estop_until_ = estop_heard_ + kEstopPatience;
+  estop_answer_ = kEstopAnswer;
   estop_told_ = false;
   spdlog::warn("e-stop: asked for on {}/e_stop", options_.name_space);
   ask_estop();
@@ -162,6 +166,7 @@ void Bridge::on_estop() {
 // Until gaitd has taken it: whoever publishes once does not ask again.
 void Bridge::ask_estop() {
   estop_relay_->call("estop", nullptr, [this](const json& answer) {
+    estop_heard_ = Clock::now();
     estop_error_ = member(answer.value("error", json()), "message");
     if (!estop_error_.empty()) {
       if (!std::exchange(estop_told_, true)) {
@@ -175,8 +180,20 @@ void Bridge::ask_estop() {
   });
   estop_timer_.expires_after(kEstopAgain);
   estop_timer_.async_wait([this](boost::system::error_code error) {
-    if (!error && estop_until_ && Clock::now() < *estop_until_) ask_estop();
+    if (!error && estop_until_) look_at_estop(Clock::now());
   });
+}
+
+// Where nobody answers, what was asked is answered here, and asked again on another connection.
+void Bridge::look_at_estop(Clock::time_point now) {
+  const bool over = now >= *estop_until_;
+  if (over || now - estop_heard_ > estop_answer_) {
+    estop_relay_->reconnect(kNoAnswer);
+    estop_answer_ *= 2;  // a long way has its answers too
+  }
+  if (!over) return ask_estop();
+  estop_until_.reset();
+  spdlog::critical("e-stop: given up, the robot may not have stopped; use its own e-stop");
 }
 
 void Bridge::drive_tick() {

@@ -50,6 +50,7 @@ class Bridge {
   void on_estop();
   void drive_tick();
   void ask_estop();
+  void look_at_estop(std::chrono::steady_clock::time_point now);
   void look_at_drive();
   void diagnose();
   Diagnosis diagnose_connection() const;
@@ -76,6 +77,8 @@ class Bridge {
   std::string trouble_;  // of the velocity, last told
   std::optional<std::chrono::steady_clock::time_point> trouble_at_;
   std::optional<std::chrono::steady_clock::time_point> estop_until_;  // it is asked for
+  std::chrono::steady_clock::time_point estop_heard_;                 // the last answer to it
+  std::chrono::seconds estop_answer_{};                               // how long one is waited for
   bool estop_told_ = false;                                           // that it did not arrive
   std::string estop_error_;
 };

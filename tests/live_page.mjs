@@ -168,6 +168,13 @@ check(!/as it should be/.test(await text('#status')) || /standing/.test(await te
 server.silent = 0;
 await until('the alert stays', async () => !/has not answered/.test(await text('#alerts')));
 
+// Nor is what a slow connection brings a robot of now.
+server.slow = true;
+await shows('#alerts', /slow connection: all that is shown may be \d+\.\d s old/);
+check(await page.evaluate(() => document.body.classList.contains('away')), 'an old picture looks like a new one');
+server.slow = false;
+await until('the alert of a slow connection stays', async () => !/slow connection/.test(await text('#alerts')));
+
 // Who drags a link pushes it; elsewhere the camera turns.
 const scene = await page.locator('#scene').boundingBox();
 const drag = async (x, y) => {
@@ -272,6 +279,12 @@ await page.locator('#walk').focus();
 await page.keyboard.press('Space');
 await until('space does not stop', () => server.calls('stop').length === 1);
 check(!server.calls('walk').length, 'space presses the button that has the focus');
+await page.locator('#steps').focus();  // also a number
+await page.keyboard.press('Space');
+await until('space does not stop in a field of numbers', () => server.calls('stop').length === 2);
+await page.locator('#filter').focus();
+await page.keyboard.press('Space');
+check((await page.locator('#filter').inputValue()).includes(' '), 'nobody can write a space');
 server.hangs = true;
 await page.locator('#arm').click();
 await page.locator('#filter').focus();
@@ -302,12 +315,16 @@ for (const id of ['arm', 'walk', 'stop', 'sim-reset', 'record']) {
   check(await watcher.locator(`#${id}`).isDisabled(), `who watches may ${id}`);
   check(await watcher.locator(`#${id}`).getAttribute('title'), `${id} does not say why it cannot be used`);
 }
+await shows('#viewers', /2 watch/);
 server.forget();
+await watcher.keyboard.press('Space');
+await watcher.locator('#toasts', {hasText: 'stop: watching only'}).waitFor();
 await watcher.keyboard.press('KeyW');
 await watcher.keyboard.press('Escape');
 await until('who watches cannot stop the robot', () => server.calls('estop').length > 0);
 check(!server.calls('drive').length, 'who watches drives');
 await watcher.context().close();
+await until('who has gone watches', async () => await text('#viewers') === '');
 server.role = 'administer';
 
 // The wrong token.

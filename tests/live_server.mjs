@@ -34,7 +34,7 @@ function unframed(bytes) {
 export class LiveServer {
   // `robot`: the message of that type; `row(time)`: values of its signals.
   constructor(page, token, robot, row) {
-    Object.assign(this, {page, token, robot, row, role: 'administer', away: false, hangs: false, silent: 0,
+    Object.assign(this, {page, token, robot, row, role: 'administer', away: false, hangs: false, silent: 0, slow: false,
                          answer: () => ({accepted: true, tick: 1, note: null}), asked: []});
     this.status = {state: 'standing', mode: 'walk-bent', faults: [], phase: 'stand', layers: []};
     this.map = {revision: 0};
@@ -69,15 +69,16 @@ export class LiveServer {
     socket.write('HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n' +
                  `Sec-WebSocket-Accept: ${key}\r\nSec-WebSocket-Protocol: gaitd.v1\r\n\r\n`);
     this.viewers.add(socket);
-    socket.on('close', () => this.viewers.delete(socket));
+    socket.on('close', () => this.viewers.delete(socket) && this.sendViewers());
     let rest = Buffer.alloc(0);
     socket.on('data', (bytes) => {
       let texts;
       [texts, rest] = unframed(Buffer.concat([rest, bytes]));
       for (const text of texts) this.take(socket, JSON.parse(text));
     });
-    this.send({type: 'hello', role: this.role, version: 'test', viewers: this.viewers.size}, [socket]);
+    this.send({type: 'hello', role: this.role, version: 'test'}, [socket]);
     this.sendRobot([socket]);
+    this.sendViewers();
   }
 
   send(message, to = this.viewers) {
@@ -88,6 +89,8 @@ export class LiveServer {
     this.send(this.away ? {type: 'robot', connected: false, reason: 'the socket is gone'} :
         {type: 'robot', connected: true, ...this.robot}, to);
   }
+
+  sendViewers() { this.send({type: 'viewers', viewers: this.viewers.size}); }
 
   sendFrame() {
     if (this.away) return;
@@ -115,6 +118,7 @@ export class LiveServer {
   drop() { for (const socket of this.viewers) socket.destroy(); }
 
   take(socket, request) {
+    if (request.type === 'seen' && !this.slow) this.send(request, [socket]);
     if (!request.method) return;
     if (request.method === 'map.get') {  // asked for again and again, whatever the test does
       const {since = 0} = request.params ?? {}, {revision} = this.map;

@@ -39,6 +39,15 @@ awk -v ticks=$(($(ticks) - begin)) -v hertz="$(getconf CLK_TCK)" -v began="$bega
 grep -q 'e-stop: gaitd has taken it' ros2.txt || fail_with "the e-stop was not told"
 (($(grep -c 'cmd_vel: a velocity was refused' ros2.txt) == 1)) || fail_with "the NaN was not told once"
 
+# Nobody answers an e-stop, and then somebody does.
+taken=$(grep -c 'e-stop: gaitd has taken it' ros2.txt)
+kill -STOP "$daemon"
+"$look" "$ROS_DOMAIN_ID" /robots/one silent || fail_with "an e-stop without an answer"
+grep -q 'the robot may not have stopped: gaitd does not answer' ros2.txt || fail_with "the log does not tell of it"
+kill -CONT "$daemon"
+taken_again() { (($(grep -c 'e-stop: gaitd has taken it' ros2.txt) > taken)); }
+wait_until taken_again || fail_with "the e-stop is not asked for until somebody answers"
+
 # gaitd goes and comes back.
 kill -KILL "$daemon"
 wait "$daemon" 2>/dev/null || true

@@ -18,6 +18,12 @@ gaitctl --json watch --interval 0.02 | head -n 2 >"$scratch/json"
 (($(grep -c '^{.*"state":"standing".*}$' "$scratch/json") == 2)) || fail "not one object per line"
 expect 2 gaitctl watch --interval 0 2>/dev/null
 
+# A terminal that knows no escape codes: lines too.
+expect 0 script -qefc "TERM=dumb timeout --foreground --preserve-status 2 gaitctl watch" "$scratch/dumb" \
+  </dev/null >/dev/null
+grep -q 'standing.*ICP error' "$scratch/dumb" || fail "nothing on a dumb terminal: $(cat "$scratch/dumb")"
+if grep -q $'\e' "$scratch/dumb"; then fail "escape sequences on a dumb terminal"; fi
+
 # start_watch NAME ARGUMENTS...: on a terminal of $rows x $columns, its output in $scratch/NAME.
 rows=12 columns=60
 start_watch() {
@@ -27,7 +33,7 @@ start_watch() {
   {
     code=0
     script -qefc "stty rows $rows cols $columns; echo \$\$ >$scratch/pid; \
-      exec gaitctl watch --interval 0.02 $*" "$scratch/$name" </dev/null >/dev/null || code=$?
+      exec env TERM=xterm gaitctl watch --interval 0.02 $*" "$scratch/$name" </dev/null >/dev/null || code=$?
     echo "$code" >"$scratch/$name.code"
   } &
   wait_until grep -qsF "ICP error" "$scratch/$name" || fail "watch shows nothing on a terminal: $(cat "$scratch/$name" 2>/dev/null)"
@@ -47,6 +53,15 @@ for signal in INT TERM; do
   kill -"$signal" "$(cat "$scratch/pid")"
   ends "$signal" 0
 done
+# Ctrl-Z where no shell could let it go on: it goes on by itself.
+start_watch orphan
+kill -TSTP "$(cat "$scratch/pid")"
+wait_until grep -qaF "$leave" "$scratch/orphan" || fail "Ctrl-Z does not leave the terminal"
+shown=$(wc -c <"$scratch/orphan")
+goes_on() { (($(wc -c <"$scratch/orphan") > shown + 1000)); }
+wait_until goes_on || fail "Ctrl-Z stops it for ever"
+kill -INT "$(cat "$scratch/pid")"
+ends orphan 0
 # Redrawn in place: cleared once, then only overwritten; no line is longer than the window.
 (($(grep -aoF $'\e[2J' "$scratch/INT" | wc -l) == 1)) || fail "the screen is cleared again and again"
 widest=$(sed 's/\x1b\[[0-9;]*H/\n/g; s/\x1b\[[?0-9;]*[a-zA-Z]//g' "$scratch/INT" | tr -d '\r' |
@@ -78,6 +93,14 @@ stop_daemon
 start_daemon --log "$scratch/log.mcap"
 wait_for state standing 20
 rows=12 columns=60
+
+# A gaitd that hangs is said to, and does not keep anybody from ending it.
+start_watch silent --reconnect
+kill -STOP "$daemon"
+wait_until grep -qa 'has not answered for [1-9]' "$scratch/silent" || fail "old figures look like new ones"
+kill -INT "$(cat "$scratch/pid")"
+ends silent 0
+kill -CONT "$daemon"
 
 # When gaitd ends.
 start_watch gone

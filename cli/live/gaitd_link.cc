@@ -55,7 +55,8 @@ void GaitdLink::write() {
                              if (error) return self->end();
                              self->output_bytes_ -= size;
                              self->output_.pop_front();
-                             if (!self->output_.empty()) self->write();
+                             if (!self->output_.empty()) return self->write();
+                             if (self->finishing_) self->close();
                            });
 }
 
@@ -70,6 +71,13 @@ void GaitdLink::close() {
   on_line_ = nullptr;
   error_code ignored;
   socket_.close(ignored);
+}
+
+void GaitdLink::finish() {
+  if (output_.empty()) return close();
+  on_end_ = nullptr;
+  on_line_ = nullptr;
+  finishing_ = true;
 }
 
 void GaitdConnector::connect(daemon::Role role, Done done) {

@@ -23,11 +23,14 @@ class GaitdLink : public std::enable_shared_from_this<GaitdLink> {
   using OnEnd = std::function<void()>;
 
   GaitdLink(boost::asio::io_context* io, int fd) : socket_(*io, Protocol(), fd) {}
-  /// `on_end` is called once, when gaitd or the network ends it; never after close().
+  /// `on_end` is called once, when gaitd or the network ends it; never after close() or
+  /// finish().
   void start(OnLine on_line, OnEnd on_end);
   /// Newline added. A gaitd that reads nothing any more ends the link.
   void send(std::string line);
   void close();
+  /// Closes it once all that was sent is written.
+  void finish();
 
  private:
   using Protocol = boost::asio::local::stream_protocol;
@@ -42,6 +45,7 @@ class GaitdLink : public std::enable_shared_from_this<GaitdLink> {
   std::string input_;
   std::deque<std::string> output_;
   std::size_t output_bytes_ = 0;
+  bool finishing_ = false;
 };
 
 /// Makes links, on a thread of its own: to be let in can take seconds.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/live/rpc_relay.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "daemon/server/rpc.h"
@@ -44,16 +45,17 @@ void RpcRelay::call(const std::string& method, const json& params, Done done) {
     return done(std::move(answer));
   }
   // Whatever waits, a stop is a stop.
-  if (asked_.size() >= kAsked && method != "estop") {
+  const bool stops = method == "estop";
+  if (asked_.size() >= kAsked && !stops) {
     return done(error_answer(daemon::rpc_code::kBusy, "busy: too many requests of this page wait"));
   }
   const std::uint64_t id = next_++;
   json request = {{"jsonrpc", "2.0"}, {"id", id}, {"method", method}};
   if (!params.is_null()) request["params"] = params;
-  asked_.emplace(id, std::move(done));
+  asked_.emplace(id, Asked{std::move(done), stops});
   std::string line = request.dump(-1, ' ', false, json::error_handler_t::replace);
   if (link_) return link_->send(std::move(line));
-  waiting_.push_back(std::move(line));
+  waiting_.push_back({std::move(line), stops});
   connect();
 }
 
@@ -72,11 +74,11 @@ void RpcRelay::connect() {
 
 void RpcRelay::on_link(std::shared_ptr<GaitdLink> link, const std::string& error) {
   connecting_ = false;
-  if (ended_) {
-    if (link) link->close();
-    return;
-  }
   if (!link) return fail_all(error);
+  if (ended_) {
+    for (Line& line : std::exchange(waiting_, {})) link->send(std::move(line.text));
+    return link->finish();
+  }
   link_ = std::move(link);
   const std::weak_ptr<RpcRelay> weak = weak_from_this();
   link_->start(
@@ -89,8 +91,8 @@ void RpcRelay::on_link(std::shared_ptr<GaitdLink> link, const std::string& error
         self->link_ = nullptr;
         self->fail_all("gaitd has gone before it answered");
       });
-  for (std::string& line : std::exchange(waiting_, {})) {
-    if (link_) link_->send(std::move(line));
+  for (Line& line : std::exchange(waiting_, {})) {
+    if (link_) link_->send(std::move(line.text));
   }
 }
 
@@ -101,7 +103,7 @@ void RpcRelay::on_line(std::string_view line) {
   if (!id.is_number_unsigned()) return;
   const auto found = asked_.find(id.get<std::uint64_t>());
   if (found == asked_.end()) return;
-  const Done done = std::move(found->second);
+  const Done done = std::move(found->second.done);
   asked_.erase(found);
   answer.erase("id");
   answer.erase("jsonrpc");
@@ -111,15 +113,29 @@ void RpcRelay::on_line(std::string_view line) {
 
 void RpcRelay::fail_all(const std::string& reason) {
   waiting_.clear();
-  for (const auto& [id, done] : std::exchange(asked_, {})) {
-    done(error_answer(daemon::rpc_code::kStopping, reason));
+  for (const auto& [id, asked] : std::exchange(asked_, {})) {
+    asked.done(error_answer(daemon::rpc_code::kStopping, reason));
   }
+}
+
+void RpcRelay::reconnect(const std::string& reason) {
+  if (link_) std::exchange(link_, nullptr)->close();
+  fail_all(reason);
 }
 
 void RpcRelay::end() {
   ended_ = true;
+  const bool stops =
+      std::ranges::any_of(asked_, [](const auto& entry) { return entry.second.stops; });
   asked_.clear();
-  if (link_) std::exchange(link_, nullptr)->close();
+  std::erase_if(waiting_, [](const Line& line) { return !line.stops; });
+  const auto link = std::exchange(link_, nullptr);
+  if (!link) return;
+  if (stops) {
+    link->finish();
+  } else {
+    link->close();
+  }
 }
 
 }  // namespace gaitd::cli

@@ -34,7 +34,9 @@ class RpcRelay : public std::enable_shared_from_this<RpcRelay> {
   void call(const std::string& method, const nlohmann::json& params, Done done);
   /// Connects ahead of the first request, if it is one that acts.
   void connect_ahead();
-  /// Nothing is called any more.
+  /// Gives up what is asked, each with that reason, and the connection, which somebody holds up.
+  void reconnect(const std::string& reason);
+  /// Nothing is called any more. An e-stop that was asked for still goes out.
   void end();
 
  private:
@@ -49,8 +51,16 @@ class RpcRelay : public std::enable_shared_from_this<RpcRelay> {
   std::shared_ptr<GaitdLink> link_;
   bool connecting_ = false;
   bool ended_ = false;
-  std::deque<std::string> waiting_;  // lines, until there is a link
-  std::map<std::uint64_t, Done> asked_;
+  struct Line {
+    std::string text;
+    bool stops;  // it is an e-stop
+  };
+  std::deque<Line> waiting_;  // until there is a link
+  struct Asked {
+    Done done;
+    bool stops;
+  };
+  std::map<std::uint64_t, Asked> asked_;
   std::uint64_t next_ = 1;
 };
 

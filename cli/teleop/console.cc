@@ -19,11 +19,6 @@ namespace {
 
 constexpr int kLastWords = 500;  // ms that a terminal gets to take them
 
-bool is_dumb() {
-  const char* kind = std::getenv("TERM");
-  return kind == nullptr || *kind == '\0' || std::strcmp(kind, "dumb") == 0;
-}
-
 // O_NONBLOCK belongs to what was opened, not to the descriptor: on standard output the shell would
 // have it too. So the terminal is opened once more.
 int open_again(int descriptor) {
@@ -45,6 +40,11 @@ winsize window() {
 bool has_keyboard() {
   termios settings{};
   return isatty(STDIN_FILENO) != 0 && tcgetattr(STDIN_FILENO, &settings) == 0;
+}
+
+bool is_dumb() {
+  const char* kind = std::getenv("TERM");
+  return kind == nullptr || *kind == '\0' || std::strcmp(kind, "dumb") == 0;
 }
 
 Console::Console()

@@ -60,5 +60,7 @@ class Console {
 
 /// Whether somebody can press keys on standard input.
 bool has_keyboard();
+/// Whether the terminal knows no escape codes.
+bool is_dumb();
 
 }  // namespace gaitd::cli::teleop

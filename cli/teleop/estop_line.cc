@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/teleop/estop_line.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace gaitd::cli::teleop {
@@ -8,9 +9,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kAskAgain{300};  // until it is asked again
-constexpr milliseconds kIdle{500};      // while nobody needs it
-constexpr milliseconds kKnock{20};      // while somebody does
+constexpr milliseconds kAskAgain{300};          // until it is asked again
+constexpr milliseconds kLongestPatience{5000};  // no answer takes longer
+constexpr milliseconds kIdle{500};              // while nobody needs it
+constexpr milliseconds kKnock{20};              // while somebody does
 
 }  // namespace
 
@@ -20,13 +22,19 @@ void EstopLine::pull(Time now) {
   if (open_) return;
   open_ = true;
   trouble_.clear();
+  patience_ = kAskAgain;
   ask(now);
 }
 
 void EstopLine::ask(Time now) {
   id_ = link_.send("estop", nullptr);
   if (id_ == 0 && link_.open()) id_ = link_.send("estop", nullptr);
-  next_ = now + (id_ == 0 ? kKnock : kAskAgain);
+  if (id_ == 0) {
+    next_ = now + kKnock;
+    return;
+  }
+  next_ = now + patience_;
+  patience_ = std::min<Time::duration>(2 * patience_, kLongestPatience);
 }
 
 void EstopLine::tick(Time now) {
@@ -37,11 +45,13 @@ void EstopLine::tick(Time now) {
       open_ = false;
     } else {
       trouble_ = error->message;
+      next_ = std::min(next_, now + kAskAgain);
     }
   }
+  if (open_ && !link_.up()) next_ = std::min(next_, now + kKnock);
   if (now < next_) return;
   if (open_) {
-    link_.close();  // whatever holds it up there
+    link_.close();  // whatever holds it up there; a late answer to it is lost
     return ask(now);
   }
   if (!link_.up()) link_.open();

@@ -10,7 +10,7 @@
 namespace gaitd::cli::teleop {
 
 /// The e-stop, on a connection that carries nothing else. Pulled, it asks again on a new connection
-/// every 0.3 s until gaitd has answered.
+/// after 0.3 s, then after twice as long each time, until gaitd has answered.
 class EstopLine {
  public:
   explicit EstopLine(Destination destination);
@@ -29,7 +29,8 @@ class EstopLine {
   Link link_;
   bool open_ = false;
   int id_ = 0;
-  Time next_{};  // to ask, or to connect, again
+  Time next_{};                // to ask, or to connect, again
+  Time::duration patience_{};  // with the next connection
   std::string trouble_;
 };
 

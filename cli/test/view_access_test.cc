@@ -45,7 +45,9 @@ TEST(Access, APageConnectsToWhereItCameFrom) {
   EXPECT_TRUE(access.allows_origin("https://app.foxglove.dev", "127.0.0.1:8765", false));
   EXPECT_FALSE(access.allows_origin("http://127.0.0.1:9000", "127.0.0.1:8765", false));
   EXPECT_FALSE(access.allows_origin("http://127.0.0.1:8765", "127.0.0.1:8765", true));
+  EXPECT_TRUE(access.allows_origin("file://", "127.0.0.1:8765", false));
   EXPECT_FALSE(access.allows_origin("null", "127.0.0.1:8765", false));
+  EXPECT_FALSE(access.allows_origin("file://evil.example", "127.0.0.1:8765", false));
   EXPECT_FALSE(
       access.allows_origin("https://app.foxglove.dev.evil.example", "127.0.0.1:8765", false));
 }

@@ -30,8 +30,9 @@ class Access {
   /// Whether a request names this server as a browser would that was given its address: a number,
   /// or a name of this machine. Another name is how a foreign page gets around the rule of origins.
   static bool is_own_host(std::string_view host);
-  /// Whether a page of this origin may connect: the one served under `host`, or one of the list. No
-  /// origin: no browser.
+  /// Whether a page of this origin may connect: the one served under `host`, one of the list, or
+  /// one of a file, as the windows of desktop programs are. No origin: no browser. A token it needs
+  /// too.
   bool allows_origin(std::string_view origin, std::string_view host, bool tls) const;
 
  private:

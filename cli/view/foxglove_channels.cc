@@ -29,12 +29,16 @@ FoxgloveChannels::~FoxgloveChannels() = default;
 void FoxgloveChannels::add(const LiveFrame& frame) {
   if (frame.values.size() != width_) return;
   const std::uint64_t time_ns = daemon::to_nanoseconds(frame.time);
+  once_ = false;
   codec_.append(frame.values, &begin_message(signals_, time_ns));
   end_message();
-  if (scene_) scene_->write(time_ns, frame.values, this);
+  if (!scene_) return;
+  once_ = !scene_->begun();  // robot and terrain
+  scene_->write(time_ns, frame.values, this);
 }
 
 void FoxgloveChannels::add(const daemon::Event& event) {
+  once_ = true;
   records_.append_event(event, &begin_message(events_, daemon::to_nanoseconds(event.time)));
   end_message();
 }
@@ -70,6 +74,6 @@ std::string& FoxgloveChannels::begin_message(std::uint16_t channel, std::uint64_
   return message_;
 }
 
-void FoxgloveChannels::end_message() { on_message_(channel_, time_ns_, message_); }
+void FoxgloveChannels::end_message() { on_message_(channel_, time_ns_, message_, once_); }
 
 }  // namespace gaitd::cli

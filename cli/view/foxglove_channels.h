@@ -22,9 +22,9 @@ namespace gaitd::cli {
 /// messages that the log holds, so that one layout shows both.
 class FoxgloveChannels : private daemon::MessageSink {
  public:
-  /// Gets each message with the number of its channel.
-  using OnMessage =
-      std::function<void(std::uint16_t channel, std::uint64_t time_ns, std::string_view data)>;
+  /// Gets each message with the number of its channel; `once`: it is not said again.
+  using OnMessage = std::function<void(std::uint16_t channel, std::uint64_t time_ns,
+                                       std::string_view data, bool once)>;
 
   /// `robot`: answer of robot.describe; `table`: signals of the frames that will come.
   FoxgloveChannels(const nlohmann::json& robot, const daemon::SignalTable& table,
@@ -62,6 +62,7 @@ class FoxgloveChannels : private daemon::MessageSink {
   std::string message_;
   std::uint16_t channel_ = 0;
   std::uint64_t time_ns_ = 0;
+  bool once_ = false;
 };
 
 }  // namespace gaitd::cli

@@ -119,15 +119,16 @@ void FoxgloveClient::advertise(const json* channels, const std::string& reason) 
 }
 
 void FoxgloveClient::send_message(std::uint16_t channel, std::uint64_t time_ns,
-                                  std::string_view data) {
+                                  std::string_view data, bool once) {
   if (ended_) return;
   for (const auto& [subscription, of] : subscriptions_) {
     if (of != channel) continue;
-    if (socket_->waiting() >= kMessagesWaiting) {
+    const bool behind = socket_->waiting() >= kMessagesWaiting;
+    if (behind && !once) {
       ++lost_;
       continue;
     }
-    if (lost_ > 0) {
+    if (!behind && lost_ > 0) {
       tell(kWarning, std::to_string(std::exchange(lost_, 0)) + " messages were left out: too slow");
     }
     std::string bytes;
@@ -136,7 +137,7 @@ void FoxgloveClient::send_message(std::uint16_t channel, std::uint64_t time_ns,
     append_raw(&bytes, subscription);
     append_raw(&bytes, time_ns);
     bytes += data;
-    socket_->send(message_of(std::move(bytes)), true);
+    send(message_of(std::move(bytes)), true);
   }
 }
 

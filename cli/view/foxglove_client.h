@@ -36,8 +36,8 @@ class FoxgloveClient : public std::enable_shared_from_this<FoxgloveClient> {
 
   /// All channels there are now; null: gaitd is gone, with the reason.
   void advertise(const nlohmann::json* channels, const std::string& reason);
-  /// Left out while the client is behind.
-  void send_message(std::uint16_t channel, std::uint64_t time_ns, std::string_view data);
+  /// Left out while the client is behind, unless it is said only once.
+  void send_message(std::uint16_t channel, std::uint64_t time_ns, std::string_view data, bool once);
   void send_time(std::uint64_t time_ns);
 
  private:

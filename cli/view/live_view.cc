@@ -45,6 +45,7 @@ class LiveView::Peer : public WebPeer {
   void on_end() override {
     viewer_->end();
     view_->viewers_.erase(viewer_);
+    view_->tell_viewers();
   }
 
  private:
@@ -146,20 +147,23 @@ std::shared_ptr<WebPeer> LiveView::open(daemon::Role role, const std::string& pr
   const auto viewer = std::make_shared<Viewer>(std::move(relay), std::move(socket),
                                                [this](bool on) { record(on); });
   viewers_.insert(viewer);
-  viewer->send_text(text_of({{"type", "hello"},
-                             {"role", daemon::role_name(role)},
-                             {"version", GAITD_VERSION},
-                             {"viewers", viewers_.size()}}));
+  viewer->send_text(
+      text_of({{"type", "hello"}, {"role", daemon::role_name(role)}, {"version", GAITD_VERSION}}));
   viewer->send_text(robot_);
   if (recorder_.recording()) {
     viewer->send_text(text_of(
         {{"type", "record"}, {"on", true}, {"since", recording_since_}, {"report", nullptr}}));
   }
+  tell_viewers();
   return std::make_shared<Peer>(this, viewer);
 }
 
 void LiveView::send_all(const Message& message) {
   for (const auto& viewer : viewers_) viewer->send_text(message);
+}
+
+void LiveView::tell_viewers() {
+  send_all(text_of({{"type", "viewers"}, {"viewers", viewers_.size()}}));
 }
 
 // Comes with every new subscription too: the viewers are told only what has changed for them.
@@ -234,8 +238,8 @@ void LiveView::show_channels() {
   if (source_.has_all()) {
     channels_ = std::make_unique<FoxgloveChannels>(
         source_.robot(), source_.signals(),
-        [this](std::uint16_t channel, std::uint64_t time_ns, std::string_view data) {
-          for (const auto& client : foxgloves_) client->send_message(channel, time_ns, data);
+        [this](std::uint16_t channel, std::uint64_t time_ns, std::string_view data, bool once) {
+          for (const auto& client : foxgloves_) client->send_message(channel, time_ns, data, once);
         });
   }
   for (const auto& client : foxgloves_) {

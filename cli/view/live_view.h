@@ -48,6 +48,7 @@ class LiveView : public WebContent {
   // All signals while somebody records or Foxglove is there.
   void choose_signals();
   void send_all(const Message& message);
+  void tell_viewers();
   void tell_recording(const Recorder::End* end, const std::string& error);
   void begin_recording();
 

@@ -56,49 +56,62 @@ std::optional<Role> role_at_gaitd(const Context& context, std::string* error) {
   return Role::kObserve;
 }
 
-// An address of this machine by which others reach it; empty: it has none.
-std::string reachable_address() {
+// Addresses of this machine by which others may reach it.
+std::vector<std::string> reachable_addresses() {
   ifaddrs* list = nullptr;
-  if (getifaddrs(&list) != 0) return "";
-  std::string found;
-  for (const ifaddrs* one = list; one != nullptr && found.empty(); one = one->ifa_next) {
+  if (getifaddrs(&list) != 0) return {};
+  std::vector<std::string> found;
+  for (const ifaddrs* one = list; one != nullptr; one = one->ifa_next) {
     constexpr unsigned kUp = IFF_UP | IFF_RUNNING;
     if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
     if ((one->ifa_flags & kUp) != kUp || (one->ifa_flags & IFF_LOOPBACK) != 0) continue;
     char text[INET_ADDRSTRLEN];
     const auto* address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr);
-    if (inet_ntop(AF_INET, &address->sin_addr, text, sizeof(text)) != nullptr) found = text;
+    if (inet_ntop(AF_INET, &address->sin_addr, text, sizeof(text)) != nullptr) {
+      found.emplace_back(text);
+    }
   }
   freeifaddrs(list);
   return found;
 }
 
-// What a browser has to be given: of 0.0.0.0, which means all, one of them.
-std::string host_of(const ListenAddress& address) {
+// What a browser has to be given: of 0.0.0.0, which means all, each: it may reach only one of them.
+std::vector<std::string> bases_of(const ListenAddress& address, unsigned short port) {
   const bool any = boost::asio::ip::make_address(address.address).is_unspecified();
-  std::string host = any ? reachable_address() : address.address;
-  if (host.empty()) host = "localhost";
-  return host.find(':') == std::string::npos ? host : "[" + host + "]";
+  std::vector<std::string> bases =
+      any ? reachable_addresses() : std::vector<std::string>{address.address};
+  if (bases.empty()) bases.emplace_back("localhost");
+  for (std::string& base : bases) {
+    std::string host = base.find(':') == std::string::npos ? base : "[" + base + "]";
+    base = address.loopback ? "http://" : "https://";
+    base.append(host).append(":").append(std::to_string(port));
+  }
+  return bases;
 }
 
-void print_addresses(const Context& context, const std::string& base, const Access& access,
-                     const std::string& fingerprint) {
-  const auto page = [&](Role role) { return base + "/#token=" + access.token(role); };
+void print_addresses(const Context& context, const std::vector<std::string>& bases,
+                     const Access& access, const std::string& fingerprint) {
+  const auto page = [&](const std::string& base, Role role) {
+    return base + "/#token=" + access.token(role);
+  };
   if (context.json) {
     nlohmann::json result;
     for (std::size_t i = 0; i <= static_cast<std::size_t>(access.highest()); ++i) {
-      result[std::string(daemon::kRoleNames[i])] = page(static_cast<Role>(i));
+      result[std::string(daemon::kRoleNames[i])] = page(bases.front(), static_cast<Role>(i));
     }
+    if (bases.size() > 1) result["bases"] = bases;
     if (!fingerprint.empty()) result["fingerprint"] = fingerprint;
     std::cout << json_text(result) << std::flush;
     return;
   }
-  std::cout << "live page: " << page(access.highest()) << "\n";
-  if (access.highest() == Role::kAdminister) {
-    std::cout << "  to walk it:   " << page(Role::kCommand) << "\n";
-  }
-  if (access.highest() > Role::kObserve) {
-    std::cout << "  to watch:     " << page(Role::kObserve) << "\n";
+  for (const std::string& base : bases) {
+    std::cout << "live page: " << page(base, access.highest()) << "\n";
+    if (access.highest() == Role::kAdminister) {
+      std::cout << "  to walk it:   " << page(base, Role::kCommand) << "\n";
+    }
+    if (access.highest() > Role::kObserve) {
+      std::cout << "  to watch:     " << page(base, Role::kObserve) << "\n";
+    }
   }
   if (!fingerprint.empty()) std::cout << "  certificate:  SHA-256 " << fingerprint << "\n";
   std::cout << "Whoever has an address may do what it says. Ctrl-C ends it." << std::endl;
@@ -132,10 +145,9 @@ int run(const Context& context, const ViewArguments& arguments) {
                 arguments.folder);
   WebServer server(&io, &view, certificate.context.get());
   if (!server.listen(*address, &error)) return fail(context, kFailed, "view", error);
-  const std::string base = (address->loopback ? "http://" : "https://") + host_of(*address) + ":" +
-                           std::to_string(server.port());
-  print_addresses(context, base, view.access(), certificate.fingerprint);
-  if (arguments.open) open_browser(base + "/#token=" + view.access().token(*role));
+  const std::vector<std::string> bases = bases_of(*address, server.port());
+  print_addresses(context, bases, view.access(), certificate.fingerprint);
+  if (arguments.open) open_browser(bases.front() + "/#token=" + view.access().token(*role));
   view.start();
   boost::asio::signal_set signals(io, SIGINT, SIGTERM, SIGHUP);
   signals.async_wait([&](boost::system::error_code, int) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/view/viewer.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "daemon/server/rpc.h"
@@ -11,6 +12,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kFramesWaiting = 2;       // of a browser that is behind
+constexpr std::uint64_t kFramesUnseen = 16;     // on their way to it
 constexpr std::size_t kBytesUnsent = 8u << 20;  // then it is dropped
 
 json error(int code, const std::string& message) {
@@ -35,6 +37,8 @@ void Viewer::on_message(std::string_view text) {
   if (type == "rate") {
     const json hz = message.value("hz", json());
     pace_ = hz.is_number() ? Pace(hz.get<double>()) : Pace();
+  } else if (type == "seen") {
+    on_seen(message.value("frames", json()));
   } else if (type == "record") {
     if (relay_->role() >= daemon::Role::kCommand)
       return record_(message.value("on", json()) == true);
@@ -43,8 +47,16 @@ void Viewer::on_message(std::string_view text) {
                        {"error", "recording takes the role command; this address is to watch"}}));
   } else {
     answer(nullptr, error(daemon::rpc_code::kInvalidRequest,
-                          "expected a request with a method, or a message of type rate or record"));
+                          "expected a request with a method, or a message of type rate, seen or "
+                          "record"));
   }
+}
+
+// The answer waits behind all that was sent before: it tells the page how old that is.
+void Viewer::on_seen(const json& frames) {
+  if (!frames.is_number_unsigned()) return;
+  seen_ = std::min(frames.get<std::uint64_t>(), sent_);
+  send_text(text_of({{"type", "seen"}, {"frames", frames}}));
 }
 
 void Viewer::on_request(const json& request) {
@@ -75,11 +87,12 @@ void Viewer::send_text(const Message& message) {
 
 void Viewer::send_frame(const Message& message) {
   if (ended_ || !pace_.due(Pace::Clock::now())) return;
-  if (socket_->waiting() >= kFramesWaiting) {
+  if (socket_->waiting() >= kFramesWaiting || (seen_ && sent_ - *seen_ >= kFramesUnseen)) {
     ++lost_;
     return;
   }
   if (lost_ > 0) send_text(text_of({{"type", "lost"}, {"frames", std::exchange(lost_, 0)}}));
+  ++sent_;
   socket_->send(message, true);
 }
 

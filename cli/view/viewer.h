@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -27,11 +28,13 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
 
   /// Messages in the order in which they were given. A viewer that does not read is dropped.
   void send_text(const Message& message);
-  /// Left out if the viewer has asked for fewer, and, counted, while the browser is behind.
+  /// Left out if the viewer has asked for fewer, and, counted, while the browser is behind: it has
+  /// not taken those before, or, if it is one that tells what it has seen, has not seen them.
   void send_frame(const Message& message);
 
  private:
   void on_request(const nlohmann::json& request);
+  void on_seen(const nlohmann::json& frames);
   void answer(const nlohmann::json& id, nlohmann::json answer);
 
   std::shared_ptr<RpcRelay> relay_;
@@ -40,6 +43,8 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   bool ended_ = false;
   Pace pace_;
   std::uint64_t lost_ = 0;
+  std::uint64_t sent_ = 0;             // frames
+  std::optional<std::uint64_t> seen_;  // of those
 };
 
 }  // namespace gaitd::cli

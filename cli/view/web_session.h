@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
 #include <boost/asio/ssl/stream.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
@@ -32,6 +36,7 @@ class WebSocketSession : public ViewerSocket,
   void start(const HttpRequest& request, WebContent* content, daemon::Role role,
              const std::string& protocol) {
     namespace websocket = boost::beast::websocket;
+    hold_little();
     socket_.set_option(websocket::stream_base::timeout{
         std::chrono::seconds(10), std::chrono::seconds(20), true});  // pings find who has gone
     socket_.set_option(websocket::stream_base::decorator([protocol](auto& response) {
@@ -75,6 +80,16 @@ class WebSocketSession : public ViewerSocket,
  private:
   static constexpr std::size_t kLongestMessage = 64u << 10;  // bytes, from a browser
   static constexpr auto kGoodbye = std::chrono::seconds(3);
+  static constexpr int kUnsent = 16 << 10;     // bytes
+  static constexpr int kOnTheWay = 128 << 10;  // bytes
+
+  // What the kernel keeps for a slow network is old when it arrives; what waits here can be left
+  // out.
+  void hold_little() {
+    const int fd = boost::beast::get_lowest_layer(socket_).socket().native_handle();
+    setsockopt(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsent, sizeof(kUnsent));
+    setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &kOnTheWay, sizeof(kOnTheWay));
+  }
 
   void read() {
     socket_.async_read(buffer_, [self = this->shared_from_this()](boost::system::error_code error,

@@ -129,6 +129,8 @@ void SceneTopics::add_channels(MessageSink* sink) {
 
 void SceneTopics::begin_again() { impl_->begun = false; }
 
+bool SceneTopics::begun() const { return impl_->begun; }
+
 void SceneTopics::write(std::uint64_t time_ns, std::span<const double> values, MessageSink* sink) {
   Impl& impl = *impl_;
   // A reset simulation begins again at zero.

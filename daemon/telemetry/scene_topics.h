@@ -33,6 +33,8 @@ class SceneTopics {
 
   // The next tick is written whatever the time, with what is written once: robot and terrain.
   void begin_again();
+  // What is written once has been.
+  bool begun() const;
 
   // One tick, values in table order. Writes only if the last messages are long enough ago.
   void write(std::uint64_t time_ns, std::span<const double> values, MessageSink* sink);

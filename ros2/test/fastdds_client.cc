@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Looks at gaitd-ros2 as a node of ROS 2 on Fast DDS would: names, types, qualities of service,
-// values; then walks the robot by /cmd_vel and stops it by /e_stop. DOMAIN [NAMESPACE].
+// values; then walks the robot by /cmd_vel and stops it by /e_stop. DOMAIN NAMESPACE ["silent"]:
+// with a gaitd that answers nothing, it is only told to stop.
 #include <Eigen/Geometry>
 #include <chrono>
 #include <cmath>
@@ -132,6 +133,7 @@ class Client {
   void check_values();
   void walk();
   void stop();
+  void stop_silent();
 
  private:
   double x() const { return odometry_.newest().position.x; }
@@ -259,12 +261,27 @@ void Client::stop() {
   std::printf("the e-stop is a fault of gaitd\n");
 }
 
+void Client::stop_silent() {
+  Bool message;
+  message.data = true;
+  const auto asked = [&] {
+    estop_->write(&message);  // the first ones may come before they are listened to
+    return told("gaitd: connection", 2, "gaitd does not answer");
+  };
+  wait_until(asked, 15.0, "word of an e-stop that nobody answers");
+  std::printf("an e-stop that nobody answers is an error\n");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   setvbuf(stdout, nullptr, _IOLBF, 0);
   try {
     Client client(static_cast<unsigned>(std::stoi(argv[1])), argc > 2 ? argv[2] : "");
+    if (argc > 3) {
+      client.stop_silent();
+      return 0;
+    }
     client.check_values();
     client.walk();
     client.stop();

@@ -74,6 +74,46 @@ test('a lost connection rejects what waits and is opened again, later each time'
   connection.open('');
 });
 
+test('who needs a connection now does not wait for the next try', (t) => {
+  const {connection, socket, clock} = connected(t);
+  socket.onclose();
+  for (let wait = 250; wait < 4000; wait *= 2) {
+    clock.tick(wait);
+    FakeSocket.all.at(-1).onclose();
+  }
+  const tried = FakeSocket.all.length;
+  connection.hurry();
+  assert.equal(FakeSocket.all.length, tried + 1);
+  connection.hurry();  // it is on its way
+  assert.equal(FakeSocket.all.length, tried + 1);
+  FakeSocket.all.at(-1).onclose();
+  clock.tick(250);
+  assert.equal(FakeSocket.all.length, tried + 2);
+  FakeSocket.all.at(-1).onopen();
+  connection.hurry();
+  assert.equal(FakeSocket.all.length, tried + 2);
+  connection.drop();
+});
+
+test('it tells what it has seen, and how old that may be', (t) => {
+  const {connection, socket, clock} = connected(t);
+  const seen = () => socket.sent.filter(({type}) => type === 'seen').map(({frames}) => frames);
+  for (let i = 0; i < 8; ++i) socket.onmessage({data: new ArrayBuffer(16)});
+  assert.deepEqual(seen(), [4, 8]);
+  assert.equal(connection.lag, 0);
+  clock.tick(300);
+  assert.equal(connection.lag, 0.3);
+  socket.says({type: 'seen', frames: 4});
+  clock.tick(100);
+  assert.equal(connection.lag, 0.3);
+  clock.tick(100);  // once in half a second, whatever comes
+  assert.deepEqual(seen(), [4, 8, 8]);
+  socket.says({type: 'seen', frames: 8});
+  socket.says({type: 'seen', frames: 8});
+  assert.equal(connection.lag, 0);
+  connection.drop();
+});
+
 test('a silent connection is given up', (t) => {
   const {connection, socket, clock} = connected(t);
   clock.tick(2900);

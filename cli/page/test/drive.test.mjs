@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import {Drive} from '../src/view/drive.js';
 import {DriveKeys} from '../src/view/drive_keys.js';
-import {wantedOf} from '../src/view/gamepad.js';
+import {readGamepads, wantedOf} from '../src/view/gamepad.js';
 import {reachOf, velocityOf} from '../src/view/reach.js';
 import {fakeClock} from './fake_clock.mjs';
 
@@ -116,6 +116,32 @@ test('a gamepad at rest, or gone, wants nothing', () => {
   assert.deepEqual(wantedOf({axes: [0.1, -0.1, 0.05, 0]}), kNothing);
   const {forward, lateral, turn} = wantedOf({axes: [0, -1, 1, 0]});
   assert.deepEqual([forward, lateral, turn], [1, 0, -1]);
+});
+
+test('a gamepad drives from when it was seen at rest, anew after each loss of the focus', (t) => {
+  let focus = true, turn = 0, wanted;
+  globalThis.document = {hasFocus: () => focus};
+  t.after(() => { delete globalThis.document; });
+  const source = {getGamepads: () =>
+      [{index: 0, connected: true, mapping: 'standard', axes: [0, 0, turn], buttons: []}]};
+  const pad = readGamepads({want: (_, one) => { wanted = one.turn; }}, {}, source);
+  const drives = (now) => {
+    turn = now;
+    pad.read();
+    return wanted !== 0;
+  };
+  assert.equal(drives(-1), false);
+  assert.equal(drives(0), false);
+  assert.equal(drives(-1), true);
+  focus = false;
+  assert.equal(drives(-1), false);
+  assert.equal(drives(0), false);  // nor what it did while nobody looked
+  focus = true;
+  assert.equal(drives(-1), false);
+  drives(0);
+  assert.equal(drives(-1), true);
+  pad.release();
+  assert.equal(drives(-1), false);
 });
 
 test('a whole push is the share of the fastest that is set, half of it backwards', () => {

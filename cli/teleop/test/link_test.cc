@@ -142,5 +142,34 @@ TEST_F(Peer, AnEstopIsAskedForAgainUntilSomebodyAnswers) {
   EXPECT_NE(heard().find("\"estop\""), std::string::npos);
 }
 
+TEST_F(Peer, AnEstopIsConfirmedHoweverLongTheWayIs) {
+  EstopLine estop(here());
+  estop.tick(at(0));
+  accept_one();
+  estop.pull(at(10));
+  for (int ms = 20; ms < 400; ms += 20) estop.tick(at(ms));
+  accept_one();
+  EXPECT_NE(heard().find("\"estop\""), std::string::npos);
+  for (int ms = 400; ms < 800; ms += 20) estop.tick(at(ms));
+  say("{\"id\":2,\"result\":{\"accepted\":true}}\n");  // that way takes 0.4 s
+  estop.tick(at(800));
+  EXPECT_FALSE(estop.open());
+}
+
+TEST_F(Peer, AnEstopIsAskedForAgainAtOnceWhenItsConnectionEnds) {
+  EstopLine estop(here());
+  estop.tick(at(0));
+  accept_one();
+  estop.pull(at(10));
+  for (int ms = 20; ms < 2000; ms += 20) estop.tick(at(ms));  // it has become patient
+  for (int connection = 2; connection <= 3; ++connection) accept_one();
+  EXPECT_NE(heard(), "");
+  hang_up();
+  estop.tick(at(2000));
+  estop.tick(at(2040));
+  accept_one();
+  EXPECT_NE(heard().find("\"estop\""), std::string::npos);
+}
+
 }  // namespace
 }  // namespace gaitd::cli::teleop

@@ -23,3 +23,7 @@ export function enable(element, obstacle, title = '') {
 
 export const isText = (element) =>
     element.matches?.('input:not([type=range], [type=checkbox]), textarea, select') ?? false;
+
+// Of those, the ones into which one writes spaces.
+export const takesSpaces = (element) =>
+    element.matches?.('input:is([type=search], [type=text], :not([type])), textarea') ?? false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {$, enable, say} from '../shared/dom.js';
-import {told} from './toast.js';
+import {tell, told} from './toast.js';
 
 const number = (id) => Number($(id).value);
 
@@ -38,5 +38,9 @@ export function addCommands(state, call) {
     say($('pause'), state.status?.paused ? 'Resume' : 'Pause');
     for (const mode of kModes) $(mode).setAttribute('aria-pressed', state.status?.mode === mode);
   });
-  return {stop: () => $('stop').disabled || $('stop').click()};
+  return {stop: () => {
+    const obstacle = state.obstacle('stop');
+    if (obstacle) tell(`stop: ${obstacle}`, true);
+    else $('stop').click();
+  }};
 }

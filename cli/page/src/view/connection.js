@@ -4,6 +4,7 @@ const kFirstWait = 250, kLongestWait = 5000;  // ms before it is tried again
 const kSilence = 3000;     // ms after which a connection is given up: a status comes five times a second
 const kCongested = 4096;   // bytes that wait to be sent
 const kAnswer = 10;        // s
+const kSeen = 4;           // frames between words that they have come: fewer than the server waits for
 
 export class RpcError extends Error {
   constructor({code, message, data}) {
@@ -23,6 +24,7 @@ export class Connection extends EventTarget {
     Object.assign(this, {url, token, Socket, answersAt});
     this.waiting = new Map();  // requests without an answer, by id
     this.last_id = 0;
+    this.took = 0;
     this.wait = kFirstWait;
     this.state = {kind: 'connecting', text: 'connecting'};
     this.onframe = () => {};
@@ -50,22 +52,36 @@ export class Connection extends EventTarget {
     };
     socket.onmessage = ({data}) => {
       this.heard = Date.now();
-      if (typeof data === 'string') this.take(data);
-      else this.onframe(data);
+      if (typeof data === 'string') {
+        this.take(data);
+        return;
+      }
+      this.onframe(data);
+      if (++this.frames % kSeen === 0) this.tellSeen();
     };
     socket.onclose = () => socket === this.socket && this.ended(opened);
     clearInterval(this.watch);
     this.watch = setInterval(() => {
+      this.tellSeen();
+      this.dispatchEvent(new Event('lag'));
       if (Date.now() < this.heard + kSilence) return;
       this.drop();
       this.ended(opened);
     }, 500);
   }
 
+  // Somebody needs it now: without a connection the next try is made at once. One that is under way is left
+  // alone: it may be long.
+  hurry() {
+    if (this.isOpen) return;
+    this.wait = kFirstWait;
+    if (!this.socket) this.open();
+  }
+
   // Without waiting for the other side, which may be gone.
   drop() {
     const {socket} = this;
-    this.socket = undefined;
+    Object.assign(this, {socket: undefined, frames: 0, asked: undefined, took: 0});
     clearInterval(this.watch);
     if (socket) socket.onopen = socket.onmessage = socket.onclose = null;
     socket?.close();
@@ -108,6 +124,7 @@ export class Connection extends EventTarget {
       return;  // nothing that can be answered for
     }
     if (message.jsonrpc) this.answer(message);
+    else if (message.type === 'seen') this.answerSeen(message.frames);
     else if (typeof message.type === 'string') {
       this.dispatchEvent(new CustomEvent(message.type, {detail: message}));
     }
@@ -121,6 +138,22 @@ export class Connection extends EventTarget {
     if (error) request.reject(new RpcError(error));
     else request.resolve(result);
   }
+
+  // Frames may wait on their way, in ssh say, where the server cannot see them: it leaves out others while too
+  // many have not been seen. Its answer has waited behind all that was sent before.
+  tellSeen() {
+    const {frames} = this;
+    if (this.send({type: 'seen', frames})) this.asked ??= {frames, at: Date.now()};
+  }
+
+  answerSeen(frames) {
+    if (!(frames >= this.asked?.frames)) return;
+    this.took = Date.now() - this.asked.at;
+    this.asked = undefined;
+  }
+
+  // By how much what is shown may be old, s; 'lag' is dispatched twice a second.
+  get lag() { return Math.max(this.took, this.asked ? Date.now() - this.asked.at : 0) / 1000; }
 
   get isOpen() { return this.state.kind === 'open' && this.socket !== undefined; }
 

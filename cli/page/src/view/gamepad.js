@@ -14,19 +14,20 @@ export function wantedOf(pad) {
   return {forward: forward ?? 0, lateral: lateral ?? 0, turn: turn ?? 0};
 }
 
-// Gives what has to be called again and again: a browser tells nothing of a gamepad by itself. Only of
-// pads whose layout the browser knows, and from when they were seen at rest: on others an axis may be
-// a trigger, which rests at its end.
+// Gives {read(), to be called again and again: a browser tells nothing of a gamepad by itself; release()}.
+// Only of pads whose layout the browser knows: on others an axis may be a trigger, which rests at its end.
+// And only from when they were seen at rest, while the page has the focus and since it was let go.
 export function readGamepads(drive, actions, source = navigator) {
   let pressed = new Set(), rested;
-  return () => {
+  const read = () => {
     const pad = source.getGamepads?.().find((one) => one?.connected && one.mapping === 'standard');
     const wanted = wantedOf(pad);
-    if (isZero(wanted)) rested = pad?.index;
-    const held = pad && rested === pad.index && document.hasFocus();
-    drive.want('gamepad', held ? wanted : wantedOf(undefined));
+    if (!document.hasFocus()) rested = undefined;
+    else if (isZero(wanted)) rested = pad?.index;
+    drive.want('gamepad', pad && rested === pad.index ? wanted : wantedOf(undefined));
     const now = new Set(Object.keys(kButtons).filter((i) => pad?.buttons[i]?.pressed));
     for (const i of now) if (!pressed.has(i)) actions[kButtons[i]]();
     pressed = now;
   };
+  return {read, release: () => { rested = undefined; }};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {$, isText, make} from '../shared/dom.js';
+import {$, isText, make, takesSpaces} from '../shared/dom.js';
 
 const kShown = [
   ['Esc', 'E-STOP, from anywhere on the page'], ['Space', 'stop: finish the step and stand'],
@@ -37,11 +37,14 @@ export function listenToKeys(actions) {
       if (!repeat) actions.estop();
       return;
     }
-    if (event.ctrlKey || event.altKey || event.metaKey || isText(target)) return;
+    if (event.ctrlKey || event.altKey || event.metaKey || takesSpaces(target)) return;
     if (key === ' ') {
-      // Also on a button that has the focus: who has just clicked Walk wants to stop, not to walk again.
+      // Also on a button that has the focus: who has just clicked Walk wants to stop, not to walk again. And in
+      // the number beside it.
       event.preventDefault();
       if (!repeat) (target.id === 'estop' ? actions.estop : actions.stop)();
+    } else if (isText(target)) {
+      return;
     } else if (key === '?') {
       toggleList();
     } else if (repeat ? actions.isDriving(code) : actions.driveDown(code)) {
@@ -51,7 +54,7 @@ export function listenToKeys(actions) {
   addEventListener('keyup', (event) => {
     actions.driveUp(event.code);
     if (event.key === 'Meta') actions.release();
-    if (event.key === ' ' && !isText(event.target)) event.preventDefault();
+    if (event.key === ' ' && !takesSpaces(event.target)) event.preventDefault();
   }, {capture: true});
   addEventListener('contextmenu', () => actions.release());
 }

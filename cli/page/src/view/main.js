@@ -40,7 +40,10 @@ const congested = () => connection.congested;
 let stage, frames = 0;
 
 // E-stop.
-const estop = new EStop(call, tell);
+const estop = new EStop((...request) => {
+  connection.hurry();
+  return call(...request);
+}, tell);
 function stopAtOnce() {
   estop.press();
   letGo();
@@ -112,6 +115,7 @@ listenToKeys({
 function letGo() {
   releaseStick();
   keys.release();
+  gamepads.release();
   drive.release();
   stage?.push.release();
 }
@@ -120,8 +124,10 @@ addEventListener('pagehide', letGo);
 const tellRate = () => connection.send({type: 'rate', hz: document.hidden ? kHiddenRate : kShownRate});
 document.addEventListener('visibilitychange', () => {
   if (document.hidden) letGo();
+  else connection.hurry();
   tellRate();
 });
+addEventListener('online', () => connection.hurry());
 
 // Where to go, and the ground.
 const goThere = new GoThere(state, call);
@@ -179,7 +185,7 @@ connection.addEventListener('event', ({detail}) => {
 
 let last = performance.now(), counted = last, before = 0;
 function frame(now) {
-  gamepads();
+  gamepads.read();
   stage?.draw(now, now - last);
   frames = stage?.frames ?? 0;
   last = now;

@@ -16,7 +16,8 @@ export class State extends EventTarget {
       this.online = kind === 'open';
       if (!this.online) this.connected = false;
     });
-    on('hello', ({role, version, viewers}) => Object.assign(this, {role, version, viewers}));
+    on('hello', ({role, version}) => Object.assign(this, {role, version}));
+    on('viewers', ({viewers}) => { this.viewers = viewers; });
     on('robot', ({connected, reason = '', simulation = false, name = this.name}) => {
       Object.assign(this, {connected, reason, simulation, name});
     });

@@ -3,6 +3,7 @@ import {$, make, say} from '../shared/dom.js';
 
 const number = (value, digits) => typeof value === 'number' ? value.toFixed(digits) : '–';
 const kMega = 1e6;
+const kOld = 0.5;  // s
 const kForget = 5000, kManyLost = 100;  // ms, frames in that time: a few are no reason for words
 
 // Label and text of each line; '' is left blank.
@@ -31,7 +32,7 @@ const kLines = [
 
 // What has to be seen at once: [text, kind] each.
 function alerts(state, connection, view) {
-  if (!state.online) return [[connection.text, 'bad']];
+  if (!state.online) return [[connection.state.text, 'bad']];
   const found = [];
   const {status} = state;
   if (!state.connected) {
@@ -48,6 +49,9 @@ function alerts(state, connection, view) {
     if (status.joints_dropped) found.push([`${status.joints_dropped} joints have failed and are damped`, 'bad']);
     if (status.log?.error) found.push([`Log: ${status.log.error}`, 'bad']);
     if (status.log?.dropouts) found.push([`The log lacks ${status.log.dropouts} ticks`, 'bad']);
+  }
+  if (connection.lag > kOld) {
+    found.push([`A slow connection: all that is shown may be ${number(connection.lag, 1)} s old`, 'bad']);
   }
   if (state.role === 'observe') {
     found.push(['Watching only: this address may stop the robot, nothing else', 'note']);
@@ -72,8 +76,9 @@ export function addStatus(state, connection) {
   const view = {lost: 0};
   let forget;
   const change = () => {
-    fillAlerts(alerts(state, connection.state, view));
-    document.body.classList.toggle('away', !state.online || !state.connected || state.silent > 1);
+    fillAlerts(alerts(state, connection, view));
+    const old = state.silent > 1 || connection.lag > kOld;
+    document.body.classList.toggle('away', !state.online || !state.connected || old);
     const name = state.connected ? state.name : '';
     say($('title'), name || 'gaitd');
     document.title = name ? `${name} – gaitd` : 'gaitd';
@@ -83,6 +88,7 @@ export function addStatus(state, connection) {
     $('state').className = state.connected ? `is-${state.status?.state}` : '';
   };
   state.addEventListener('change', change);
+  connection.addEventListener('lag', change);
   state.addEventListener('status', () => {
     const status = state.status ?? {};
     kLines.forEach(([, text], i) => say(cells[i], String(text(status) ?? '–')));
