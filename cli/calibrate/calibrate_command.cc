@@ -207,8 +207,11 @@ int simulate(const Context& context, const CalibrateArguments& arguments) {
     motions = directory.path() + "/calibration.yaml";
     if (const int failed = save_text(context, motions, *text)) return failed;
   }
-  const RunOptions options{gaitd_program(), arguments.settings, arguments.simulated_log,
-                           arguments.trust, arguments.robot};
+  // It walks in other episodes than the one in which it is measured.
+  std::vector<std::string> settings{"sensors.episode=1"};
+  settings.insert(settings.end(), arguments.settings.begin(), arguments.settings.end());
+  const RunOptions options{gaitd_program(), settings, arguments.simulated_log, arguments.trust,
+                           arguments.robot};
   const std::string name = arguments.motions.empty() ? "calibration" : arguments.motions;
   const RunReport report = run_with_progress(motions, options, name);
   if (!report.pass()) {

@@ -290,14 +290,26 @@ VectorXd weights(const VectorXd& residuals) {
       [](double r) { return std::abs(r) <= kHuber ? 1.0 : kHuber / std::abs(r); });
 }
 
-void tell_unobservable(const Prior& prior, Identified* result) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> split(result->zeros.covariance);
-  for (Eigen::Index i = split.eigenvalues().size(); i-- > 0;) {
-    const double sigma = std::sqrt(std::max(0.0, split.eigenvalues()[i]));
-    if (sigma < kShareToKnow * prior.zero) break;
+// The priors alone would share out between zeros and all else what the recording says only of both
+// together. Instead the sums of zeros of which nothing was learned are put back to what they were,
+// and all else follows: what was seen of both together stays right.
+std::vector<Unobservable> put_back_unobservable(int zeros, const VectorXd& before, double sigma,
+                                                VectorXd* x, MatrixXd* covariance) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> split(covariance->topLeftCorner(zeros, zeros));
+  const double known = std::pow(kShareToKnow * sigma, 2);
+  std::vector<Unobservable> sums;
+  MatrixXd change = MatrixXd::Zero(x->size(), x->size());
+  for (Eigen::Index i = zeros; i-- > 0 && split.eigenvalues()[i] >= known;) {
+    const double variance = split.eigenvalues()[i];
     const VectorXd v = split.eigenvectors().col(i);
-    result->unobservable.push_back({sigma, {v.data(), v.data() + v.size()}});
+    // By how much everything goes along with this sum; the eigenvectors do not with one another.
+    const VectorXd along = covariance->leftCols(zeros) * v / variance;
+    *x -= along * v.dot(x->head(zeros) - before.head(zeros));
+    change += (sigma * sigma - variance) * along * along.transpose();
+    sums.push_back({sigma, {v.data(), v.data() + v.size()}});
   }
+  *covariance += change;
+  return sums;
 }
 
 }  // namespace
@@ -328,9 +340,10 @@ Identified identify(const GaitdModel& model, const daemon::Calibration& known,
   // Residuals larger than expected say that what was assumed of the sensors is too good.
   result.misfit = std::sqrt(weight.cwiseProduct(r.cwiseAbs2()).mean());
   const double inflation = std::max(1.0, result.misfit * result.misfit);
-  const MatrixXd covariance =
+  MatrixXd covariance =
       normal.solve(MatrixXd::Identity(layout.count(), layout.count())) * inflation;
   const int n = layout.joint_count();
+  result.unobservable = put_back_unobservable(n, problem.mean(), prior.zero, &x, &covariance);
   result.zeros.joints = layout.joints;
   result.zeros.value = x.head(n);
   result.zeros.covariance = covariance.topLeftCorner(n, n);
@@ -341,7 +354,6 @@ Identified identify(const GaitdModel& model, const daemon::Calibration& known,
   }
   result.accelerometer = x.segment<3>(layout.accelerometer());
   result.chest_com = x.segment<3>(layout.chest());
-  tell_unobservable(prior, &result);
   return result;
 }
 

@@ -16,7 +16,7 @@ struct Prior {
   double zero = 0.0175;         // rad, encoders: 1 degree
   double compliance = 0.35;     // of the compliance that is known
   double unknown = 0.14;        // rad, of a joint of which nothing is known, by moment_scale()
-  double accelerometer = 0.06;  // m/s^2: bias and mounting of the IMU
+  double accelerometer = 0.35;  // m/s^2: bias and mounting of the IMU, of a cheap one
   double chest_com = 0.01;      // m, each axis
   double ground = 2e-3;         // rad and m: how level and even the ground is
 };
@@ -28,7 +28,7 @@ struct Zeros {
   Eigen::MatrixXd covariance;  // rad^2
 };
 
-// A sum of zeros that the recording tells nothing new about.
+// A sum of zeros that the recording tells nothing new about: it stays what it was.
 struct Unobservable {
   double sigma = 0.0;                // rad, of a sum with coefficients of unit length
   std::vector<double> coefficients;  // as Zeros::joints
@@ -51,7 +51,8 @@ struct Identified {
 //  - the feet stay where they are, so the legs are a closed chain;
 //  - the ground is level, and the IMU shows gravity;
 //  - the contact forces have no moment about the centre of mass.
-// `known` says what is known of the stiffnesses and feet. `recording` has at least six postures.
+// `known` says what is known of the zeros, stiffnesses and feet; sums of zeros that are not
+// observable stay as it says. `recording` has at least six postures.
 Identified identify(const GaitdModel& model, const daemon::Calibration& known,
                     const Recording& recording, const Prior& prior);
 

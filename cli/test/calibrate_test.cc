@@ -163,6 +163,16 @@ double error_of(const Identified& found, const VectorXd& zero) {
          std::sqrt(static_cast<double>(n) - static_cast<double>(found.unobservable.size()));
 }
 
+void expect_within_sigmas(const Identified& found, const VectorXd& zero) {
+  for (std::size_t i = 0; i < found.zeros.joints.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const int joint = found.zeros.joints[i];
+    EXPECT_LT(std::abs(found.zeros.value[k] - zero[joint]),
+              3 * std::sqrt(found.zeros.covariance(k, k)))
+        << atlas().joints[joint].name;
+  }
+}
+
 TEST(Identification, FindsTheZerosOfARobotThatStandsInManyPostures) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     WrongRobot robot(seed);
@@ -171,12 +181,31 @@ TEST(Identification, FindsTheZerosOfARobotThatStandsInManyPostures) {
     // The legs can be known, what is above the pelvis cannot: nothing turns it against the legs.
     EXPECT_GE(found.zeros.joints.size() - found.unobservable.size(), 9u) << seed;
     EXPECT_LT(found.misfit, 1.0) << seed;
-    for (std::size_t i = 0; i < found.zeros.joints.size(); ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      const double sigma = std::sqrt(found.zeros.covariance(k, k));
-      EXPECT_LT(std::abs(found.zeros.value[k] - robot.zero()[found.zeros.joints[i]]), 3 * sigma)
-          << atlas().joints[found.zeros.joints[i]].name << " of seed " << seed;
+    SCOPED_TRACE(seed);
+    expect_within_sigmas(found, robot.zero());
+  }
+}
+
+// Nothing is made up of what cannot be observed, and what is told of it is what was known before.
+TEST(Identification, SumsThatAreNotObservableStayAsTheyWere) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    WrongRobot robot(seed);
+    robot.accelerometer = {0.35, 0.0, 0.0};
+    daemon::Calibration known = of_its_kind();
+    for (daemon::JointCalibration& joint : known.joints) joint.zero = 0.2 * kDegree;
+    const Identified found = identify(atlas(), known, postures_of(&robot), Prior());
+    SCOPED_TRACE(seed);
+    expect_within_sigmas(found, robot.zero());
+    EXPECT_LT(found.misfit, 1.0) << seed;
+    ASSERT_FALSE(found.unobservable.empty());
+    const auto n = static_cast<Eigen::Index>(found.zeros.joints.size());
+    for (const Unobservable& sum : found.unobservable) {
+      const Eigen::Map<const VectorXd> v(sum.coefficients.data(), n);
+      EXPECT_NEAR(v.dot(found.zeros.value), v.sum() * 0.2 * kDegree, 1e-9) << seed;
+      EXPECT_NEAR(std::sqrt(v.dot(found.zeros.covariance * v)), Prior().zero, 1e-6) << seed;
+      EXPECT_EQ(sum.sigma, Prior().zero);
     }
+    EXPECT_NEAR(found.accelerometer.x(), 0.35, 0.1) << seed;
   }
 }
 

@@ -58,6 +58,7 @@ nlohmann::json read_noise(MapReader* map) {
 
 nlohmann::json read_sensors(MapReader map) {
   nlohmann::json result = {{"noise", read_noise(&map)}};
+  if (const auto episode = map.integer("episode", 0, 4294967295)) result["episode"] = *episode;
   const std::vector<NodePtr> faults = map.list("faults", 0, kMaxSensorFaults);
   for (std::size_t i = 0; i < faults.size(); ++i) {
     MapReader fault(faults[i], map.path_of("faults") + "[" + std::to_string(i) + "]", map.issues());

@@ -177,6 +177,7 @@ bool MujocoPhysics::step(std::span<const BodyForce> forces, Drives* drives) {
 
 void MujocoPhysics::keep_touches() {
   touches_.clear();
+  slides_.clear();
   for (int i = 0; i < d_->ncon; ++i) {
     const mjContact& contact = d_->contact[i];
     const int owner[2] = {owner_[static_cast<size_t>(m_->geom_bodyid[contact.geom1])],
@@ -190,7 +191,9 @@ void MujocoPhysics::keep_touches() {
     touch.p_W = vector(contact.pos);
     const double sign = first ? -1 : 1;
     touch.normal = sign * vector(contact.frame);
-    if (contact.efc_address >= 0) {
+    const bool acts = contact.efc_address >= 0;
+    slides_.push_back(acts && d_->efc_state[contact.efc_address] == mjCNSTRSTATE_CONE ? 1 : 0);
+    if (acts) {
       mjtNum force[6];
       mj_contactForce(m_.get(), d_.get(), i, force);
       touch.force = sign * matrix(contact.frame).transpose() * vector(force);
@@ -209,8 +212,11 @@ void MujocoPhysics::rest_on_touches() {
   }
 }
 
+// Within the cone the soft friction of MuJoCo gives way and comes back: that is no slip.
 void MujocoPhysics::find_slips() {
-  for (Touch& touch : touches_) {
+  for (size_t i = 0; i < touches_.size(); ++i) {
+    if (slides_[i] == 0) continue;
+    Touch& touch = touches_[i];
     const Eigen::Vector3d velocity = Bodies(motions_)[touch.body].velocity(touch.p_W);
     touch.slip = h_ * (velocity - velocity.dot(touch.normal) * touch.normal);
   }

@@ -66,6 +66,7 @@ class MujocoPhysics : public Physics {
   Eigen::VectorXd joint_rate_;  // n, after the step
   std::vector<BodyMotion> motions_;
   std::vector<Touch> touches_;
+  std::vector<char> slides_;  // each of touches_: its friction is all that it can be
 };
 
 }  // namespace gaitd::sim

@@ -24,7 +24,7 @@ TEST(Config, EverythingIsRead) {
           "terrain": {"friction": 0.7, "ground_z": -1,
                       "boxes": [{"center": [1, 2, 3], "size": [1, 1, 1], "rpy": [0, 0.1, 0]},
                                 {"center": [0, 0, 0], "size": [1, 2, 1], "friction": 0.2}]},
-          "sensors": {"noise": {"gyro_noise": 0.1, "delay": 0.002}},
+          "sensors": {"noise": {"gyro_noise": 0.1, "delay": 0.002}, "episode": 2},
           "actuators": {"model": "nominal"},
           "model_error": {"mass_scale": {"block": 1.1}, "com_offset": {"block": [0, 0, 0.1]},
                           "inertia_scale": {"block": 2}, "friction": 0.5}})",
@@ -43,6 +43,7 @@ TEST(Config, EverythingIsRead) {
   EXPECT_EQ(config.sensors.gyro_noise.high(), 0.1);
   EXPECT_EQ(config.sensors.imu_delay.low(), 0.002);
   EXPECT_TRUE(config.sensors.force_noise.zero());
+  EXPECT_EQ(config.episode, 2u);
   EXPECT_EQ(config.actuators.bandwidth, 60);
   EXPECT_EQ(config.body_errors[0].mass_scale, 1.1);
   EXPECT_EQ(config.body_errors[0].com_offset.z(), 0.1);
@@ -72,7 +73,7 @@ TEST(Config, EveryMistakeIsNamedAtOnce) {
   const std::vector<std::string> errors = errors_of(
       R"({"start": {"x": "left", "w": 1}, "seed": -3, "time_step": 0.0003, "gravity": 9.81,
           "terrain": {"friction": -1, "boxes": [{"center": [0, 0], "size": [1, 0, 1]}, 7]},
-          "sensors": {"noise": "some"},
+          "sensors": {"noise": "some", "episode": 0.5},
           "actuators": {"model": {"bandwith": 60, "torque_noise": 2}},
           "model_error": {"mass_scale": {"head": 1.1, "block": 0}}})");
   const std::vector<std::string> expected = {"gravity: ",
@@ -86,6 +87,7 @@ TEST(Config, EveryMistakeIsNamedAtOnce) {
                                              "terrain.boxes[0].size: ",
                                              "terrain.boxes[1]: ",
                                              "sensors.noise: ",
+                                             "sensors.episode: ",
                                              "actuators.model.bandwith: ",
                                              "actuators.model.torque_noise: ",
                                              "model_error.mass_scale.head: ",

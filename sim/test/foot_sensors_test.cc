@@ -25,12 +25,12 @@ class FootSensorsTest : public testing::Test {
     state_.u = Eigen::VectorXd::Zero(6 + n);
     multibody_.set_state(state_);
   }
-  FootSensors sensors(const SensorFigures& figures, uint64_t seed = 1) {
+  FootSensors sensors(const SensorFigures& figures, const SensorSeed& seed = 1) {
     FootSensors feet(model_, figures, kStep, seed);
     feet.reset(multibody_.bodies(), contact_);
     return feet;
   }
-  FootWrench reading(const SensorFigures& figures, uint64_t seed = 1) {
+  FootWrench reading(const SensorFigures& figures, const SensorSeed& seed = 1) {
     FootSensors feet = sensors(figures, seed);
     feet.sample(multibody_.bodies(), contact_);
     return feet.newest(GAITD_LEFT);
@@ -259,6 +259,27 @@ TEST_F(FootSensorsTest, CrosstalkAndScaleMixTheAxes) {
     sum += std::pow(reading(figures, seed).force.z() / 1000 - 1, 2) / 400;
   }
   EXPECT_NEAR(std::sqrt(sum), 0.04, 0.004);
+}
+
+TEST_F(FootSensorsTest, OffsetsAndDriftsAreOfTheEpisodeAndCrosstalkOfTheRobot) {
+  contact_[GAITD_LEFT].force = Vector3d(20, -30, 800);
+  SensorFigures figures;
+  figures.force_crosstalk = 0.05;
+  figures.force_scale = 0.04;
+  EXPECT_EQ(reading(figures, {1, 1}).force, reading(figures, 1).force);
+  EXPECT_EQ(reading(figures, {1, 1}).moment, reading(figures, 1).moment);
+  for (Draw SensorFigures::*figure :
+       {&SensorFigures::force_offset, &SensorFigures::moment_offset, &SensorFigures::force_drift}) {
+    SensorFigures one = figures;
+    one.*figure = 40;
+    const auto shown = [&](const SensorSeed& seed) {
+      const FootWrench wrench = reading(one, seed);
+      return Vector3d(wrench.force + wrench.moment);
+    };
+    EXPECT_EQ(shown({1, 0}), shown(1));
+    EXPECT_NE(shown({1, 1}), shown(1));
+    EXPECT_NE(shown({1, 1}), shown({1, 2}));
+  }
 }
 
 TEST_F(FootSensorsTest, OneErrorChangesNothingOfTheOthers) {

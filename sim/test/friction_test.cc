@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "gaitd/sim/random.h"
+#include "gaitd/sim/real_drives.h"
 
 namespace gaitd::sim {
 namespace {
@@ -243,41 +244,49 @@ TEST(Friction, NeverGivesEnergyUnderImpacts) {
   }
 }
 
-// Where two joints with a common inertia are after three seconds of sines, every 10 ms; the solver
-// takes each step around two rates.
+// Where two joints with a common inertia are after three seconds of sines, every 10 ms. Their
+// drives have friction and are asked as a physics engine asks them.
 std::vector<Eigen::Vector2d> coupled_motion(double h) {
   Eigen::Matrix2d mass;
   mass << 1, 0.4, 0.4, 0.7;
-  Friction friction[2] = {Friction(reference()), Friction(reference())};
-  Eigen::Vector2d q = Eigen::Vector2d::Zero(), v = q;
+  GaitdModel model{};
+  model.joint_count = 2;
+  for (int k = 0; k < 2; ++k) model.joints[k].effort_limit = model.joints[k].velocity_limit = 100;
+  const FrictionLaw law = reference();
+  DriveFigures figures;
+  figures.coulomb_base = law.coulomb;
+  figures.static_ratio = law.static_ratio;
+  figures.stribeck_speed = law.stribeck_speed;
+  figures.viscous_base = law.viscous;
+  figures.presliding = law.presliding;
+  RealDrives drives(model, figures, Eigen::VectorXd::Constant(2, law.inertia), h, 1);
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(2), v = q, u = q;
   std::vector<Eigen::Vector2d> motion;
   const auto every = std::llround(0.01 / h);
   for (long i = 1; i <= 300 * every; ++i) {
     const double t = static_cast<double>(i) * h;
     const Eigen::Vector2d torque(22 * std::sin(7.3 * t) + 8 * std::sin(19 * t),
                                  18 * std::sin(9.1 * t + 1) - 9 * std::sin(23 * t));
-    Eigen::Vector2d u = v;
-    for (int k = 0; k < 2; ++k) friction[k].begin_step(h, v[k], 0);
-    for (int iterate = 0; iterate < 2; ++iterate) {
+    drives.begin_step(i, {q, v, q, v});
+    do {
       Eigen::Matrix2d matrix = mass;
       Eigen::Vector2d right = mass * v + h * torque;
       for (int k = 0; k < 2; ++k) {
-        if (iterate > 0) friction[k].linearise(u[k]);
-        matrix(k, k) += h * friction[k].slope();
-        right[k] -= h * friction[k].constant();
+        matrix(k, k) += h * drives.slope(k);
+        right[k] += h * drives.constant(k);
       }
       u = matrix.ldlt().solve(right);
-    }
+    } while (drives.revise(u));
+    drives.end_step(u);
     v = u;
     q += h * v;
-    for (int k = 0; k < 2; ++k) friction[k].end_step(v[k]);
-    if (i % every == 0) motion.push_back(q);
+    if (i % every == 0) motion.emplace_back(q);
   }
   return motion;
 }
 
 // A law that does not stick is wrong by as much as the joints move.
-TEST(Friction, ErrorsOfCoupledJointsHalveWithTheStep) {
+TEST(Friction, ErrorsOfCoupledDrivesHalveWithTheStep) {
   const std::vector<Eigen::Vector2d> exact = coupled_motion(5e-6);
   double size = 0;
   for (const Eigen::Vector2d& q : exact) size = std::max(size, q.cwiseAbs().maxCoeff());

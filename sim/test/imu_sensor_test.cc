@@ -27,12 +27,13 @@ class ImuSensorTest : public testing::Test {
     state.u.head<3>() = rate;
     multibody_.set_state(state);
   }
-  ImuSensor sensor(const SensorFigures& figures, uint64_t seed = 1, double time_step = kStep) {
+  ImuSensor sensor(const SensorFigures& figures, const SensorSeed& seed = 1,
+                   double time_step = kStep) {
     ImuSensor imu(model_, 0, figures, time_step, 2, seed);
     imu.reset(multibody_.bodies());
     return imu;
   }
-  ImuReading reading(const SensorFigures& figures, uint64_t seed = 1) {
+  ImuReading reading(const SensorFigures& figures, const SensorSeed& seed = 1) {
     ImuSensor imu = sensor(figures, seed);
     imu.sample(multibody_.bodies());
     return imu.newest();
@@ -209,6 +210,18 @@ TEST_F(ImuSensorTest, AStrikeRingsAndDiesAway) {
   }
   EXPECT_GT(peak, 2.4 * (1 - std::exp(-1)));
   EXPECT_LT(filtered, 0.4 * peak);
+}
+
+TEST_F(ImuSensorTest, BiasIsOfTheEpisodeAndScaleOfTheRobot) {
+  SensorFigures figures;
+  figures.imu_scale = 0.007;
+  figures.imu_misalignment = kDegree;
+  EXPECT_EQ(reading(figures, {1, 1}).specific_force, reading(figures, 1).specific_force);
+  figures.gyro_bias = 5e-3;
+  figures.accelerometer_bias = 0.3;
+  EXPECT_EQ(reading(figures, {1, 0}).specific_force, reading(figures, 1).specific_force);
+  EXPECT_NE(reading(figures, {1, 1}).specific_force, reading(figures, 1).specific_force);
+  EXPECT_NE(reading(figures, {1, 1}).angular_rate, reading(figures, {1, 2}).angular_rate);
 }
 
 TEST_F(ImuSensorTest, OneErrorChangesNothingOfTheOthers) {

@@ -22,7 +22,8 @@ class JointSensorsTest : public testing::Test {
     const int n = model_.joint_count;
     state_.q = Eigen::VectorXd::LinSpaced(n, -0.3, 0.4);
     state_.u = Eigen::VectorXd::Zero(6 + n);
-    drives_ = {Eigen::VectorXd::LinSpaced(n, -10, 20), Eigen::VectorXd::Zero(n)};
+    drives_ = {Eigen::VectorXd::LinSpaced(n, -10, 20), Eigen::VectorXd::Zero(n),
+               Eigen::VectorXd::LinSpaced(n, -2, 1)};
   }
   JointSensors sensors(const SensorFigures& figures, uint64_t seed = 1) const {
     JointSensors joints(model_, figures, kStep, seed);
@@ -64,6 +65,38 @@ TEST_F(JointSensorsTest, TheZeroErrorIsOfTheJointAndStays) {
   std::set<double> different;
   for (int j = 0; j < model_.joint_count; ++j) different.insert(first[j] - state_.q[j]);
   EXPECT_EQ(different.size(), static_cast<size_t>(model_.joint_count));
+}
+
+TEST_F(JointSensorsTest, TorqueSensorsOfRoughRobotsAreTwiceAsWrong) {
+  SensorFigures figures;
+  const Eigen::VectorXd real = drives_.torque + drives_.torque_error;
+  EXPECT_EQ(sensors(figures).newest().torque, drives_.torque);
+  figures.torque_error = SensorFigures::rough().torque_error;
+  JointSensors joints = sensors(figures);
+  for (int i = 0; i < 2; ++i) {
+    const Eigen::VectorXd error = joints.newest().torque - real;
+    EXPECT_TRUE(error.isApprox(-2 * drives_.torque_error, 1e-12)) << error.transpose();
+    drives_.torque_error *= 0.5;
+    drives_.torque = real - drives_.torque_error;
+    joints.sample(state_, drives_);
+  }
+  EXPECT_TRUE(SensorFigures::lab().torque_error.zero());
+}
+
+TEST_F(JointSensorsTest, NoiseIsOfTheEpisodeAndErrorsAreOfTheRobot) {
+  SensorFigures figures;
+  figures.joint_zero = Draw::uniform(-0.01, 0.01);
+  const auto shown = [&](const SensorSeed& seed) {
+    JointSensors joints(model_, figures, kStep, seed);
+    joints.reset(state_, drives_);
+    return joints.newest().position;
+  };
+  EXPECT_EQ(shown({1, 1}), shown(1));
+  figures.encoder_noise = 1e-4;
+  EXPECT_EQ(shown({1, 0}), shown(1));
+  EXPECT_EQ(shown({1, 1}), shown({1, 1}));
+  EXPECT_NE(shown({1, 1}), shown(1));
+  EXPECT_NE(shown({1, 1}), shown({1, 2}));
 }
 
 TEST_F(JointSensorsTest, ZeroErrorsOfManyRobotsHaveTheirFigures) {

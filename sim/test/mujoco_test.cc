@@ -93,6 +93,24 @@ TEST(Mujoco, SticksBelowTheFrictionConeWithoutCreepingAndSlidesAboveIt) {
   EXPECT_GT(truth_of(plant).pelvis_position[0] - before, 0.15);
 }
 
+// Friction that gives way and comes back is no slip, however often.
+TEST(Mujoco, OnlyWhatSlidesHasSlipped) {
+  MujocoPlant plant(block_model(), block_config());  // friction 0.8
+  for (int i = 0; i < 50; ++i) {
+    ASSERT_TRUE(plant.disturb(push((i % 2 == 0 ? 0.4 : -0.4) * kWeight, 0.02)));
+    ASSERT_TRUE(test::run(&plant, 0.02));
+  }
+  const GaitdTruth shaken = truth_of(plant);
+  for (const GaitdFootTruth& foot : shaken.feet) EXPECT_EQ(foot.slip, 0);
+  ASSERT_TRUE(plant.disturb(push(1.0 * kWeight, 0.2)));
+  double slip = 0;
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_TRUE(test::run(&plant, 0.001));
+    slip = std::max(slip, truth_of(plant).feet[0].slip);
+  }
+  EXPECT_GT(slip, 1e-4);
+}
+
 TEST(Mujoco, APushLeavesItsImpulseAlsoWhereItEndsWithinAStep) {
   Config config = block_config();
   MujocoPlant plant(block_model(), config);

@@ -60,6 +60,7 @@ TEST(RealDrives, BelieveTheirOwnSensor) {
   bench.command(torque_of(50));
   EXPECT_DOUBLE_EQ(bench.run(), 1.1 * 50 - 2);
   EXPECT_DOUBLE_EQ(bench.drives().readings().torque[0], 50);
+  EXPECT_NEAR(bench.drives().readings().torque_error[0], 0.1 * 50 - 2, 1e-12);
 }
 
 TEST(RealDrives, BiasHasAnAbsoluteLimit) {

@@ -301,7 +301,8 @@ TEST(Sensors, TheBoardOfADriveSeesTheEncoderAtOnce) {
   state.q = Eigen::VectorXd::Zero(n);
   state.u = Eigen::VectorXd::Zero(6 + n);
   multibody.set_state(state);
-  const DriveReadings drives{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Constant(n, 0.002)};
+  const DriveReadings drives{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Constant(n, 0.002),
+                             Eigen::VectorXd::Zero(n)};
   const FootWrench wrench[GAITD_MAX_FEET];
   sensors.reset(state, multibody.bodies(), drives, wrench);
   state.q.setConstant(0.3);

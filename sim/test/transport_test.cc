@@ -13,7 +13,7 @@ namespace {
 constexpr double kStep = 0.0005;
 constexpr int kSteps = 2;  // in a period of 1 ms
 
-Transport transport(const SensorFigures& figures, uint64_t seed = 3, uint64_t index = 0) {
+Transport transport(const SensorFigures& figures, const SensorSeed& seed = 3, uint64_t index = 0) {
   return {figures, figures.joint_delay, kStep, kSteps, seed, index};
 }
 
@@ -155,6 +155,23 @@ TEST(Transport, EverySensorDrawsItsOwnDelayAndStartsOverWithIt) {
   way.reset();
   const auto again = frames(way, 500);
   for (size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].stamp_ns, again[i].stamp_ns);
+}
+
+TEST(Transport, TheDelayIsOfTheRobotAndJitterOfTheEpisode) {
+  SensorFigures figures;
+  figures.set_delay(Draw::uniform(0.002, 0.008));
+  figures.jitter = 0.001;
+  EXPECT_EQ(transport(figures, {3, 1}).step(), transport(figures).step());
+  const auto ages = [&](const SensorSeed& seed) {
+    std::vector<double> all;
+    all.reserve(50);
+    for (const GaitdSignalInfo& info : frames(transport(figures, seed), 50)) {
+      all.push_back(info.age);
+    }
+    return all;
+  };
+  EXPECT_EQ(ages({3, 0}), ages(3));
+  EXPECT_NE(ages({3, 1}), ages(3));
 }
 
 TEST(DelayLine, ShowsWhatWasStoredAtThatStep) {

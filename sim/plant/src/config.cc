@@ -23,6 +23,16 @@ constexpr Range kHoist{0.02, 0.2};
 constexpr Range kFriction{0, 10};
 constexpr Range kDelay{0, 0.1};
 
+void read_whole(const char* key, JsonReader* reader, uint64_t* result) {
+  if (!reader->has(key)) return;
+  const json& value = reader->at(key);
+  if (value.is_number_integer() && (value.is_number_unsigned() || value.get<int64_t>() >= 0)) {
+    *result = value.get<uint64_t>();
+  } else {
+    reader->error(reader->path(key), "an integer >= 0", value);
+  }
+}
+
 void read_start(const json& value, std::vector<std::string>* errors, StartConfig* start) {
   JsonReader reader(value, "start", errors);
   reader.allow({"x", "y", "z", "yaw", "hoist"});
@@ -115,7 +125,8 @@ void read_sensor_faults(const json& list, const GaitdModel& model, std::vector<s
 void read_sensors(const json& value, const GaitdModel& model, std::vector<std::string>* errors,
                   Config* config) {
   JsonReader reader(value, "sensors", errors);
-  reader.allow({"noise", "faults"});
+  reader.allow({"noise", "faults", "episode"});
+  read_whole("episode", &reader, &config->episode);
   if (reader.has("faults")) {
     read_sensor_faults(reader.at("faults"), model, errors, &config->sensor_faults);
   }
@@ -206,14 +217,7 @@ void read_top(const json& root, const GaitdModel& model, double period,
               std::vector<std::string>* errors, Config* config) {
   JsonReader reader(root, "", errors);
   reader.allow({"start", "seed", "time_step", "terrain", "sensors", "actuators", "model_error"});
-  if (reader.has("seed")) {
-    const json& seed = reader.at("seed");
-    if (seed.is_number_integer() && (seed.is_number_unsigned() || seed.get<int64_t>() >= 0)) {
-      config->seed = seed.get<uint64_t>();
-    } else {
-      reader.error("seed", "an integer >= 0", seed);
-    }
-  }
+  read_whole("seed", &reader, &config->seed);
   reader.number("time_step", {1e-5, 2e-3}, &config->time_step);
   const double steps = period / config->time_step;
   if (std::abs(steps - std::round(steps)) > 1e-6 || steps < 0.5) {

@@ -36,14 +36,14 @@ FootWrench sum_foot_wrench(const GaitdModel& model, int side, const BodyMotion& 
 }
 
 FootSensors::FootSensors(const GaitdModel& model, const SensorFigures& figures, double time_step,
-                         uint64_t seed)
+                         const SensorSeed& seed)
     : model_(model),
       figures_(figures),
       time_step_(time_step),
       seed_(seed),
-      noise_(seed, RandomPurpose::kFootForce) {
+      noise_(seed.episode, RandomPurpose::kFootForce) {
   for (uint64_t side = 0; side < GAITD_MAX_FEET; ++side) {
-    jumps_.emplace_back(seed, RandomPurpose::kFootDrift, side);
+    jumps_.emplace_back(seed.episode, RandomPurpose::kFootDrift, side);
   }
 }
 
@@ -66,7 +66,7 @@ FootSensors::Matrix6 FootSensors::draw_distortion(RandomStream* stream, double c
 
 void FootSensors::draw_errors(int side) {
   const auto index = static_cast<uint64_t>(side);
-  RandomStream stream(seed_, RandomPurpose::kFootErrors, index);
+  RandomStream stream(seed_.robot, RandomPurpose::kFootErrors, index);
   Foot& foot = feet_[side];
   foot = Foot{};
   const double weight = model_.total_mass * model_.gravity;
@@ -85,17 +85,18 @@ void FootSensors::draw_errors(int side) {
   const double scale = figures_.force_scale.sample(&stream);
   foot.distorts = crosstalk > 0 || pair > 0 || scale > 0;
   foot.distortion = draw_distortion(&stream, crosstalk, pair, scale);
+  stream = seed_.go_on(stream, RandomPurpose::kFootErrors, index);
   foot.offset.moment = noise(&stream, moment_offset);
-  jumps_[index] = RandomStream(seed_, RandomPurpose::kFootDrift, index);
+  jumps_[index] = RandomStream(seed_.episode, RandomPurpose::kFootDrift, index);
   foot.drift = (drift / kDriftTime) * normal_vector(&jumps_[index]);
   // The stream of the biases gives those of the first IMU first.
-  RandomStream biases(seed_, RandomPurpose::kBias);
+  RandomStream biases(seed_.episode, RandomPurpose::kBias);
   for (int k = 0; k < 6 + 3 * side; ++k) biases.normal();
   foot.offset.force = noise(&biases, offset);
 }
 
 void FootSensors::reset(Bodies bodies, const FootWrench (&contact)[GAITD_MAX_FEET]) {
-  noise_ = RandomStream(seed_, RandomPurpose::kFootForce);
+  noise_ = RandomStream(seed_.episode, RandomPurpose::kFootForce);
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     draw_errors(side);
     own_wrench(side, bodies);

@@ -68,7 +68,7 @@ const Eigen::Vector3d& Ring::advance() {
 }
 
 ImuSensor::ImuSensor(const GaitdModel& model, int index, const SensorFigures& figures,
-                     double time_step, int steps_per_period, uint64_t seed)
+                     double time_step, int steps_per_period, const SensorSeed& seed)
     : figures_(figures),
       body_(model.imus[index].body),
       p_B_(model.imus[index].origin),
@@ -83,20 +83,20 @@ ImuSensor::ImuSensor(const GaitdModel& model, int index, const SensorFigures& fi
       rate_ring_(0, kRingTime, time_step),
       force_ring_(0, kRingTime, time_step),
       velocity_(static_cast<size_t>(steps_per_period), Eigen::Vector3d::Zero()),
-      gyro_(seed, RandomPurpose::kGyro, index_),
-      accelerometer_(seed, RandomPurpose::kAccelerometer, index_),
-      walk_stream_(seed, RandomPurpose::kImuWalk, index_),
-      strikes_(seed, RandomPurpose::kVibration, index_) {
+      gyro_(seed.episode, RandomPurpose::kGyro, index_),
+      accelerometer_(seed.episode, RandomPurpose::kAccelerometer, index_),
+      walk_stream_(seed.episode, RandomPurpose::kImuWalk, index_),
+      strikes_(seed.episode, RandomPurpose::kVibration, index_) {
   draw_errors();
 }
 
 void ImuSensor::draw_errors() {
-  gyro_ = RandomStream(seed_, RandomPurpose::kGyro, index_);
-  accelerometer_ = RandomStream(seed_, RandomPurpose::kAccelerometer, index_);
-  walk_stream_ = RandomStream(seed_, RandomPurpose::kImuWalk, index_);
-  strikes_ = RandomStream(seed_, RandomPurpose::kVibration, index_);
+  gyro_ = RandomStream(seed_.episode, RandomPurpose::kGyro, index_);
+  accelerometer_ = RandomStream(seed_.episode, RandomPurpose::kAccelerometer, index_);
+  walk_stream_ = RandomStream(seed_.episode, RandomPurpose::kImuWalk, index_);
+  strikes_ = RandomStream(seed_.episode, RandomPurpose::kVibration, index_);
 
-  RandomStream stream(seed_, RandomPurpose::kImuErrors, index_);
+  RandomStream stream(seed_.robot, RandomPurpose::kImuErrors, index_);
   gyro_noise_ = figures_.gyro_noise.sample(&stream);
   accelerometer_noise_ = figures_.accelerometer_noise.sample(&stream);
   const double gyro_bias = figures_.gyro_bias.sample(&stream);
@@ -119,7 +119,7 @@ void ImuSensor::draw_errors() {
   rate_filter_ = force_filter_ = LowPass(filter, time_step_);
   rate_ring_ = force_ring_ = Ring(frequency, kRingTime, time_step_);
 
-  RandomStream biases(seed_, RandomPurpose::kBias, index_);
+  RandomStream biases(seed_.episode, RandomPurpose::kBias, index_);
   const Eigen::Vector3d rate = normal_vector(&biases);
   const Eigen::Vector3d force = normal_vector(&biases);
   bias_ = ImuReading{};

@@ -13,13 +13,14 @@ constexpr double kSpikeTime = 0.002;  // s
 }  // namespace
 
 JointSensors::JointSensors(const GaitdModel& model, const SensorFigures& figures, double time_step,
-                           uint64_t seed)
+                           const SensorSeed& seed)
     : figures_(figures),
       time_step_(time_step),
       seed_(seed),
       encoders_(static_cast<size_t>(model.joint_count)),
-      noise_(seed, RandomPurpose::kEncoder),
-      spikes_(seed, RandomPurpose::kSpikes) {
+      torque_error_(Eigen::VectorXd::Zero(model.joint_count)),
+      noise_(seed.episode, RandomPurpose::kEncoder),
+      spikes_(seed.episode, RandomPurpose::kSpikes) {
   for (int j = 0; j < model.joint_count; ++j) {
     span_.push_back(model.joints[j].type == GAITD_JOINT_PRISMATIC ? 1.0 : 2 * std::numbers::pi);
   }
@@ -27,8 +28,9 @@ JointSensors::JointSensors(const GaitdModel& model, const SensorFigures& figures
 }
 
 void JointSensors::draw_errors() {
-  RandomStream zero(seed_, RandomPurpose::kJointZero);
-  RandomStream stream(seed_, RandomPurpose::kEncoderErrors);
+  RandomStream zero(seed_.robot, RandomPurpose::kJointZero);
+  RandomStream stream(seed_.robot, RandomPurpose::kEncoderErrors);
+  RandomStream torque(seed_.robot, RandomPurpose::kTorqueSensor);
   for (size_t j = 0; j < encoders_.size(); ++j) {
     Encoder& encoder = encoders_[j];
     encoder = Encoder{};
@@ -40,15 +42,16 @@ void JointSensors::draw_errors() {
     encoder.gain = -std::expm1(-2 * std::numbers::pi * filter * time_step_);
     encoder.spike_chance = figures_.spike_rate.sample(&stream) * time_step_;
     encoder.spike_size = figures_.spike_size.sample(&stream);
+    torque_error_[static_cast<Eigen::Index>(j)] = figures_.torque_error.sample(&torque);
   }
 }
 
 void JointSensors::reset(const State& state, const DriveReadings& drives) {
-  noise_ = RandomStream(seed_, RandomPurpose::kEncoder);
-  spikes_ = RandomStream(seed_, RandomPurpose::kSpikes);
+  noise_ = RandomStream(seed_.episode, RandomPurpose::kEncoder);
+  spikes_ = RandomStream(seed_.episode, RandomPurpose::kSpikes);
   draw_errors();
   newest_.velocity.setZero();
-  newest_.torque = drives.torque;
+  show_torque(drives);
   for (size_t j = 0; j < encoders_.size(); ++j) {
     const auto i = static_cast<Eigen::Index>(j);
     encoders_[j].deflection = drives.deflection[i];
@@ -85,6 +88,10 @@ double JointSensors::encode(double position, Encoder* encoder) {
   return position;
 }
 
+void JointSensors::show_torque(const DriveReadings& drives) {
+  newest_.torque = drives.torque - torque_error_.cwiseProduct(drives.torque_error);
+}
+
 void JointSensors::sample(const State& state, const DriveReadings& drives) {
   for (size_t j = 0; j < encoders_.size(); ++j) {
     const auto i = static_cast<Eigen::Index>(j);
@@ -104,7 +111,7 @@ void JointSensors::sample(const State& state, const DriveReadings& drives) {
     encoder.deflection = deflection;
     newest_.position[i] = reading;
   }
-  newest_.torque = drives.torque;
+  show_torque(drives);
 }
 
 }  // namespace gaitd::sim

@@ -24,7 +24,7 @@ NominalDrives::NominalDrives(const GaitdModel& model, const ActuatorFigures& fig
       queue_(delay_steps_),
       random_(seed, RandomPurpose::kTorque),
       torque_(Eigen::VectorXd::Zero(model.joint_count)),
-      readings_{torque_, torque_} {
+      readings_{torque_, torque_, torque_} {
   if (figures.bandwidth > 0) {
     filter_gain_ = -std::expm1(-2 * std::numbers::pi * figures.bandwidth * time_step);
   }

@@ -37,7 +37,8 @@ Plant::Plant(const GaitdModel& model, const Config& config, double period,
       period_(period),
       steps_per_period_(static_cast<int>(std::lround(period / config.time_step))),
       physics_(make(model_, Terrain(config.terrain, config.friction_scale), config.time_step)),
-      sensors_(model_, config.sensors, config.time_step, steps_per_period_, config.seed),
+      sensors_(model_, config.sensors, config.time_step, steps_per_period_,
+               {config.seed, config.episode}),
       truth_(model_) {
   start_ = make_start_state(model_, config, physics_.get());
   physics_->place(start_);

@@ -20,6 +20,9 @@ uint64_t mix(uint64_t x) {
 RandomStream::RandomStream(uint64_t seed, RandomPurpose purpose, uint64_t index)
     : engine_(mix(mix(seed) + static_cast<uint64_t>(purpose) + (index << 8))) {}
 
+SensorSeed::SensorSeed(uint64_t robot_seed, uint64_t number)
+    : robot(robot_seed), episode(number == 0 ? robot_seed : mix(mix(robot_seed) + mix(number))) {}
+
 double RandomStream::uniform() { return (static_cast<double>(engine_() >> 11) + 1.0) * 0x1.0p-53; }
 
 double RandomStream::normal() {

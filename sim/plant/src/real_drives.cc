@@ -41,7 +41,7 @@ RealDrives::RealDrives(const GaitdModel& model, const DriveFigures& figures,
       bus_(0, {}, time_step, seed),
       random_(seed, RandomPurpose::kTorque),
       torque_(Eigen::VectorXd::Zero(model.joint_count)),
-      readings_{torque_, torque_} {
+      readings_{torque_, torque_, torque_} {
   const DrawnDrives drawn = draw_drives(model, figures, seed);
   bus_ = CommandBus(drawn.command_delay, drawn.commands, time_step, seed);
   for (int j = 0; j < model.joint_count; ++j) {
@@ -63,6 +63,7 @@ void RealDrives::reset() {
   torque_.setZero();
   readings_.torque.setZero();
   readings_.deflection.setZero();
+  readings_.torque_error.setZero();
 }
 
 // N m, with the gains on what the encoder of the drive shows.
@@ -180,6 +181,7 @@ void RealDrives::end_step(const Eigen::VectorXd& u) {
     // anything.
     if (!drive.own.spring && drive.own.stiffness > 0) deflection += turning / drive.own.stiffness;
     readings_.torque[j] = (drive.torque - drive.own.bias) / (1 + drive.own.scale_error);
+    readings_.torque_error[j] = drive.torque - readings_.torque[j];
     readings_.deflection[j] = deflection;
   }
 }

@@ -141,6 +141,7 @@ SensorFigures SensorFigures::rough() {
   f.velocity_filter = 25;  // IHMC on Valkyrie
   f.spike_rate = 1e-3;     // iCub: interference made spikes of 20 to 80 degrees
   f.spike_size = 20 * kDegree;
+  f.torque_error = 1;  // estimate: twice the errors of the class of drives
 
   f.gyro_noise = Draw::uniform(3e-3, 8e-3);  // catalogue, BMI088 class, at 1 kHz
   f.gyro_bias = 5e-3;                        // IHMC on Atlas: 0.0075 and -0.008 rad/s

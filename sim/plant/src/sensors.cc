@@ -14,7 +14,7 @@ constexpr uint64_t kImuFrames = kFootFrames + GAITD_MAX_FEET;
 }  // namespace
 
 Sensors::Sensors(const GaitdModel& model, const SensorFigures& figures, double time_step,
-                 int steps_per_period, uint64_t seed)
+                 int steps_per_period, const SensorSeed& seed)
     : joint_count_(model.joint_count),
       foot_count_(model.feet[GAITD_LEFT].force_sensor.body >= 0 &&
                           model.feet[GAITD_RIGHT].force_sensor.body >= 0

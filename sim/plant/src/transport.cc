@@ -7,7 +7,7 @@
 namespace gaitd::sim {
 
 Transport::Transport(const SensorFigures& figures, const Draw& delay, double time_step,
-                     int steps_per_period, uint64_t seed, uint64_t index)
+                     int steps_per_period, const SensorSeed& seed, uint64_t index)
     : arrival_stamps_(figures.arrival_stamps),
       delay_range_(delay),
       time_step_(time_step),
@@ -16,7 +16,7 @@ Transport::Transport(const SensorFigures& figures, const Draw& delay, double tim
       index_(index),
       timing_({figures.jitter, figures.jitter_tail, figures.lost_frames, figures.lost_burst}),
       longest_(delay_steps(delay.high() + timing_.latest())),
-      stream_(seed, RandomPurpose::kTiming, index) {
+      stream_(seed.episode, RandomPurpose::kTiming, index) {
   reset();
 }
 
@@ -25,9 +25,10 @@ int Transport::delay_steps(double delay) const {
 }
 
 void Transport::reset() {
-  stream_ = RandomStream(seed_, RandomPurpose::kTiming, index_);
-  delay_ = delay_range_.sample(&stream_);
-  timing_.draw(&stream_);
+  RandomStream robot(seed_.robot, RandomPurpose::kTiming, index_);
+  delay_ = delay_range_.sample(&robot);
+  timing_.draw(&robot);
+  stream_ = seed_.go_on(robot, RandomPurpose::kTiming, index_);
   step_ = -delay_steps(delay_);
   arrival_ = 0;
 }

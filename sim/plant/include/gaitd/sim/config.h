@@ -69,6 +69,7 @@ struct Config {
   double time_step = 0.0005;  // s
   TerrainConfig terrain;
   SensorFigures sensors;
+  uint64_t episode = 0;  // of the sensors: which time it is that this robot is switched on
   std::vector<SensorFault> sensor_faults;
   ActuatorFigures actuators;
   std::optional<DriveFigures> drives;  // real ones, in place of `actuators`

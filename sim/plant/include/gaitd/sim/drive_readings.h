@@ -8,8 +8,9 @@
 namespace gaitd::sim {
 
 struct DriveReadings {
-  Eigen::VectorXd torque;      // n, N m, as the drive's own torque sensor or its current says
-  Eigen::VectorXd deflection;  // n, rad, position on the encoder's (motor) side minus the link's
+  Eigen::VectorXd torque;        // n, N m, as the drive's own torque sensor or its current says
+  Eigen::VectorXd deflection;    // n, rad, position on the encoder's (motor) side minus the link's
+  Eigen::VectorXd torque_error;  // n, N m, by which there is more than `torque` says
 };
 
 }  // namespace gaitd::sim

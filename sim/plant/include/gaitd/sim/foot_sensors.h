@@ -40,7 +40,7 @@ class FootSensors {
  public:
   // `time_step`: s, between two samples.
   FootSensors(const GaitdModel& model, const SensorFigures& figures, double time_step,
-              uint64_t seed);
+              const SensorSeed& seed);
 
   // Draws the errors and starts over with the robot at rest in the state of `bodies`; `contact`
   // are the wrenches of the contacts alone.
@@ -86,7 +86,7 @@ class FootSensors {
   GaitdModel model_;
   SensorFigures figures_;
   double time_step_;
-  uint64_t seed_;
+  SensorSeed seed_;
   Foot feet_[GAITD_MAX_FEET];
   RandomStream noise_;
   std::vector<RandomStream> jumps_;  // one per foot

@@ -58,7 +58,7 @@ class ImuSensor {
  public:
   // `time_step`: s, between two samples; `steps_per_period`: samples in a control period.
   ImuSensor(const GaitdModel& model, int index, const SensorFigures& figures, double time_step,
-            int steps_per_period, uint64_t seed);
+            int steps_per_period, const SensorSeed& seed);
 
   // Draws the errors and starts over with the robot at rest in the state of `bodies`.
   void reset(Bodies bodies);
@@ -81,7 +81,7 @@ class ImuSensor {
   double gravity_;
   double time_step_;
   double period_;
-  uint64_t seed_;
+  SensorSeed seed_;
 
   double gyro_noise_ = 0;           // rad/s
   double accelerometer_noise_ = 0;  // m/s^2

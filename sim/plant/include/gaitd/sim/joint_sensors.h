@@ -25,7 +25,7 @@ class JointSensors {
  public:
   /// `time_step`: s, between two samples.
   JointSensors(const GaitdModel& model, const SensorFigures& figures, double time_step,
-               uint64_t seed);
+               const SensorSeed& seed);
 
   /// Draws the errors and starts over at rest in `state`.
   void reset(const State& state, const DriveReadings& drives);
@@ -52,13 +52,15 @@ class JointSensors {
 
   void draw_errors();
   double encode(double position, Encoder* encoder);
+  void show_torque(const DriveReadings& drives);
   void update_spike(Encoder* encoder);
 
   SensorFigures figures_;
   double time_step_;
-  uint64_t seed_;
+  SensorSeed seed_;
   std::vector<double> span_;  // rad or m, that an encoder divides
   std::vector<Encoder> encoders_;
+  Eigen::VectorXd torque_error_;  // n, share of the drives' own errors that comes on top
   JointReadings newest_;
   RandomStream noise_, spikes_;
 };

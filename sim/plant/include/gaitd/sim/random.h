@@ -38,6 +38,7 @@ enum class RandomPurpose : uint64_t {
   kCogging = 28,
   kRange = 30,
   kRangeMount = 31,
+  kTorqueSensor = 32,
 };
 
 class RandomStream {
@@ -52,6 +53,19 @@ class RandomStream {
   std::mt19937_64 engine_;
   double spare_ = 0;
   bool has_spare_ = false;
+};
+
+// Seeds of what sensors draw. In episode 0 both are that of the robot.
+struct SensorSeed {
+  SensorSeed(uint64_t robot_seed, uint64_t number = 0);  // NOLINT(google-explicit-constructor)
+
+  // Noise after what the robot has drawn from `stream`.
+  RandomStream go_on(const RandomStream& stream, RandomPurpose purpose, uint64_t index) const {
+    return episode == robot ? stream : RandomStream(episode, purpose, index);
+  }
+
+  uint64_t robot;    // what it keeps: zeros, scales, delays
+  uint64_t episode;  // what is another each time that it is switched on: biases, drifts, noise
 };
 
 }  // namespace gaitd::sim

@@ -25,6 +25,7 @@ inline constexpr SensorFigureKey kSensorFigureKeys[] = {
     {"velocity_filter", 0, 1e5, "Hz", &SensorFigures::velocity_filter},
     {"spike_rate", 0, 100, "1/s", &SensorFigures::spike_rate},
     {"spike_size", 0, 10, "rad", &SensorFigures::spike_size},
+    {"torque_error", 0, 100, "", &SensorFigures::torque_error},
     {"gyro_noise", 0, 10, "rad/s", &SensorFigures::gyro_noise},
     {"gyro_bias", 0, 10, "rad/s", &SensorFigures::gyro_bias},
     {"gyro_walk", 0, 1, "rad/s/sqrt(s)", &SensorFigures::gyro_walk},

@@ -15,7 +15,7 @@ namespace gaitd::sim {
 ///
 /// "sigma, each reading": white noise, independent from reading to reading at the rate at which
 /// they are read. "sigma": the standard deviation from which an error of each axis is drawn, once
-/// per run.
+/// per robot; biases, offsets and drifts once per episode (SensorSeed).
 struct SensorFigures {
   // Joints. The speed is the difference of the readings of the encoder.
   Draw joint_zero;       // rad, the error itself; m for a prismatic joint
@@ -24,6 +24,7 @@ struct SensorFigures {
   Draw velocity_filter;  // Hz, first order; 0: the exact velocity
   Draw spike_rate;       // 1/s, of single wrong readings
   Draw spike_size;       // rad, either way, for 2 ms
+  Draw torque_error;     // share of the error of the drive's own sensor, on top of that error
 
   // IMUs.
   Draw gyro_noise;           // rad/s, sigma, each reading

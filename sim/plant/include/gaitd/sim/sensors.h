@@ -25,7 +25,7 @@ class Sensors {
  public:
   // `time_step`: of the plant; `steps_per_period`: plant steps in a control period.
   Sensors(const GaitdModel& model, const SensorFigures& figures, double time_step,
-          int steps_per_period, uint64_t seed);
+          int steps_per_period, const SensorSeed& seed);
 
   // Starts over with the robot at rest in `state`: its whole past is this state. `wrench`: of the
   // contacts alone.

@@ -24,7 +24,7 @@ class Transport {
   // `delay`: which one of `figures`; `index`: of the sensor, among all that have a way of their
   // own. `time_step`: of the plant, s; `steps_per_period`: plant steps in a control period.
   Transport(const SensorFigures& figures, const Draw& delay, double time_step, int steps_per_period,
-            uint64_t seed, uint64_t index);
+            const SensorSeed& seed, uint64_t index);
 
   // Oldest measurement that a frame may bring, in plant steps.
   int longest_delay() const { return longest_; }
@@ -48,7 +48,7 @@ class Transport {
   Draw delay_range_;
   double time_step_;
   int steps_per_period_;
-  uint64_t seed_;
+  SensorSeed seed_;
   uint64_t index_;
   FrameTiming timing_;
   int longest_;
