@@ -17,7 +17,9 @@ GaitdStatus BackendPort::call(Function&& function) {
 
 GaitdStatus BackendPort::read(GaitdSensors* sensors) {
   const GaitdStatus status = call([&] { return backend_.vtable->read(backend_.self, sensors); });
+  problem_ = "read failed";
   if (status != GAITD_OK) return status;
+  problem_ = "wrong number of joints, IMUs or feet";
   const bool of_model = sensors->joint_count == model_.joint_count &&
                         sensors->imu_count == model_.imu_count &&
                         (sensors->foot_count == 0 || sensors->foot_count == int{GAITD_MAX_FEET});
@@ -37,11 +39,11 @@ bool BackendPort::truth(GaitdTruth* truth) {
          call([&] { return backend_.vtable->truth(backend_.self, truth); }) == GAITD_OK;
 }
 
-std::uint32_t BackendPort::health() const {
+std::uint32_t BackendPort::health() {
   if (backend_.vtable->health == nullptr) return 0;
   GaitdHealth health{};
   const bool known =
-      contained([&] { return backend_.vtable->health(backend_.self, &health); }) == GAITD_OK;
+      call([&] { return backend_.vtable->health(backend_.self, &health); }) == GAITD_OK;
   return known ? health.conditions : std::uint32_t{GAITD_HEALTH_BUS};
 }
 

@@ -20,11 +20,12 @@ class BackendPort {
       : backend_(backend), model_(model) {}
 
   GaitdStatus read(GaitdSensors* sensors);
+  const char* read_problem() const { return problem_; }  // of the last read that failed
   bool write(const GaitdJointCommands& commands);
   bool advance();
   bool truth(GaitdTruth* truth);
   // GAITD_HEALTH_*. A robot that cannot say how it is counts as one that cannot be reached.
-  std::uint32_t health() const;
+  std::uint32_t health();
 
   bool has_pushes() const { return backend_.vtable->disturb != nullptr; }
   // Pushes or loads the simulated robot. Null, or why not: a backend that is no simulation, and one
@@ -42,6 +43,7 @@ class BackendPort {
 
   GaitdBackendInstance backend_;
   const GaitdModel& model_;
+  const char* problem_ = "";
   std::atomic<bool> inside_{false};
 };
 

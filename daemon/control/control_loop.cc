@@ -111,7 +111,7 @@ LoopReport ControlLoop::run() {
       ++report_.late_backend;
       go_without_readings();
     } else {
-      if (!std::exchange(read_failed_, true)) backend_failed("read failed");
+      if (!std::exchange(read_failed_, true)) backend_failed(backend_.read_problem());
       go_without_readings();
       // A simulation that cannot be read will not mend; a robot may.
       if (lockstep || (scenario_ != nullptr && time_unread_ > kUnreadTime)) {

@@ -94,6 +94,7 @@ class ControlLoop {
   void begin_goto(const Command& command, bool from_client);
   void give_up_goto(const Command& command);
   void tell_goto(const Command& command, bool from_client, CommandReply reply);
+  void answer_goto(const CommandReply& reply);
   void take_sights();
   void take_plan();
   void take_refinement();

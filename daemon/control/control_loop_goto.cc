@@ -97,8 +97,7 @@ void ControlLoop::take_plan() {
     pause_for_plan();
     step = goto_.step(pipeline_->gait(), command_.get());
   }
-  if (step != GotoTask::Step::kFootsteps)
-    show_goal();  // who gets its answer finds it in the status
+  if (step != GotoTask::Step::kFootsteps) show_goal();
   CommandReply reply;
   if (step == GotoTask::Step::kFootsteps) {
     if (const CommandReply taken = take_footsteps(*command_); taken.accepted) {
@@ -108,8 +107,7 @@ void ControlLoop::take_plan() {
       goto_.refused(taken.message.data());
     } else {
       std::snprintf(reply.message.data(), reply.message.size(), "%s", taken.message.data());
-      tell_goto(goto_.command(), goto_.from_client(), reply);
-      if (goto_.settle(false)) note_goto(kGivenUp);
+      answer_goto(reply);
     }
   } else if (step == GotoTask::Step::kEnded) {
     note_goto(goto_.message());
@@ -119,9 +117,19 @@ void ControlLoop::take_plan() {
     const bool waits = reply.accepted && gait.paused != 0 && gait.footstep_count > 0;
     std::snprintf(reply.message.data(), reply.message.size(), "%s%s", goto_.message(),
                   waits ? "; paused: the footsteps wait for `gaitctl resume`" : "");
-    tell_goto(goto_.command(), goto_.from_client(), reply);
-    if (goto_.settle(reply.accepted)) note_goto(kGivenUp);
+    answer_goto(reply);
   }
+}
+
+// After this it is the one that leads on, or the one before it is: who gets the answer finds that
+// in the status.
+void ControlLoop::answer_goto(const CommandReply& reply) {
+  *command_ = goto_.command();
+  const bool from_client = goto_.from_client();
+  const bool given_up = goto_.settle(reply.accepted);
+  show_goal();
+  tell_goto(*command_, from_client, reply);
+  if (given_up) note_goto(kGivenUp);
 }
 
 void ControlLoop::show_goal() {

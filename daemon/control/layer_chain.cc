@@ -6,7 +6,7 @@
 namespace gaitd::daemon {
 namespace {
 
-constexpr double kErrorTime = 0.5;  // s, in which the largest ICP error so far fades
+constexpr double kErrorTime = 2.5;  // s, some steps, in which the largest ICP error so far fades
 
 }  // namespace
 
@@ -73,10 +73,6 @@ void LayerChain::refuse_swap(const SwapOrder& order, const char* why) {
   with_slot(*this, order.layer, [&](auto& slot) { slot.refuse(order, why); });
 }
 
-bool LayerChain::swapping(int layer) const {
-  return with_slot(*this, layer, [](const auto& slot) { return slot.swapping(); });
-}
-
 void LayerChain::give_up_swaps(const char* why) {
   for (int i = GAITD_LAYER_ICP_PLANNER; i < GAITD_LAYER_COUNT; ++i) {
     with_slot(*this, i, [why](auto& slot) { slot.give_up(why); });
@@ -93,9 +89,8 @@ void LayerChain::watch_icp_error(double error, double dt) {
   if (error > icp_error_before_ + rules_.icp_error_growth) {
     std::apply([](auto&... slot) { (slot.doubt("the ICP error grows"), ...); }, slots_);
   }
-  for (int i = 0; i < GAITD_LAYER_COUNT; ++i) {
-    if (swapping(i)) return;
-  }
+  // Beside a newcomer that is not in use yet the error is still that of the others.
+  if (std::apply([](const auto&... slot) { return (slot.on_probation() || ...); }, slots_)) return;
   icp_error_before_ += std::min(1.0, dt / kErrorTime) * (error - icp_error_before_);
   icp_error_before_ = std::max(icp_error_before_, error);
 }

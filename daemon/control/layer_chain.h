@@ -55,7 +55,6 @@ class LayerChain {
   // `controlled`: the layers behind the estimator run. What comes of it is in the reports.
   void begin_swap(const SwapOrder& order, bool controlled);
   void refuse_swap(const SwapOrder& order, const char* why);
-  bool swapping(int layer) const;
   // The layers behind the estimator have stopped: ends their swaps.
   void give_up_swaps(const char* why);
   // Ends the swaps whose layer has not come into use yet.

@@ -92,6 +92,7 @@ class LayerSlot {
                   order.candidate);
   }
   bool swapping() const { return phase_ != Phase::kSteady; }
+  bool on_probation() const { return phase_ == Phase::kProbation; }
   bool has_previous() const { return previous_.layer != nullptr; }
 
   // Ends a swap that cannot go on: the layer does not run any more.

@@ -23,8 +23,8 @@ constexpr double kRestingSpeed = 0.03;   // m/s, of a foot on the ground
 // Joints are overtaken by impacts; only this multiple of the limit is impossible, and of a slow
 // joint no less than what a light limb reaches when it is thrown about.
 constexpr double kVelocityRatio = 3.0;
-// In a tick: more is a wrong reading, and no blow. The tolerance grows by as much in the time in
-// which a lasting fault is told, not sooner: the reading would become credible before.
+// In a tick: more is a wrong reading, and no blow. The tolerance grows only once a lasting fault
+// has been told: the reading would become credible before.
 constexpr double kGyroJump = 10.0;            // rad/s
 constexpr double kAccelerometerJump = 200.0;  // m/s^2
 constexpr double kForceRange = 20.0;          // weights, on a foot
@@ -210,7 +210,8 @@ void SensorMonitor::check_imus(double dt, const Limits& p, const Evidence& evide
     const GaitdImuSensor& imu = d.readings.imus[i];
     const GaitdImuSensor& held = before.imus[i];
     History& h = imus_[i];
-    const double missed = 1.0 + h.untrue / std::max(p[P::kSensorTimeout], dt);
+    const double timeout = std::max(p[P::kSensorTimeout], dt);
+    const double missed = std::max(1.0, h.untrue / timeout);
     const bool credible =
         finite(imu.angular_rate) && finite(imu.specific_force) && finite(imu.orientation) &&
         (!h.known || (near(imu.angular_rate, held.angular_rate, missed * kGyroJump) &&

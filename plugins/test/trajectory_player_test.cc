@@ -108,8 +108,14 @@ TEST_F(TrajectoryPlayerTest, AWalkLeavesTheRestOfTheMotionItsTime) {
   GaitdTaskReferences out = run(1.0);
   EXPECT_NEAR(out.com_shift[0], 0.0, 1e-12);
   EXPECT_NEAR(yaw(out), 0.1, 1e-3);
+  GaitdTaskSourceState state{};
+  player_.get_state(state);
   out = run(3.1);
   EXPECT_NEAR(out.com_shift[0], 0.0, 1e-12);
+  EXPECT_NEAR(yaw(out), 0.2, 1e-9);
+  // Another instance goes on with it, too.
+  player_.set_state(state);
+  out = run(3.1);
   EXPECT_NEAR(yaw(out), 0.2, 1e-9);
 }
 

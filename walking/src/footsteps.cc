@@ -13,6 +13,7 @@ namespace {
 // The feet stand where they are estimated: a step that is as long as allowed is not too long for
 // that.
 constexpr double kEstimateError = 0.005;  // m
+constexpr double kLevel = 0.05;           // rad, a sole lies down on what is tilted by less
 
 // Of the longest step forwards: one backwards, and the way of a foot from its foothold before.
 constexpr double kBackward = 0.6;
@@ -90,6 +91,20 @@ GaitdPose middle_pose(const GaitdPose& a, const GaitdPose& b) {
 double tilt_of(const GaitdPose& pose) {
   const Eigen::Vector3d up = sdk::quaternion(pose.orientation) * Eigen::Vector3d::UnitZ();
   return std::atan2(up.head<2>().norm(), up.z());
+}
+
+bool on_slope(const GaitdPose& a, const GaitdPose& b) {
+  const auto up = [](const GaitdPose& pose) -> Eigen::Vector3d {
+    return sdk::quaternion(pose.orientation) * Eigen::Vector3d::UnitZ();
+  };
+  return tilt_of(a) > kLevel && up(a).cross(up(b)).norm() < kLevel;
+}
+
+double first_level(const GaitdPose (&feet)[GAITD_MAX_FEET], int first) {
+  if (on_slope(feet[GAITD_LEFT], feet[GAITD_RIGHT])) {
+    return middle_pose(feet[GAITD_LEFT], feet[GAITD_RIGHT]).position[2];
+  }
+  return feet[other_side(first)].position[2];
 }
 
 Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,

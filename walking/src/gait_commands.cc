@@ -16,16 +16,6 @@ namespace {
 constexpr int kDistinctSteps = 5;
 
 constexpr int kMostReturning = 10;  // steps: who is pushed all the time does not step for ever
-constexpr double kLevel = 0.05;     // rad, a sole lies down on what is tilted by less
-
-// Both soles say that the ground is tilted, and alike: so it is beside them.
-bool on_slope(const GaitdPose& a, const GaitdPose& b) {
-  const auto up = [](const GaitdPose& pose) -> Eigen::Vector3d {
-    return sdk::quaternion(pose.orientation) * Eigen::Vector3d::UnitZ();
-  };
-  return tilt_of(a) > kLevel && up(a).cross(up(b)).norm() < kLevel;
-}
-
 }  // namespace
 
 Refusal GaitMachine::check_room(int count) const {
@@ -121,8 +111,7 @@ Refusal GaitMachine::walk(const WalkCommand& walk) {
     return refuse("walk: width %.3f m, at least %.3f expected, or the legs cross", width, least);
   }
   GaitdPose middle = middle_pose(feet[GAITD_LEFT], feet[GAITD_RIGHT]);
-  // Between two levels there is no ground: the walk goes on at that of the foot it begins on.
-  middle.position[2] = feet[other_side(first)].position[2];
+  middle.position[2] = first_level(feet, first);
   // From the third on each footstep is to the two before it as the one two further on: a long walk
   // is as good as a short one that ends with the same foot, and costs a tick no more.
   WalkCommand shorter = walk;

@@ -115,7 +115,7 @@ void GaitMachine::drive_on(int kept, int landed, const Eigen::Vector3d& missed) 
     // Into the walk with the foot on the side it goes to, so that the legs never close first.
     const bool left = v.lateral > 0.0 || (v.lateral == 0.0 && v.turn > 0.0);
     const int side = landed != GAITD_BOTH ? other_side(landed) : left ? GAITD_LEFT : GAITD_RIGHT;
-    if (landed == GAITD_BOTH) middle.position[2] = feet[other_side(side)].position[2];
+    if (landed == GAITD_BOTH) middle.position[2] = first_level(feet, side);
     GaitdFootstep footstep;
     Refusal refusal;
     for (int attempt = 0; attempt < kAttempts; ++attempt, v = scaled(v, kSlower)) {

@@ -98,6 +98,19 @@ TEST(GaitLevels, AStopClosesTheFeetOnTheSlopeOnWhichBothStand) {
   }
 }
 
+TEST(GaitLevels, AWalkFromASlopeAcrossGoesOnAtTheMeanOfItsFeet) {
+  SyntheticWalk w;
+  ASSERT_FALSE(w.machine.set_mode(GAITD_MODE_WALK_BENT).refused());
+  const auto steps = steps_across(w.gait(), 0.15, 0.15);
+  ASSERT_FALSE(w.machine.footsteps(steps.data(), 2, false).refused());
+  ASSERT_TRUE(w.run_until_phase(GAITD_PHASE_SWING, 2));
+  ASSERT_TRUE(w.run_until_stand());
+  const double mean = 0.5 * (steps[0].pose.position[2] + steps[1].pose.position[2]);
+  ASSERT_FALSE(w.machine.walk({.steps = 1, .length = 0.1}).refused());
+  w.tick();
+  EXPECT_NEAR(w.gait().commanded[0].pose.position[2], mean, 1e-9);
+}
+
 TEST(GaitLevels, ARefusalCountsTheStepThatTheTransferHasChosen) {
   SyntheticWalk w;
   ASSERT_FALSE(w.machine.set_mode(GAITD_MODE_WALK_BENT).refused());

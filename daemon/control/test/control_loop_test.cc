@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,6 +48,8 @@ class FailingBackend {
   int read_fails = kNever;
   int advance_fails = kNever;
   int neck_fails = kNever;
+  int read_throws = kNever;
+  int joints_more_from = kNever;
   int silent_from = kNever;
   int silent_for = 0;  // reads that find nothing new
   int mode_in_silence = -1;
@@ -56,12 +60,15 @@ class FailingBackend {
   static FailingBackend& of(void* self) { return *static_cast<FailingBackend*>(self); }
   GaitdStatus read(GaitdSensors& sensors) {
     if (tick >= read_fails) return GAITD_ERROR;
+    if (tick >= read_throws)
+      throw std::runtime_error("of a backend that was not made with the SDK");
     if (tick >= silent_from && silent_for > 0) {
       --silent_for;
       mode_in_silence = last_mode;
       return GAITD_NOT_READY;
     }
     bench.read(tick, sensors);
+    if (tick >= joints_more_from) ++sensors.joint_count;
     for (int i = 0; i < atlas().joint_count && tick >= neck_fails; ++i) {
       if (std::string_view(atlas().joints[i].name) == "neck_ay") sensors.joints[i].position = NAN;
     }
@@ -138,24 +145,33 @@ TEST_F(ControlLoopTest, AnEstopIsTakenBeforeEverythingElse) {
   EXPECT_TRUE(told(EventKind::kFault, "\"estop\""));
 }
 
-TEST_F(ControlLoopTest, AResetThatDoesNotKnowOfAnEstopIsRefused) {
+TEST_F(ControlLoopTest, WhatDoesNotKnowOfAnEstopSwitchesNothingOnAgain) {
   const auto commands = std::make_unique<CommandBridge>();
   bridge = commands.get();
-  std::optional<RpcResult> outdated;
+  std::array<std::optional<RpcResult>, 3> outdated;
   std::optional<RpcResult> late;
   Command reset;
+  for (std::size_t i = 0; i < outdated.size(); ++i) {
+    constexpr CommandType kTypes[] = {CommandType::kReset, CommandType::kArm,
+                                      CommandType::kJointTest};
+    reset.type = kTypes[i];
+    commands->submit(reset, {.connection = 1, .estops = estop.asked()},
+                     [&outdated, i](RpcResult r) { outdated[i] = std::move(r); });
+  }
   reset.type = CommandType::kReset;
-  commands->submit(reset, {.connection = 1, .estops = estop.asked()},
-                   [&](RpcResult r) { outdated = std::move(r); });
   estop.raise();
   commands->submit(reset, {.connection = 1, .estops = estop.asked()},
                    [&](RpcResult r) { late = std::move(r); });
   run(standing(0.05));
   commands->poll(CommandBridge::Clock::now() + std::chrono::seconds(1));
-  ASSERT_TRUE(outdated && late);
-  const auto* refused = std::get_if<RpcError>(&*outdated);
-  ASSERT_NE(refused, nullptr);
-  EXPECT_NE(refused->message.find("an e-stop was asked for after this command"), std::string::npos);
+  ASSERT_TRUE(late);
+  for (const auto& answer : outdated) {
+    ASSERT_TRUE(answer);
+    const auto* refused = std::get_if<RpcError>(&*answer);
+    ASSERT_NE(refused, nullptr);
+    EXPECT_NE(refused->message.find("an e-stop was asked for after this command"),
+              std::string::npos);
+  }
   EXPECT_TRUE(std::holds_alternative<nlohmann::json>(*late));
 }
 
@@ -206,6 +222,19 @@ TEST_F(ControlLoopTest, ABackendThatCannotBeReadIsAFaultAndTheRunFails) {
   EXPECT_NE(report.problem.find("read"), std::string::npos);
   EXPECT_EQ(backend.bench.pipeline->safety().faults(), kFaultBackend);
   EXPECT_TRUE(told(EventKind::kFault, R"({"fault":"backend","what":"read failed"})"));
+}
+
+TEST_F(ControlLoopTest, ABackendThatThrowsHasFailed) {
+  backend.read_throws = 30;
+  EXPECT_EQ(run(standing(0.5)).end, RunEnd::kBackend);
+  EXPECT_TRUE(told(EventKind::kFault, R"({"fault":"backend","what":"read failed"})"));
+}
+
+TEST_F(ControlLoopTest, ReadingsOfAnotherRobotAreNotLookedAt) {
+  backend.joints_more_from = 30;
+  EXPECT_EQ(run(standing(0.5)).end, RunEnd::kBackend);
+  EXPECT_TRUE(told(EventKind::kFault,
+                   R"({"fault":"backend","what":"wrong number of joints, IMUs or feet"})"));
 }
 
 TEST_F(ControlLoopTest, ARobotThatTellsNothingNewIsDamped) {

@@ -100,6 +100,22 @@ TEST_F(Slot, ShadowsSwitchesFadesAndKeepsTheOneBefore) {
   EXPECT_EQ(steps().back(), SwapStep::kRolledBack);
 }
 
+TEST_F(Slot, WhatIsNotInUseYetCanBeGivenUp) {
+  begin(planner(0.2));
+  ticks(2);
+  EXPECT_FALSE(slot_.on_probation());
+  slot_.give_up_shadow("a walk begins");
+  ticks(1);
+  EXPECT_EQ(steps(), (Steps{SwapStep::kShadow, SwapStep::kRefused}));
+  EXPECT_EQ(out_.icp[0], 0.1);
+  begin(planner(0.2));
+  ticks(4);
+  EXPECT_TRUE(slot_.on_probation());
+  slot_.give_up_shadow("a walk begins");  // too late, and no reason to go
+  ticks(10);
+  EXPECT_EQ(steps().back(), SwapStep::kDone);
+}
+
 TEST_F(Slot, TheOneBeforeKeepsUpWithTheParametersThatTheyShare) {
   begin(planner(0.2));
   ticks(20);

@@ -144,7 +144,7 @@ TEST(SensorMonitor, AJumpThatStaysBecomesTheFaultBeforeItIsBelieved) {
   const auto age = [&] { return b.data->sensors.imus[0].info.age; };
   for (int i = 0; age() <= timeout && i < 1000; ++i) {
     b.next();
-    b.data->readings.imus[0].angular_rate[1] = 25.0 + 1e-3 * i;
+    b.data->readings.imus[0].angular_rate[1] = 12.0 + 1e-3 * i;
     b.check();
     ASSERT_LT(b.data->sensors.imus[0].angular_rate[1], 1.0);
   }
@@ -152,10 +152,10 @@ TEST(SensorMonitor, AJumpThatStaysBecomesTheFaultBeforeItIsBelieved) {
   // Not for ever: a robot that was turned over meanwhile is armed again.
   for (int i = 0; i < 100; ++i) {
     b.next();
-    b.data->readings.imus[0].angular_rate[1] = 25.0 + 1e-3 * i;
+    b.data->readings.imus[0].angular_rate[1] = 12.0 + 1e-3 * i;
     b.check();
   }
-  EXPECT_GT(b.data->sensors.imus[0].angular_rate[1], 24.0);
+  EXPECT_GT(b.data->sensors.imus[0].angular_rate[1], 11.0);
 }
 
 TEST(SensorMonitor, NamesASensorThatIsSilent) {

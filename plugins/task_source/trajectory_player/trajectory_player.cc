@@ -261,7 +261,9 @@ void TrajectoryPlayer::get_state(GaitdTaskSourceState& state) const {
     GaitdMotionProgress& out = state.parts[i];
     out.id = p.id;
     out.kind = p.kind;
-    out.elapsed = i == GAITD_PART_PELVIS && leaving_ ? kOver : p.begun + p.elapsed;
+    // A walk has taken back what is over of the pelvis, and takes back the rest.
+    const bool over = i == GAITD_PART_PELVIS && leaving_ && p.elapsed >= p.pose.duration();
+    out.elapsed = over ? kOver : p.begun + p.elapsed;
     if (p.kind == GAITD_MOTION_ARM) {
       view(out.value) = p.joints_now.value;
       view(out.velocity) = p.joints_now.velocity;

@@ -159,7 +159,7 @@ Frame CanRobot::frame_for(int index, const GaitdJointCommand& command) {
     const bool off = !std::exchange(state.enabled, false);  // it was told so before
     const auto interval = static_cast<int64_t>(kClearInterval / options_.period);
     const bool clear = off && fault_of(index) != 0 && cycle_ % std::max<int64_t>(1, interval) == 0;
-    if (clear) state.told = 0;
+    state.clears = clear;
     return special(clear ? Special::kClear : Special::kDisable);
   }
   const bool wanted = command.mode == GAITD_JOINT_MODE_TORQUE && !buses_[motor.bus].down;
@@ -216,7 +216,11 @@ void CanRobot::send(int bus) {
   const int count = static_cast<int>(state.frames.size());
   bool down = false;
   const int sent = state.bus->send(state.frames.data(), count, &down);
-  for (int i = 0; i < sent; ++i) motors_[state.motors[i]].awaiting = true;
+  for (int i = 0; i < sent; ++i) {
+    MotorState& motor = motors_[state.motors[i]];
+    motor.awaiting = true;
+    if (std::exchange(motor.clears, false)) motor.told = 0;
+  }
   for (int i = sent; i < count; ++i) {
     MotorState& motor = motors_[state.motors[i]];
     if (motor.cycles_enabled == 0) motor.enabled = false;  // what did not go out was its Enable

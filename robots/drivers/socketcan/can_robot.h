@@ -57,8 +57,9 @@ class CanRobot {
     bool enabled = false;
     bool awaiting = false;  // of this cycle
     bool valid = false;
-    uint8_t error = 0;  // of the last reply
-    uint8_t told = 0;   // a fault that came by itself, until the motor is told to forget it
+    uint8_t error = 0;    // of the last reply
+    uint8_t told = 0;     // a fault that came by itself, until the motor is told to forget it
+    bool clears = false;  // in the frame of this cycle it is told to
     int cycles_enabled = 0;
     uint32_t owed = 0;  // replies of earlier cycles that may still come
     uint32_t sequence = 0;

@@ -85,6 +85,13 @@ GaitdPose middle_pose(const GaitdPose& a, const GaitdPose& b);
 // rad, of a sole out of the level.
 double tilt_of(const GaitdPose& pose);
 
+// Both soles say that the ground is tilted, and alike: so it is beside and between them.
+bool on_slope(const GaitdPose& a, const GaitdPose& b);
+
+// m, W: the height at which a walk from these feet goes on, whose first step is that of `first`.
+// Between two levels there is no ground: it is that of the foot that stays, on a slope the mean.
+double first_level(const GaitdPose (&feet)[GAITD_MAX_FEET], int first);
+
 // Whether `step` can be taken from `stance`, the pose of the other foot, by the foot that stands at
 // `from` before. `number` names the footstep in the message, from 1.
 Refusal check_footstep(const GaitdFootstep& step, const GaitdPose& stance, const GaitdPose& from,
