@@ -78,7 +78,7 @@ int put(const Context& context, const std::string& file, bool forget) {
   auto client = connect(context, kName, daemon::Role::kCommand);
   if (!client) return kNoDaemon;
   const Grid& grid = map->grid();
-  long long taken = 0, uncertain = 0, far = 0;
+  long long taken = 0, uncertain = 0, partly = 0, far = 0;
   for (int j = 0, j_end = 0; j < grid.rows; j = j_end) {
     j_end = end_of_tile(j, grid.rows, grid.origin.y(), grid.resolution);
     for (int i = 0, i_end = 0; i < grid.columns; i = i_end) {
@@ -92,16 +92,19 @@ int put(const Context& context, const std::string& file, bool forget) {
       const json& answer = std::get<json>(result);
       taken += answer.value("cells", 0);
       uncertain += answer.value("uncertain", 0);
+      partly += answer.value("partly", 0);
       far += answer.value("far", 0);
     }
   }
   if (context.json) {
-    std::cout << json_text({{"cells", taken}, {"uncertain", uncertain}, {"far", far}})
+    std::cout << json_text(
+                     {{"cells", taken}, {"uncertain", uncertain}, {"partly", partly}, {"far", far}})
               << std::flush;
     return kDone;
   }
   std::printf("%lld of %d cells taken", taken, map->known_cells());
   if (uncertain > 0) std::printf("; %lld are too uncertain to step on", uncertain);
+  if (partly > 0) std::printf("; %lld fill a cell of gaitd only in part", partly);
   if (far > 0) std::printf("; %lld are too far from the robot", far);
   std::printf("\n");
   return kDone;

@@ -34,6 +34,7 @@ using Clock = std::chrono::steady_clock;
 constexpr milliseconds kWatchRound{200};       // until keys and signals are looked at
 constexpr milliseconds kWatchSilent{1000};     // then the user is told
 constexpr milliseconds kWatchPatience{10000};  // with a gaitd that hangs
+constexpr const char* kHowToEnd = "q or Ctrl-C ends it";
 
 struct WatchOptions {
   double interval = 0.2;  // s
@@ -55,7 +56,7 @@ class Output {
     if (screen_) {
       lines_ = status_screen(status);
       lines_.emplace_back();
-      lines_.emplace_back("q or Ctrl-C ends it");
+      lines_.emplace_back(kHowToEnd);
       return screen_->draw(lines_);
     }
     std::cout << (json_ ? status.dump(-1, ' ', false, json::error_handler_t::replace)
@@ -63,13 +64,13 @@ class Output {
               << std::endl;
     return static_cast<bool>(std::cout);
   }
-  // Above the last status, which is old. Not between the lines of a script.
+  // Above the last status, if there was one, which is old. Not between the lines of a script.
   bool show_silence(milliseconds silent) {
     if (!screen_) return true;
-    std::vector<std::string> lines = {"gaitd has not answered for " +
-                                          std::to_string(silent.count() / 1000) +
-                                          " s: what stands below is old",
-                                      ""};
+    const std::string words =
+        "gaitd has not answered for " + std::to_string(silent.count() / 1000) + " s";
+    if (lines_.empty()) return screen_->draw({words, "", kHowToEnd});
+    std::vector<std::string> lines = {words + ": what stands below is old", ""};
     lines.insert(lines.end(), lines_.begin(), lines_.end());
     return screen_->draw(lines);
   }

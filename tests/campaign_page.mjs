@@ -59,9 +59,12 @@ check(comparisons.length === 2 && comparisons.every(({pairs}) => pairs === 6), '
 check(await page.locator('#comparisons figure').count() === 2, 'not every comparison is shown');
 // Seeds are counted by the pairs that a figure has, in which neither fell.
 const {seeds} = await page.evaluate(() => gaitd.data);
-const told = await page.locator('#comparisons').innerText();
-for (const {figure, more, pairs} of comparisons.flatMap(({figures}) => figures).filter((one) => one.more > 0)) {
+const undecided = comparisons.flatMap(({pairs: all, figures}, place) =>
+    figures.filter(({more}) => more > 0).map((one) => ({...one, all, place})));
+check(undecided.some(({pairs, all}) => pairs < all), 'no undecided figure has fewer pairs than its comparison');
+for (const {figure, more, pairs, place} of undecided) {
   const words = `${Math.ceil(more / (pairs / seeds)).toLocaleString('en')} more seeds`;
+  const told = await page.locator('#comparisons figure').nth(place).locator('tbody tr', {hasText: figure}).innerText();
   check(told.includes(words), `${figure} has ${pairs} pairs, but no '${words}' in ${told}`);
 }
 check(await page.locator('#polar img').evaluate((image) => image.naturalWidth > 0), 'no polar plot');

@@ -18,14 +18,9 @@ gaitctl --json watch --interval 0.02 | head -n 2 >"$scratch/json"
 (($(grep -c '^{.*"state":"standing".*}$' "$scratch/json") == 2)) || fail "not one object per line"
 expect 2 gaitctl watch --interval 0 2>/dev/null
 
-# A terminal that knows no escape codes: lines too.
-expect 0 script -qefc "TERM=dumb timeout --foreground --preserve-status 2 gaitctl watch" "$scratch/dumb" \
-  </dev/null >/dev/null
-grep -q 'standing.*ICP error' "$scratch/dumb" || fail "nothing on a dumb terminal: $(cat "$scratch/dumb")"
-if grep -q $'\e' "$scratch/dumb"; then fail "escape sequences on a dumb terminal"; fi
-
-# start_watch NAME ARGUMENTS...: on a terminal of $rows x $columns, its output in $scratch/NAME.
-rows=12 columns=60
+# start_watch NAME ARGUMENTS...: on a terminal $term of $rows x $columns, its output in $scratch/NAME, until it shows
+# $awaited.
+term=xterm rows=12 columns=60 awaited='ICP error'
 start_watch() {
   local name=$1
   shift
@@ -33,20 +28,31 @@ start_watch() {
   {
     code=0
     script -qefc "stty rows $rows cols $columns; echo \$\$ >$scratch/pid; \
-      exec env TERM=xterm gaitctl watch --interval 0.02 $*" "$scratch/$name" </dev/null >/dev/null || code=$?
+      exec env TERM=$term gaitctl watch --interval 0.02 $*" "$scratch/$name" </dev/null >/dev/null || code=$?
     echo "$code" >"$scratch/$name.code"
   } &
-  wait_until grep -qsF "ICP error" "$scratch/$name" || fail "watch shows nothing on a terminal: $(cat "$scratch/$name" 2>/dev/null)"
+  wait_until grep -qsaF "$awaited" "$scratch/$name" || fail "watch shows nothing on a terminal: $(cat "$scratch/$name" 2>/dev/null)"
 }
-# ends NAME CODE: the program has ended so, and left the terminal.
-ends() {
+# exits NAME CODE: the program has ended so.
+exits() {
   wait_until test -s "$scratch/$1.code" || fail "$1 does not end"
   [[ $(cat "$scratch/$1.code") == "$2" ]] ||
     fail "$1: exit code $(cat "$scratch/$1.code"), expected $2"
+}
+# ends NAME CODE: likewise, and left the terminal.
+ends() {
+  exits "$@"
   grep -qF "$enter" "$scratch/$1" || fail "$1: no alternate screen"
   [[ $(tail -c 400 "$scratch/$1") == *"$show_cursor$leave"* ]] ||
     fail "$1: the terminal is not restored"
 }
+
+# A terminal that knows no escape codes: lines too.
+term=dumb start_watch dumb
+kill -INT "$(cat "$scratch/pid")"
+exits dumb 0
+grep -q ' standing ' "$scratch/dumb" || fail "no lines on a dumb terminal: $(cat "$scratch/dumb")"
+if grep -q $'\e' "$scratch/dumb"; then fail "escape sequences on a dumb terminal"; fi
 
 for signal in INT TERM; do
   start_watch "$signal"
@@ -100,6 +106,12 @@ kill -STOP "$daemon"
 wait_until grep -qa 'has not answered for [1-9]' "$scratch/silent" || fail "old figures look like new ones"
 kill -INT "$(cat "$scratch/pid")"
 ends silent 0
+# Nor does one that has never answered.
+awaited='has not answered for' start_watch mute --reconnect
+wait_until grep -qaF 'q or Ctrl-C ends it' "$scratch/mute" || fail "it does not say how to end it"
+if grep -qaF 'stands below' "$scratch/mute"; then fail "it speaks of a status that never came"; fi
+kill -INT "$(cat "$scratch/pid")"
+ends mute 0
 kill -CONT "$daemon"
 
 # When gaitd ends.

@@ -86,6 +86,14 @@ std::string share_text(const json& count) {
   return count["successes"].dump() + "/" + count["runs"].dump();
 }
 
+std::string where_text(const json& target) {
+  std::string text;
+  for (const auto& [key, value] : target["where"].items()) {
+    text.append(key).append("=").append(value.get<std::string>()).append(" ");
+  }
+  return text;
+}
+
 }  // namespace
 
 void read_success_min(MapReader* root, Campaign* campaign) {
@@ -155,8 +163,9 @@ json groups_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
 }
 
 json targets_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                  const CampaignResults& results) {
+                  const CampaignResults& results, json* without_runs) {
   json targets = json::array();
+  *without_runs = json::array();
   for (const CampaignTarget& target : campaign.targets) {
     Count count;
     for (const auto& [number, result] : results) {
@@ -170,10 +179,14 @@ json targets_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
       count.falls += result.fell ? 1 : 0;
       count.refusals += result.refused ? 1 : 0;
     }
-    if (count.runs == 0) continue;
+    json where = json::object();
+    for (const auto& [key, value] : target.where) where[key] = value;
+    if (count.runs == 0) {
+      without_runs->push_back({{"where", where}, {"rate", target.rate}});
+      continue;
+    }
     json entry = count_json(count);
-    entry["where"] = json::object();
-    for (const auto& [key, value] : target.where) entry["where"][key] = value;
+    entry["where"] = where;
     entry["rate"] = target.rate;
     entry["pass"] = entry["success_rate"] >= target.rate;
     targets.push_back(entry);
@@ -198,15 +211,16 @@ std::string groups_text(const json& groups, std::size_t columns) {
   return text;
 }
 
-std::string targets_text(const json& targets) {
+std::string targets_text(const json& targets, const json& without_runs) {
   std::string text;
   for (const json& target : targets) {
     text += target["pass"].get<bool>() ? "  ok    " : "  FAIL  ";
-    for (const auto& [key, value] : target["where"].items()) {
-      text += key + "=" + value.get<std::string>() + " ";
-    }
-    text += share_text(target) + ", " + percent_text(target["success_rate"]) + " (" +
-            interval_text(target) + "), at least " + percent_text(target["rate"]) + " expected\n";
+    text += where_text(target) + share_text(target) + ", " + percent_text(target["success_rate"]) +
+            " (" + interval_text(target) + "), at least " + percent_text(target["rate"]) +
+            " expected\n";
+  }
+  for (const json& target : without_runs) {
+    text.append("  --    ").append(where_text(target)).append("not judged: no runs\n");
   }
   return text;
 }

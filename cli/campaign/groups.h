@@ -22,14 +22,14 @@ void read_groups(daemon::MapReader* root, Campaign* campaign);
 nlohmann::json groups_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
                            const CampaignResults& results);
 
-/// How often the runs of each target succeeded, and whether that is enough; those without any run
-/// are left out.
+/// How often the runs of each target succeeded, and whether that is enough. Those that no run is
+/// about go to `without_runs`.
 nlohmann::json targets_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
-                            const CampaignResults& results);
+                            const CampaignResults& results, nlohmann::json* without_runs);
 
 /// Both as they stand in the summary; tables are at most `columns` wide, 0: no limit.
 std::string groups_text(const nlohmann::json& groups, std::size_t columns);
-std::string targets_text(const nlohmann::json& targets);
+std::string targets_text(const nlohmann::json& targets, const nlohmann::json& without_runs);
 
 /// A share as a percentage, with so many digits that only all of them are 100 and none of them 0.
 std::string percent_text(double share);

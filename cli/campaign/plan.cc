@@ -88,9 +88,9 @@ std::optional<CampaignPlan> make_plan(const CampaignOrigin& origin, const std::s
     return std::nullopt;
   }
   CampaignPlan plan{origin, std::move(*campaign), "", {}, {}};
-  for (const std::string& setting : origin.settings) {
+  for (std::string& setting : plan.origin.settings) {
     error->clear();
-    if (!narrow(&plan.campaign, setting, error)) plan.settings.push_back(setting);
+    if (!narrow(&plan.campaign, &setting, error)) plan.settings.push_back(setting);
     if (!error->empty()) return std::nullopt;
   }
   plan.runs = expand(plan.campaign);
@@ -125,29 +125,25 @@ std::string present_build() {
   for (const fs::path& folder : paths.plugin_folders()) {
     std::error_code ignored;
     std::set<fs::path> libraries;  // in the same order on every machine
-    for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
-      if (entry.path().extension() == ".so") libraries.insert(entry.path());
+    fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied,
+                                           ignored);
+    for (; entry != fs::recursive_directory_iterator(); entry.increment(ignored)) {
+      if (entry->path().extension() == ".so") libraries.insert(entry->path());
     }
     for (const fs::path& library : libraries) sum = daemon::crc32(read_file(library), sum);
   }
   return "gaitd " GAITD_VERSION " (" + checksum_text(sum) + ")";
 }
 
-bool is_file(const std::string& name) {
-  std::error_code ignored;
-  return fs::is_regular_file(name, ignored);
-}
-
-// A word like `nominal` is no file, whatever lies in this folder.
 std::string with_whole_path(const std::string& setting) {
   const std::size_t begin = setting.find('=') + 1;
-  const std::string value = setting.substr(begin);
-  if (value.find_first_of("./") == std::string::npos || !is_file(value)) return setting;
-  return setting.substr(0, begin) + fs::absolute(value).lexically_normal().string();
+  const std::string file = file_of(setting.substr(begin));
+  return file.empty() ? setting : setting.substr(0, begin) + file;
 }
 
 void add_files(const daemon::Node& value, std::set<std::string>* files) {
-  if (value.kind == daemon::NodeKind::kScalar && is_file(value.text)) files->insert(value.text);
+  const bool named = value.kind == daemon::NodeKind::kScalar && !file_of(value.text).empty();
+  if (named) files->insert(value.text);
   for (const daemon::NodePtr& item : value.items) add_files(*item, files);
   for (const daemon::Node::Entry& entry : value.entries) add_files(*entry.value, files);
 }
@@ -180,7 +176,7 @@ std::optional<CampaignPlan> plan_of_file(const CampaignOrigin& asked, std::strin
   if (!plan) return plan;
   plan->origin.build = present_build();
   // What --set says makes another campaign of it, and so does what the scenarios say.
-  for (const std::string& setting : origin.settings) {
+  for (const std::string& setting : plan->origin.settings) {
     plan->text += "# --set " + comment_text(setting) + "\n";
   }
   // A library that is built anew is another one.

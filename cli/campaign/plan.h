@@ -31,7 +31,7 @@ struct CampaignPlan {
 };
 
 /// From the file that was asked for; a file that --set names by a relative path is named by the
-/// whole one from then on. Nothing with a reason in `error`.
+/// whole one from then on, or as the campaign names it. Nothing with a reason in `error`.
 std::optional<CampaignPlan> plan_of_file(const CampaignOrigin& asked, std::string* error);
 
 /// From a folder that a campaign or a shard was played in, also if its scenarios have gone since.

@@ -15,6 +15,7 @@
 #include <sstream>
 #include <utility>
 
+#include "cli/campaign/settings.h"
 #include "cli/one_line.h"
 #include "cli/scenario_run.h"
 #include "cli/whole_file.h"
@@ -165,24 +166,28 @@ std::string ResultFormat::header() const {
   return joined(fields) + "\n";
 }
 
-std::string ResultFormat::beginning(int number) const {
+std::vector<std::string> ResultFormat::beginning(int number) const {
   const CampaignRun& run = runs_[static_cast<std::size_t>(number) - 1];
   std::vector<std::string> fields{std::to_string(run.number), run.scenario,
                                   std::to_string(run.seed)};
   fields.insert(fields.end(), run.values.begin(), run.values.end());
   fields.insert(fields.end(), run.drawn.begin(), run.drawn.end());
-  return joined(fields) + ",";
+  return fields;
 }
 
 bool ResultFormat::is_of_run(const std::string& line, int number) const {
-  return line.starts_with(beginning(number));
+  const std::vector<std::string> fields = split(line), own = beginning(number);
+  return fields.size() > own.size() &&
+         std::equal(own.begin(), own.end(), fields.begin(), [](const auto& a, const auto& b) {
+           return a == b || normal_text(a) == normal_text(b);
+         });
 }
 
 std::string ResultFormat::row(const CampaignResult& result) const {
   std::vector<std::string> fields{result.success ? "1" : "0", result.fell ? "1" : "0",
                                   result.refused ? "1" : "0", result.failed, result.problem};
   for (const double figure : result.figures) fields.push_back(number_text(figure));
-  return beginning(result.number) + joined(fields) + "\n";
+  return joined(beginning(result.number)) + "," + joined(fields) + "\n";
 }
 
 std::optional<CampaignResult> ResultFormat::parse(const std::string& line) const {

@@ -42,11 +42,12 @@ class ResultFormat {
   std::string row(const CampaignResult& result) const;
   /// Nothing if the line is no whole row of one of the runs.
   std::optional<CampaignResult> parse(const std::string& line) const;
-  /// Whether the row of this run begins like that: with its scenario, seed, settings and draws.
+  /// Whether the row of this run begins like that: with its scenario, seed, settings and draws,
+  /// words with or without quotes.
   bool is_of_run(const std::string& line, int number) const;
 
  private:
-  std::string beginning(int number) const;  // of its row
+  std::vector<std::string> beginning(int number) const;  // of its row
 
   const Campaign& campaign_;
   const std::vector<CampaignRun>& runs_;

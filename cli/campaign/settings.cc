@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace gaitd::cli {
 namespace {
 
+namespace fs = std::filesystem;
 using daemon::MapReader;
 using daemon::Node;
 using daemon::NodeKind;
@@ -40,6 +43,19 @@ bool needs_no_quotes(const std::string& text) {
 std::string setting_text(const Node& node) {
   const bool plain = node.kind == NodeKind::kScalar && (!node.quoted || needs_no_quotes(node.text));
   return plain ? node.text : daemon::to_json(node).dump();
+}
+
+std::string normal_text(const std::string& value) {
+  daemon::Issues unreadable;  // gaitd will say so
+  const NodePtr node = daemon::parse_yaml(value, "", &unreadable);
+  return node == nullptr ? value : setting_text(*node);
+}
+
+std::string file_of(const std::string& value) {
+  std::error_code ignored;
+  const bool named =
+      value.find_first_of("./") != std::string::npos && fs::is_regular_file(value, ignored);
+  return named ? fs::absolute(value).lexically_normal().string() : "";
 }
 
 std::string setting_number(double value) {
@@ -94,12 +110,22 @@ std::string bundle_with(const Campaign& campaign, const std::string& key) {
   return "";
 }
 
+// The one of `values` that is meant; `value` if none is.
+std::string own_spelling(const std::vector<std::string>& values, const std::string& value) {
+  if (std::ranges::find(values, value) != values.end()) return value;
+  const std::string text = normal_text(value), file = file_of(text);
+  const auto own = std::ranges::find_if(values, [&](const std::string& known) {
+    return known == text || (!file.empty() && file_of(known) == file);
+  });
+  return own == values.end() ? value : *own;
+}
+
 }  // namespace
 
-bool narrow(Campaign* campaign, const std::string& assignment, std::string* error) {
-  const std::size_t equals = assignment.find('=');
+bool narrow(Campaign* campaign, std::string* assignment, std::string* error) {
+  const std::size_t equals = assignment->find('=');
   if (equals == std::string::npos) return false;
-  const std::string key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
+  const std::string key = assignment->substr(0, equals);
   // What is drawn is not asked for again: --set comes later, and wins.
   std::erase_if(campaign->draws, [&](const CampaignDraw& draw) { return draw.key == key; });
   const bool searched = campaign->search && overlap(campaign->settings.back().key, key);
@@ -113,13 +139,14 @@ bool narrow(Campaign* campaign, const std::string& assignment, std::string* erro
                                ? "the values of '" + bundled + "' set it; choose one of them first"
                                : "";
   if (!same.empty()) {
-    *error = "--set " + assignment + ": " + same + ", or all would be the same run";
+    *error = "--set " + *assignment + ": " + same + ", or all would be the same run";
     return false;
   }
   if (setting == campaign->settings.end()) return false;
+  const std::string value = own_spelling(setting->values, assignment->substr(equals + 1));
   const auto bundle = campaign->bundles.find(key);
   if (bundle != campaign->bundles.end() && !bundle->second.contains(value)) {
-    *error = "--set " + assignment + ": expected one of the campaign's values of '" + key + "':";
+    *error = "--set " + *assignment + ": expected one of the campaign's values of '" + key + "':";
     for (const std::string& known : setting->values) *error += " " + known;
     return false;
   }
@@ -130,6 +157,7 @@ bool narrow(Campaign* campaign, const std::string& assignment, std::string* erro
     names = {place < names.size() ? names[place] : value};
   }
   setting->values = {value};
+  *assignment = key + "=" + value;
   return true;
 }
 

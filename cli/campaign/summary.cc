@@ -182,7 +182,8 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
     }
     worst_runs.push_back(entry);
   }
-  const json targets = targets_json(campaign, runs, results);
+  json without_runs;
+  const json targets = targets_json(campaign, runs, results, &without_runs);
   for (const json& target : targets) pass = pass && target["pass"].get<bool>();
   return {{"campaign", campaign.name},
           {"pass", pass},
@@ -195,6 +196,7 @@ json summary_json(const Campaign& campaign, const std::vector<CampaignRun>& runs
           {"cells", cells},
           {"groups", groups_json(campaign, runs, results)},
           {"targets", targets},
+          {"targets_without_runs", without_runs},
           {"worst", worst_runs},
           {"folder", shown.string()},
           {"results", (shown / "results.csv").string()}};
@@ -216,7 +218,8 @@ std::string summary_text(const json& summary, std::size_t columns) {
   } else {
     text += groups.empty() ? rates_text(summary, columns) : groups;
   }
-  if (!summary["targets"].empty()) text += "\ntargets\n" + targets_text(summary["targets"]);
+  const std::string targets = targets_text(summary["targets"], summary["targets_without_runs"]);
+  if (!targets.empty()) text += "\ntargets\n" + targets;
   text += "\nworst runs\n";
   for (const json& run : summary["worst"]) {
     const std::string failed = run["failed"].get<std::string>();

@@ -19,20 +19,25 @@ constexpr milliseconds kKnock{20};              // while somebody does
 EstopLine::EstopLine(Destination destination) : link_(std::move(destination)) {}
 
 void EstopLine::pull(Time now) {
-  if (open_) return;
-  open_ = true;
-  trouble_.clear();
+  // What is on its way has the time that it was given.
+  if (open_ && link_.send("estop", nullptr) != 0) return;
+  if (!open_) {
+    open_ = true;
+    trouble_.clear();
+    first_ = 0;
+  }
   patience_ = kAskAgain;
   ask(now);
 }
 
 void EstopLine::ask(Time now) {
-  id_ = link_.send("estop", nullptr);
-  if (id_ == 0 && link_.open()) id_ = link_.send("estop", nullptr);
-  if (id_ == 0) {
+  int id = link_.send("estop", nullptr);
+  if (id == 0 && link_.open()) id = link_.send("estop", nullptr);
+  if (id == 0) {
     next_ = now + kKnock;
     return;
   }
+  if (first_ == 0) first_ = id;
   next_ = now + patience_;
   patience_ = std::min<Time::duration>(2 * patience_, kLongestPatience);
 }
@@ -40,15 +45,19 @@ void EstopLine::ask(Time now) {
 void EstopLine::tick(Time now) {
   for (const Link::Answer& answer : link_.receive()) {
     const auto* error = std::get_if<daemon::RpcError>(&answer.result);
-    if (!open_ || answer.id != id_) continue;
+    if (!open_ || first_ == 0 || answer.id < first_) continue;
     if (error == nullptr) {
       open_ = false;
     } else {
       trouble_ = error->message;
+      patience_ = kAskAgain;
       next_ = std::min(next_, now + kAskAgain);
     }
   }
-  if (open_ && !link_.up()) next_ = std::min(next_, now + kKnock);
+  if (open_ && !link_.up()) {
+    patience_ = kAskAgain;
+    next_ = std::min(next_, now + kKnock);
+  }
   if (now < next_) return;
   if (open_) {
     link_.close();  // whatever holds it up there; a late answer to it is lost

@@ -165,6 +165,17 @@ TEST_F(ShardTest, RowsOfOtherRunsAreNotTaken) {
   }
 }
 
+TEST_F(ShardTest, RowsWithTheQuotesOfTheCampaignAreStillRead) {
+  campaign("scenarios: [good.yaml]\nset: {toe_off.variant: [\"never\"]}\nseeds: 2\n");
+  EXPECT_EQ(play("a").exit_code, 0);
+  std::string rows = workspace_.read("a/results.csv");
+  rows.replace(rows.find(",never,"), 7, ",\"\"\"never\"\"\",");
+  workspace_.write("a/results.csv", rows);
+  const Outcome outcome = play("a");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(lines("calls"), 2) << "nothing is played again";
+}
+
 TEST_F(ShardTest, TheCopyCanBeReadWhateverItsLastLine) {
   campaign("scenarios: [good.yaml]\nseeds: 2");
   EXPECT_EQ(play("a", "--set 'x=\"1\nseeds: 5\"'").exit_code, 0);
@@ -193,6 +204,30 @@ TEST_F(ShardTest, AFileOfSetIsNamedFromEverywhere) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_HAS(workspace_.read("a/summary.txt"),
              " --set toe_off.variant=" + file("mine.so") + " --set sensors.noise=nominal");
+  fs::create_directory(file("elsewhere"));
+  const Outcome again =
+      run_shell(workspace_, "cd " + file("elsewhere") +
+                                " && ../gaitctl campaign ../c.yaml -o ../a --resume --set "
+                                "toe_off.variant=../mine.so --set sensors.noise=nominal");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(lines("calls"), 1) << "nothing is played again";
+}
+
+TEST_F(ShardTest, SetIsSpelledAsTheCampaignDoes) {
+  workspace_.write("mine.so", "");
+  campaign(
+      "scenarios: [good.yaml]\nset: {toe_off.variant: [never, ./mine.so], n: [[1, 2], 3]}\n"
+      "success_min: [{where: {toe_off.variant: ./mine.so, n: [1, 2]}, rate: 1}]\n");
+  const Outcome outcome =
+      run_shell(workspace_, "cd " + file("") +
+                                " && ./gaitctl campaign c.yaml --trust -o a --set "
+                                "toe_off.variant=mine.so --set 'n=[1, 2]'");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_HAS(workspace_.read("a/summary.txt"), "  ok    n=[1,2] toe_off.variant=./mine.so 1/1");
+  // Where there is no such file as well.
+  const Outcome merged = run_shell(
+      workspace_, "cd / && " + file("gaitctl") + " campaign merge " + file("a") + folder("b"));
+  EXPECT_EQ(merged.exit_code, 0) << merged.err;
 }
 
 TEST_F(ShardTest, ALogThatCannotBeKeptIsAnError) {

@@ -263,9 +263,10 @@ TEST_F(CampaignTest, CountsByGroupsAndAsksForTargets) {
   const json kept = json::parse(workspace_.read("results/summary.json"));
   EXPECT_EQ(kept["groups"], groups);
   EXPECT_EQ(kept["results"], "results.csv");
-  // What no run is about is not asked for.
+  // What no run is about is not judged.
   fs::remove_all(file("results"));
   EXPECT_EQ(run("--set x=1").exit_code, 0);
+  EXPECT_HAS(workspace_.read("results/summary.txt"), "  --    x=2 y=1 not judged: no runs\n");
   campaign("scenarios: [" + file("good.yaml") +
            "]\nset: {x: [1]}\ngroups: [[z]]\nsuccess_min: [{where: {x: 2}, rate: 1}]\n");
   const Outcome wrong = run();

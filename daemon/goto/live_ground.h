@@ -58,7 +58,8 @@ class LiveGround {
     std::optional<Eigen::AlignedBox2d> part;
   };
   const Known& made(Made* last, const std::optional<Eigen::AlignedBox2d>& part) const;
-  // What was told still holds; what was seen and felt was so from where the robot is no longer.
+  // What was told still holds, except where something else was seen or felt since; what was seen
+  // and felt was so from where the robot is no longer.
   void begin_anew();
   void stand_on_soles(const Sight& sight);
   // Of feet that stand half in the air.

@@ -94,7 +94,10 @@ RpcResult put(const json& params, LiveGround* ground) {
   map.finish();
   if (!issues.ok() || !tile) return RpcError{rpc_code::kInvalidParams, issues.error_text()};
   const terrain::GroundMemory::Taken taken = ground->put(*tile, forget);
-  return json{{"cells", taken.cells}, {"uncertain", taken.uncertain}, {"far", taken.far}};
+  return json{{"cells", taken.cells},
+              {"uncertain", taken.uncertain},
+              {"partly", taken.partly},
+              {"far", taken.far}};
 }
 
 // The cells whose centres are within [x, y, x, y], least first (m, W).

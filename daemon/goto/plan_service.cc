@@ -172,7 +172,8 @@ footsteps::Plan PlanService::answer(const PlanRequest& request, bool* unchanged)
 }
 
 // The footsteps of the route behind the one that is under way; nothing if that is none of them. Of
-// several at one place it is the nearest to the one before: routes come back to where they were.
+// several at one place it is the nearest to the one before, of two as near the later one: routes
+// come back to where they were.
 std::optional<std::vector<GaitdFootstep>> PlanService::left_of_route(const PlanRequest& request) {
   if (!request.start.under_way) return std::nullopt;
   const GaitdFootstep& now = *request.start.under_way;
@@ -182,7 +183,7 @@ std::optional<std::vector<GaitdFootstep>> PlanService::left_of_route(const PlanR
   std::ptrdiff_t at = count;
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     if (!same_place(steps[static_cast<std::size_t>(i)], now)) continue;
-    if (at == count || off(i) < off(at)) at = i;
+    if (at == count || off(i) <= off(at)) at = i;
   }
   if (at == count) return std::nullopt;
   on_route_ = at;

@@ -226,15 +226,6 @@ std::optional<GroundMemory::Cell> GroundMemory::told_by(const HeightMap& tile,
 GroundMemory::Taken GroundMemory::put(const HeightMap& tile, bool forget, double time) {
   prepare();
   const Grid& from = tile.grid();
-  Taken taken;
-  for (int j = 0; j < from.rows; ++j) {
-    for (int i = 0; i < from.columns; ++i) {
-      if (!tile.known(i, j)) continue;
-      const Eigen::Vector2i c = grid_.cell(from.centre(i, j));
-      const bool certain = tile.variance(i, j) < rules_.unknown * rules_.unknown;
-      ++(!grid_.contains(c.x(), c.y()) ? taken.far : certain ? taken.cells : taken.uncertain);
-    }
-  }
   const Eigen::Vector2d size = from.resolution * Eigen::Vector2d(from.columns, from.rows);
   const Eigen::Vector2i first = grid_.cell(from.origin).cwiseMax(Eigen::Vector2i::Zero());
   const Eigen::Vector2i last =
@@ -243,13 +234,29 @@ GroundMemory::Taken GroundMemory::put(const HeightMap& tile, bool forget, double
   // ones have none in it, and count where they are.
   const Eigen::Vector2d reach =
       Eigen::Vector2d::Constant(std::max(0.0, 0.5 * (grid_.resolution - from.resolution)));
+  // What a tile fills in part is left to the one that fills it.
+  const auto fills = [&](const Eigen::Vector2i& cell) {
+    const Eigen::Vector2d p = grid_.centre(cell.x(), cell.y());
+    const Eigen::Vector2i low = from.cell(p - reach), high = from.cell(p + reach);
+    return from.contains(low.x(), low.y()) && from.contains(high.x(), high.y());
+  };
   for (int j = first.y(); j <= last.y(); ++j) {
     for (int i = first.x(); i <= last.x(); ++i) {
-      const Eigen::Vector2i low = from.cell(grid_.centre(i, j) - reach);
-      const Eigen::Vector2i high = from.cell(grid_.centre(i, j) + reach);
-      // What a tile fills in part is left to the one that fills it.
-      if (!from.contains(low.x(), low.y()) || !from.contains(high.x(), high.y())) continue;
-      if (const auto cell = told_by(tile, low, high, forget, time)) at(i, j) = *cell;
+      if (!fills({i, j})) continue;
+      const Eigen::Vector2d p = grid_.centre(i, j);
+      const auto cell = told_by(tile, from.cell(p - reach), from.cell(p + reach), forget, time);
+      if (cell) at(i, j) = *cell;
+    }
+  }
+  Taken taken;
+  for (int j = 0; j < from.rows; ++j) {
+    for (int i = 0; i < from.columns; ++i) {
+      if (!tile.known(i, j)) continue;
+      const Eigen::Vector2i c = grid_.cell(from.centre(i, j));
+      ++(!grid_.contains(c.x(), c.y())       ? taken.far
+         : !fills(c)                         ? taken.partly
+         : at(c.x(), c.y()).variance >= 0.0F ? taken.cells
+                                             : taken.uncertain);
     }
   }
   ++revision_;
@@ -311,7 +318,7 @@ HeightMap GroundMemory::map(double time) const {
     HeightMap closed = raw;
     for (int j = 0; j < part.rows; ++j) {
       for (int i = 0; i < part.columns; ++i) {
-        if (raw.known(i, j)) continue;
+        if (raw.known(i, j) || std::isinf(raw.variance(i, j))) continue;
         const Around a = around(raw, i, j, HeightMap::kUnknown);
         if (a.known >= kNeighbours && a.high - a.low < kLevel) {
           closed.set(i, j, a.sum / a.weight, a.worst);

@@ -171,6 +171,21 @@ TEST(GroundMemory, WhatIsToldAndUncertainIsNotKnown) {
   EXPECT_EQ(memory.put(tile_of(5.8, 0.4, 0.02, 0.0, 1e-6), false, 0.5).far, 300);
 }
 
+TEST(GroundMemory, OneUncertainCellIsNoHoleOfASensor) {
+  GroundMemory memory;
+  memory.move_to({0.0, 0.0});
+  HeightMap tile = tile_of(0.0, 0.4, 0.01, 0.0, 1e-6);
+  tile.set(20, 20, 0.0, 0.04 * 0.04);
+  const GroundMemory::Taken taken = memory.put(tile, false, 0.0);
+  EXPECT_EQ(taken.cells, 1596);
+  EXPECT_EQ(taken.uncertain, 4) << "all in that cell of the map";
+  const HeightMap map = memory.map(0.0);
+  const Eigen::Vector2i c = map.grid().cell({0.205, 0.205});
+  EXPECT_FALSE(map.known(c.x(), c.y()));
+  EXPECT_TRUE(std::isinf(map.variance(c.x(), c.y())));
+  EXPECT_EQ(map.known_cells(), 399);
+}
+
 TEST(GroundMemory, OfSmallerCellsTheHighestCounts) {
   GroundMemory memory;
   memory.move_to({0.0, 0.0});
@@ -193,7 +208,9 @@ TEST(GroundMemory, OfSmallerCellsTheHighestCounts) {
   EXPECT_TRUE(std::isnan(height(0.35)));
   EXPECT_NEAR(height(0.21), 0.5, 1e-6);
   // A cell that a tile fills in part is left as it is.
-  memory.put(tile_of(0.205, 0.1, 0.005, 0.0, 1e-6), false, 0.0);
+  const GroundMemory::Taken taken = memory.put(tile_of(0.205, 0.1, 0.005, 0.0, 1e-6), false, 0.0);
+  EXPECT_EQ(taken.cells, 16 * 16);
+  EXPECT_EQ(taken.partly, 20 * 20 - 16 * 16);
   EXPECT_NEAR(height(0.21), 0.5, 1e-6);
   EXPECT_NEAR(height(0.23), 0.0, 1e-6);
 }

@@ -169,6 +169,38 @@ TEST_F(Peer, AnEstopIsAskedForAgainAtOnceWhenItsConnectionEnds) {
   estop.tick(at(2040));
   accept_one();
   EXPECT_NE(heard().find("\"estop\""), std::string::npos);
+  estop.tick(at(2320));
+  EXPECT_EQ(heard(), "");
+  estop.tick(at(2360));  // this connection is a new one: it is not patient with it yet
+  accept_one();
+  EXPECT_NE(heard().find("\"estop\""), std::string::npos);
+}
+
+TEST_F(Peer, AnEstopThatIsPulledAgainIsAskedForOnceMoreWhereItIs) {
+  EstopLine estop(here());
+  estop.tick(at(0));
+  accept_one();
+  estop.pull(at(10));
+  EXPECT_NE(heard(), "");
+  estop.pull(at(200));
+  EXPECT_NE(heard().find("\"estop\""), std::string::npos);
+  say("{\"id\":1,\"result\":{\"accepted\":true}}\n");
+  estop.tick(at(210));
+  EXPECT_FALSE(estop.open()) << "either answer confirms it";
+  estop.pull(at(220));
+  say("{\"id\":2,\"result\":{\"accepted\":true}}\n");
+  estop.tick(at(230));
+  EXPECT_TRUE(estop.open()) << "that one is of before";
+  say("{\"id\":3,\"result\":{\"accepted\":true}}\n");
+  estop.tick(at(240));
+  EXPECT_FALSE(estop.open());
+  // Whoever presses it all the time does not keep it on a connection that hangs.
+  for (int ms = 300; ms < 700; ms += 20) {
+    estop.pull(at(ms));
+    estop.tick(at(ms));
+  }
+  accept_one();
+  EXPECT_NE(heard().find("\"estop\""), std::string::npos);
 }
 
 }  // namespace

@@ -296,14 +296,16 @@ TEST_F(MapMethods, OfWhatIsPutItIsSaidWhatBecameOfIt) {
   json some = tile();
   some["variances"] = floats({0.0F, 1e-2F, 0.0F, 0.0F, 0.0F, 0.0F});
   EXPECT_EQ(std::get<json>(call("map.put", some)),
-            json({{"cells", 4}, {"uncertain", 1}, {"far", 0}}));
+            json({{"cells", 4}, {"uncertain", 1}, {"partly", 0}, {"far", 0}}));
   json away = tile();
   away["origin"] = {5.98, 0.0};
   EXPECT_EQ(std::get<json>(call("map.put", away)),
-            json({{"cells", 2}, {"uncertain", 0}, {"far", 3}}));
+            json({{"cells", 2}, {"uncertain", 0}, {"partly", 0}, {"far", 3}}));
   json fine = tile();
   fine["resolution"] = 0.01;
-  EXPECT_EQ(std::get<json>(call("map.put", fine))["cells"], 5) << "in cells of the tile";
+  EXPECT_EQ(std::get<json>(call("map.put", fine)),
+            json({{"cells", 4}, {"uncertain", 0}, {"partly", 1}, {"far", 0}}))
+      << "in cells of the tile";
 }
 
 // A map that never changes is sent once.

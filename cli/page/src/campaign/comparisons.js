@@ -10,7 +10,7 @@ const kShown = 3;  // comparisons of one setting that stand open
 const cell = (words, className = '') => make('td', {textContent: words, className});
 const chance = (p) => p < 0.001 ? '< 0.001' : p.toFixed(3);
 
-// Of how many seeds they are, as many make `pairs` of them.
+// How many seeds those are: all seeds of the campaign make `pairs`.
 function more({more}, pairs) {
   if (more === 0) return cell('decided', 'pass');
   if (more === null) return cell('no difference seen', 'quiet');

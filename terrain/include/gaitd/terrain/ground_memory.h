@@ -64,7 +64,9 @@ class GroundMemory {
   // Of the cells of a tile that have a height, by their middles.
   struct Taken {
     int cells = 0;      // that count now
-    int uncertain = 0;  // too uncertain to step on: nothing is known there any more
+    int uncertain = 0;  // of which nothing is known any more: it, or one beside it that is in the
+                        // same cell of this map, is too uncertain to step on, or forgotten
+    int partly = 0;     // in a cell of this map that the tile does not fill: it stays as it was
     int far = 0;        // beside the square
   };
   // What another process knows: it takes the place of what is there, cell by cell of this map, and
@@ -78,8 +80,8 @@ class GroundMemory {
   void clear_found();
 
   // The part of the square in which something is known, as it is at `time`: holes of a cell or two
-  // between heights that agree are closed, and noise is averaged, not across edges. The variance of
-  // an unknown cell is infinite if another process has put that nothing is known there.
+  // between heights that agree are closed, and noise is averaged, not across edges. Where another
+  // process has put that nothing is known the variance is infinite, and no hole is closed.
   HeightMap map(double time) const;
 
  private:
