@@ -137,6 +137,7 @@ json groups_json(const Campaign& campaign, const std::vector<CampaignRun>& runs,
     for (const auto& [number, result] : results) {
       const CampaignRun& run = run_of(runs, number);
       std::vector<std::string> values;
+      values.reserve(keys.size());
       for (const std::string& key : keys) values.push_back(value_of(campaign, run, key));
       Count& count = counts.try_emplace(values, Count{run.cell}).first->second;
       count.cell = std::min(count.cell, run.cell);
