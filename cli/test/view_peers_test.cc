@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Those who look on, over networks that are slow, and one who has gone.
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -92,6 +93,8 @@ TEST_F(ViewPeers, AnEstopGoesOutAlthoughWhoAskedHasGone) {
   gone->call("walk", nullptr, nullptr);
   gone->call("estop", nullptr, nullptr);
   gone->end();
+  pollfd waiting{listener, POLLIN, 0};  // for the thread that connects
+  ASSERT_EQ(poll(&waiting, 1, 10000), 1);
   const int fd = accept(listener, nullptr, nullptr);
   ASSERT_GE(fd, 0);
   std::string heard;
