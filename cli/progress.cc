@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include "cli/teleop/console.h"
+#include "cli/terminal.h"
 #include "daemon/config/printable.h"
 
 namespace gaitd::cli {
@@ -18,7 +18,7 @@ namespace {
 constexpr std::chrono::milliseconds kPatience(2000);
 constexpr std::chrono::milliseconds kPeriod(500);
 
-bool on_terminal() { return isatty(STDERR_FILENO) != 0 && !teleop::is_dumb(); }
+bool on_terminal() { return takes_escape_codes(STDERR_FILENO); }
 
 // No lock of stdio: what takes long may fork.
 void write_line(const std::string& text) {

@@ -45,6 +45,12 @@ std::size_t columns_of(int descriptor) {
 
 std::size_t output_columns() { return columns_of(STDOUT_FILENO); }
 
+bool takes_escape_codes(int descriptor) {
+  const char* kind = std::getenv("TERM");
+  return isatty(descriptor) != 0 && kind != nullptr && *kind != '\0' &&
+         std::strcmp(kind, "dumb") != 0;
+}
+
 bool shows_colors(int descriptor) {
   const char* none = std::getenv("NO_COLOR");
   const char* kind = std::getenv("TERM");

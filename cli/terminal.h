@@ -43,6 +43,9 @@ std::size_t columns_of(int descriptor);
 /// Of that of standard output.
 std::size_t output_columns();
 
+/// Whether `descriptor` is a terminal that takes escape codes.
+bool takes_escape_codes(int descriptor);
+
 /// Colours only for a person who sees them: `descriptor` is a terminal that has some, and NO_COLOR
 /// is not set (https://no-color.org).
 bool shows_colors(int descriptor);

@@ -20,7 +20,6 @@
 #include "cli/rpc_client.h"
 #include "cli/status_view.h"
 #include "cli/stop_signals.h"
-#include "cli/teleop/console.h"
 #include "cli/terminal.h"
 #include "daemon/server/socket_path.h"
 
@@ -46,7 +45,7 @@ struct WatchOptions {
 class Output {
  public:
   Output(bool json, bool once) : json_(json) {
-    if (!json && !once && isatty(STDOUT_FILENO) != 0 && !teleop::is_dumb()) {
+    if (!json && !once && takes_escape_codes(STDOUT_FILENO)) {
       screen_.emplace();
     }
   }

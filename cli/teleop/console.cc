@@ -7,8 +7,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
-#include <cstring>
 
 #include "cli/escape_codes.h"
 #include "cli/terminal.h"
@@ -42,13 +40,8 @@ bool has_keyboard() {
   return isatty(STDIN_FILENO) != 0 && tcgetattr(STDIN_FILENO, &settings) == 0;
 }
 
-bool is_dumb() {
-  const char* kind = std::getenv("TERM");
-  return kind == nullptr || *kind == '\0' || std::strcmp(kind, "dumb") == 0;
-}
-
 Console::Console()
-    : screen_(isatty(STDOUT_FILENO) != 0 && !is_dumb()), colors_(shows_colors(STDOUT_FILENO)) {
+    : screen_(takes_escape_codes(STDOUT_FILENO)), colors_(shows_colors(STDOUT_FILENO)) {
   tcgetattr(STDIN_FILENO, &before_);
   if (isatty(STDOUT_FILENO) != 0) out_ = open_again(STDOUT_FILENO);
   enter();

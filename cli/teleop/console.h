@@ -60,7 +60,5 @@ class Console {
 
 /// Whether somebody can press keys on standard input.
 bool has_keyboard();
-/// Whether the terminal knows no escape codes.
-bool is_dumb();
 
 }  // namespace gaitd::cli::teleop
