@@ -66,11 +66,12 @@ stop_gaitd() {
 
 # wait_status SECONDS PATTERN: until the status, a line of JSON that is then in $status, matches. Only
 # that line comes to bash, which asks the kernel for each byte of a pipe: it would fall behind for long.
+# Without IFS, a piece that ends in a space keeps it.
 wait_status() {
   local end=$((SECONDS + $1)) lines piece
   status=
   exec {lines}< <(watch_status "${2//\*/.*}")
-  while ! read -rt 1 -u "$lines" piece; do
+  while ! IFS= read -rt 1 -u "$lines" piece; do
     status+=$piece
     ((SECONDS < end)) || fail "after $1 s, waiting for $2: $(gaitctl --json status 2>&1)"
     [[ -z ${gaitd-} ]] || kill -0 "$gaitd" 2>/dev/null || fail "gaitd ended, waiting for $2"
