@@ -13,6 +13,7 @@ namespace {
 constexpr double kDefaultFriction = 0.8;
 constexpr std::size_t kMaxBoxes = 1000;
 constexpr Bounds kFriction = {0.0, 10.0, ""};
+constexpr Bounds kStiffness = {2e4, 1e7, "N/m"};
 constexpr std::array<std::string_view, 5> kActuatorWords = {"ideal", "nominal", "hydraulic",
                                                             "harmonic", "quasi_direct"};
 
@@ -114,6 +115,7 @@ nlohmann::json read_terrain(MapReader map, const std::string& scenario_file,
   }
   const double friction = map.number("friction", kFriction).value_or(kDefaultFriction);
   nlohmann::json result = {{"friction", friction}, {"boxes", nlohmann::json::array()}};
+  if (const auto stiffness = map.number("stiffness", kStiffness)) result["stiffness"] = *stiffness;
   if (const auto ground = map.number("ground_z", kPositionBounds)) result["ground_z"] = *ground;
   const std::vector<NodePtr> boxes = map.list("boxes", 0, kMaxBoxes);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -124,8 +126,7 @@ nlohmann::json read_terrain(MapReader map, const std::string& scenario_file,
     result["height_map"] = read_height_map(&map, scenario_file, *file, height_map);
   }
   if (!map.has("ground_z") && !map.has("boxes") && !map.has("height_map")) {
-    map.fail("", "ground_z, boxes or height_map", "none of them",
-             "add 'ground_z: 0.0': there is nothing to stand on");
+    result["ground_z"] = 0.0;  // as without a terrain
   }
   map.finish();
   return result;

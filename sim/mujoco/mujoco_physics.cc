@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mujoco_physics.h"
 
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -53,13 +54,13 @@ MujocoPhysics::MujocoPhysics(const GaitdModel& model, const Terrain& terrain, do
       spheres_(make_body_spheres(model)),
       terrain_(terrain),
       h_(time_step),
-      m_(load(mujoco_document(model, spheres_, terrain, time_step))),
-      d_(mj_makeData(m_.get())),
       joints_(model),
-      owner_(static_cast<size_t>(m_->nbody), -1),
-      foot_(static_cast<size_t>(m_->ngeom), -1),
       joint_rate_(model.joint_count),
       motions_(static_cast<size_t>(model.body_count)) {
+  load_model();
+  d_.reset(mj_makeData(m_.get()));
+  owner_.assign(static_cast<size_t>(m_->nbody), -1);
+  foot_.assign(static_cast<size_t>(m_->ngeom), -1);
   for (int i = 0; i < model.body_count; ++i) {
     body_.push_back(mj_name2id(m_.get(), mjOBJ_BODY, std::to_string(i).c_str()));
     owner_[static_cast<size_t>(body_.back())] = i;
@@ -72,6 +73,32 @@ MujocoPhysics::MujocoPhysics(const GaitdModel& model, const Terrain& terrain, do
   for (const int side : {GAITD_LEFT, GAITD_RIGHT}) {
     const char* name = side == GAITD_LEFT ? "sole.left" : "sole.right";
     foot_[static_cast<size_t>(mj_name2id(m_.get(), mjOBJ_GEOM, name))] = side;
+  }
+}
+
+void MujocoPhysics::load_model() {
+  m_.reset(load(mujoco_document(model_, spheres_, terrain_, h_)));
+  if (terrain_.stiffness()) soften_ground(*terrain_.stiffness());
+}
+
+// A flat sole touches in four points. MuJoCo's contact is f = (s r + b dr/dt) / ((1 - d) A) - a / R
+// with impedance d, sink r, its acceleration a and A the inverse of the mass that a point of the
+// foot meets in the reference posture ("Computation", of its documentation). Half of the sole's
+// critical damping: of the whole robot on one foot that is a tenth.
+void MujocoPhysics::soften_ground(double stiffness) {
+  constexpr double kImpedance = 0.5;
+  constexpr double kPoints = 4;
+  constexpr double kDamping = 0.5;
+  const int foot = m_->geom_bodyid[mj_name2id(m_.get(), mjOBJ_GEOM, "sole.left")];
+  const double inverse_mass = m_->body_invweight0[2 * foot];
+  const double s = stiffness / kPoints * (1 - kImpedance) * inverse_mass;
+  for (int i = 0; i < m_->ngeom; ++i) {
+    if (m_->geom_priority[i] == 0) continue;  // the robot's
+    mjtNum* const solref = m_->geom_solref + mjNREF * i;
+    solref[0] = -s;
+    solref[1] = -2 * kDamping * std::sqrt(s);
+    mjtNum* const solimp = m_->geom_solimp + mjNIMP * i;
+    solimp[0] = solimp[1] = kImpedance;
   }
 }
 
@@ -101,7 +128,7 @@ void MujocoPhysics::place(const State& state) {
 // Of the same structure: the data of the simulation stay as they are.
 void MujocoPhysics::change_masses(const GaitdModel& model) {
   model_ = model;
-  m_.reset(load(mujoco_document(model, spheres_, terrain_, h_)));
+  load_model();
   update_positions();
 }
 

@@ -40,6 +40,8 @@ class MujocoPhysics : public Physics {
     void operator()(mjData* d) const { mj_deleteData(d); }
   };
 
+  void load_model();
+  void soften_ground(double stiffness);
   void apply(std::span<const BodyForce> forces);
   bool solve();
   void update_positions();

@@ -6,9 +6,9 @@
 namespace gaitd::sim {
 
 ContactModel::ContactModel(const GaitdModel& model, Terrain terrain)
-    : terrain_(std::move(terrain)), spheres_(make_body_spheres(model)) {
+    : terrain_(std::move(terrain)), spheres_(make_body_spheres(model), terrain_.stiffness()) {
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
-    feet_.emplace_back(model.feet[side], side);
+    feet_.emplace_back(model.feet[side], side, terrain_.stiffness());
     foot_bodies_.push_back(model.feet[side].body);
   }
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kBottom = 0;               // exit of a box edge through the sole; 1 + i: side i
 constexpr double kEntryTime = 0.005;     // s
-constexpr double kDeepestEdge = 0.01;    // m, that is still pushed out in proportion
+constexpr double kStrongestEdge = 4000;  // N, up to which an edge is pushed out in proportion
 constexpr double kBefore = 1e-3;         // m, how far in front of an edge is looked
 constexpr double kCone = 0.1;            // sine, by which an edge may push beside its faces
 constexpr double kProbe = 3e-3;          // m, above the sole
@@ -22,7 +22,7 @@ constexpr double kSameDepth = 1e-6;      // m: the first of two flush solids sta
 
 }  // namespace
 
-FootContact::FootContact(const GaitdFoot& foot, int side)
+FootContact::FootContact(const GaitdFoot& foot, int side, std::optional<double> stiffness)
     : side_(side),
       body_(foot.body),
       p_BS_(foot.sole.origin),
@@ -42,6 +42,8 @@ FootContact::FootContact(const GaitdFoot& foot, int side)
     reach = std::max(reach, a.norm());
   }
   radius_ = Eigen::Vector2d(reach, kThickness).norm();
+  if (stiffness) law_.stiffness = *stiffness / point_count();
+  deepest_edge_ = kStrongestEdge / law_.stiffness;
 }
 
 Contact FootContact::make_contact(const BodyMotion& motion, const Eigen::Vector3d& p_W) const {
@@ -214,7 +216,7 @@ void FootContact::detect_edges(const BodyMotion& motion, const Terrain& terrain,
       }
       Contact contact = make_contact(motion, p_W);
       contact.normal = normal;
-      contact.depth = std::min(depth, kDeepestEdge);
+      contact.depth = std::min(depth, deepest_edge_);
       contact.friction = box.friction;
       contact.memory = memory->touch(contact_key(ContactKind::kEdgeEnd, owner, box_index, part));
       contacts->push_back(contact);
@@ -255,7 +257,7 @@ void FootContact::detect_ridges(const BodyMotion& motion, const HeightField& fie
     if (choice < 0) choice = nearest;
     Contact contact = make_contact(motion, ridge.p_W);
     contact.normal = R_WS * push(choice);
-    contact.depth = std::min(depth_of(choice), kDeepestEdge);
+    contact.depth = std::min(depth_of(choice), deepest_edge_);
     contact.friction = field.friction();
     contact.memory = entry;
     contacts->push_back(contact);

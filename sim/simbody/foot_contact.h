@@ -5,6 +5,7 @@
 #define GAITD_SIM_FOOT_CONTACT_H_
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "contact.h"
@@ -19,7 +20,8 @@ class FootContact {
  public:
   // `side` is GAITD_LEFT or GAITD_RIGHT. The outline must be convex and counter-clockwise with
   // three points or more; its edges are divided so that 8 to 12 points come out.
-  FootContact(const GaitdFoot& foot, int side);
+  // `stiffness` (N/m) of the ground under the whole sole; none: ContactLaw's at each point.
+  FootContact(const GaitdFoot& foot, int side, std::optional<double> stiffness);
 
   // Appends every contact of the foot, `motion` being that of its body.
   void detect(const BodyMotion& motion, const Terrain& terrain, ContactMemory* memory,
@@ -56,6 +58,7 @@ class FootContact {
   int side_;
   int body_;
   ContactLaw law_;
+  double deepest_edge_;   // m, that is still pushed out in proportion
   Eigen::Vector3d p_BS_;  // m, sole frame in the body
   Eigen::Matrix3d R_BS_;
   std::vector<Eigen::Vector3d> points_B_;  // m, body frame

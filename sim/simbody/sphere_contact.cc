@@ -5,9 +5,15 @@
 #include <utility>
 
 namespace gaitd::sim {
+namespace {
 
-SphereContact::SphereContact(std::vector<BodySphere> spheres) : spheres_(std::move(spheres)) {
-  law_.stiffness = 2e5;
+constexpr double kStiffness = 2e5;  // N/m of a robot's shell on hard ground
+
+}  // namespace
+
+SphereContact::SphereContact(std::vector<BodySphere> spheres, std::optional<double> stiffness)
+    : spheres_(std::move(spheres)) {
+  law_.stiffness = std::min(kStiffness, stiffness.value_or(kStiffness));
 }
 
 void SphereContact::detect(const Multibody& multibody, const Terrain& terrain,

@@ -4,6 +4,7 @@
 #define GAITD_SIM_SPHERE_CONTACT_H_
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "contact.h"
@@ -16,7 +17,8 @@ namespace gaitd::sim {
 
 class SphereContact {
  public:
-  explicit SphereContact(std::vector<BodySphere> spheres);
+  // `stiffness` (N/m) of the ground under a foot; none: it is hard.
+  SphereContact(std::vector<BodySphere> spheres, std::optional<double> stiffness);
 
   // Appends every contact of the spheres.
   void detect(const Multibody& multibody, const Terrain& terrain, ContactMemory* memory,

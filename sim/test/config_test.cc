@@ -17,6 +17,20 @@ std::vector<std::string> errors_of(const std::string& text, double period = 0.00
   return errors;
 }
 
+TEST(Config, ReadsTheStiffnessOfTheGround) {
+  std::vector<std::string> errors;
+  const GaitdModel model = test::block_model();
+  const auto read = [&](const std::string& terrain) {
+    return parse_config("{\"terrain\": {\"ground_z\": 0" + terrain + "}}", model, 0.001, &errors);
+  };
+  EXPECT_FALSE(read("").terrain.stiffness);
+  EXPECT_EQ(read(", \"stiffness\": 1e6").terrain.stiffness, 1e6);
+  EXPECT_TRUE(errors.empty());
+  read(", \"stiffness\": 100");
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_NE(errors[0].find("terrain.stiffness"), std::string::npos) << errors[0];
+}
+
 TEST(Config, EverythingIsRead) {
   std::vector<std::string> errors;
   const Config config = parse_config(

@@ -53,6 +53,23 @@ TEST(Mujoco, TheGroundCarriesTheWeightFromTheFirstReadingOn) {
   EXPECT_LT(truth_of(plant).feet[0].penetration, 1e-4);
 }
 
+// In both engines: at rest each sole is in by half of the weight over the stiffness.
+TEST(Mujoco, SinksIntoSoftGroundLikeSimbody) {
+  for (const double stiffness : {2e5, 1e6}) {
+    Config config = block_config();
+    config.terrain.stiffness = stiffness;
+    for (const PhysicsFactory& make :
+         {PhysicsFactory(MujocoPhysics::make), PhysicsFactory(SimbodyPhysics::make)}) {
+      Plant plant(block_model(), config, 0.001, make);
+      ASSERT_TRUE(test::run(&plant, 3.0));
+      const double sink = 0.5 * kWeight / stiffness;
+      for (const auto& foot : truth_of(plant).feet) {
+        EXPECT_NEAR(foot.penetration, sink, 0.1 * sink) << stiffness;
+      }
+    }
+  }
+}
+
 // Under way, in both engines: the robot keeps its motion, and the ground gets the load.
 TEST(Mujoco, CarriesALoadLikeSimbody) {
   Config config = block_config();

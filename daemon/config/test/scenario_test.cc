@@ -235,6 +235,17 @@ TEST(Scenario, ReportsEveryErrorAtOnce) {
   }
 }
 
+TEST(Scenario, ATerrainOfOtherFiguresOnlyIsFlatGround) {
+  for (const char* figures : {"friction: 0.5", "stiffness: 1.0e+6"}) {
+    Issues issues;
+    Settings settings;
+    const auto scenario = read_text(kHead + "terrain: {" + figures + "}\n", &issues, &settings);
+    ASSERT_TRUE(scenario) << issues.error_text();
+    EXPECT_EQ(scenario->terrain["ground_z"], 0.0);
+  }
+  EXPECT_PART(errors_of_scenario(kHead + "terrain: {stiffness: 1000}\n"), "terrain.stiffness");
+}
+
 TEST(Scenario, RefusesContradictions) {
   EXPECT_PART(errors_of_scenario(kHead + "commands: [{at: 11, stop: true}]\n"),
               "commands[0].at: expected a time before the end of the scenario, got 11");
@@ -242,8 +253,6 @@ TEST(Scenario, RefusesContradictions) {
       errors_of_scenario(kHead + "disturbances: [{link: a, force: [1, 0, 0], duration: 1, when: "
                                  "{time: 12}}]\n"),
       "when.time: expected a time before the end");
-  EXPECT_PART(errors_of_scenario(kHead + "terrain: {friction: 1}\n"),
-              "ground_z, boxes or height_map, got none of them");
   EXPECT_PART(errors_of_scenario(kHead + "commands: [{at: 1, pause: false}]\n"),
               "expected true, got false");
   EXPECT_PART(errors_of_scenario(kHead + "commands: [{at: 1, swap: {layer: toe_of, to: x}}]\n"),

@@ -21,6 +21,7 @@ constexpr Range kPlace{-1e4, 1e4};
 constexpr Range kNotNegative{0, kInfinity};
 constexpr Range kHoist{0.02, 0.2};
 constexpr Range kFriction{0, 10};
+constexpr Range kStiffness{2e4, 1e7};
 constexpr Range kDelay{0, 0.1};
 
 void read_whole(const char* key, JsonReader* reader, uint64_t* result) {
@@ -65,8 +66,9 @@ void read_height_map(const JsonReader& reader, std::vector<std::string>* errors,
 
 void read_terrain(const json& value, std::vector<std::string>* errors, TerrainConfig* terrain) {
   JsonReader reader(value, "terrain", errors);
-  reader.allow({"friction", "ground_z", "boxes", "height_map"});
+  reader.allow({"friction", "stiffness", "ground_z", "boxes", "height_map"});
   reader.number("friction", kFriction, &terrain->friction);
+  reader.number("stiffness", kStiffness, &terrain->stiffness);
   reader.number("ground_z", kPlace, &terrain->ground_z);
   if (reader.has("height_map")) read_height_map(reader, errors, terrain);
   if (!reader.has("boxes")) return;

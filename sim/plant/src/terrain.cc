@@ -57,7 +57,8 @@ std::array<double, Box::kFaces> Box::depths(const Eigen::Vector3d& p_W) const {
 Terrain::Terrain(const TerrainConfig& config, double friction_scale)
     : has_ground_(config.ground_z.has_value()),
       ground_z_(config.ground_z.value_or(0)),
-      ground_friction_(config.friction * friction_scale) {
+      ground_friction_(config.friction * friction_scale),
+      stiffness_(config.stiffness) {
   for (const BoxConfig& box : config.boxes) boxes_.push_back(make_box(box, friction_scale));
   if (config.height_map) field_.emplace(config.height_map, ground_friction_);
 }

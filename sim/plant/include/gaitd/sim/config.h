@@ -26,8 +26,9 @@ struct BoxConfig {
 };
 
 struct TerrainConfig {
-  double friction = 0.8;           // of the ground, and of boxes that name none
-  std::optional<double> ground_z;  // m; none: no ground
+  double friction = 0.8;            // of the ground, and of boxes that name none
+  std::optional<double> stiffness;  // N/m under a foot that stands flat; none: the engine's own
+  std::optional<double> ground_z;   // m; none: no ground
   std::vector<BoxConfig> boxes;
   std::shared_ptr<const terrain::HeightMap> height_map;  // null: none
 };

@@ -83,6 +83,7 @@ class Terrain {
   bool has_ground() const { return has_ground_; }
   double ground_z() const { return ground_z_; }
   double ground_friction() const { return ground_friction_; }
+  std::optional<double> stiffness() const { return stiffness_; }  // see TerrainConfig
   const std::vector<Box>& boxes() const { return boxes_; }
   const HeightField* height_field() const { return field_ ? &*field_ : nullptr; }  // null: none
 
@@ -104,6 +105,7 @@ class Terrain {
   bool has_ground_;
   double ground_z_;
   double ground_friction_;
+  std::optional<double> stiffness_;
   std::vector<Box> boxes_;
   std::optional<HeightField> field_;
 };
