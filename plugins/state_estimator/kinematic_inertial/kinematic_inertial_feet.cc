@@ -174,12 +174,14 @@ bool KinematicInertial::rolls(int side, const GaitdStateEstimatorInput& in) cons
   return in.gait->footholds[side].contact == GAITD_CONTACT_TOE;
 }
 
-// In a walk, the bias about the vertical from by what each foot turned while it carried.
+// In a walk, the bias about the vertical from by what each foot turned while it carried alone: as
+// the other one lands and takes the load, it turns by some milliradians.
 void KinematicInertial::observe_turns(const GaitdStateEstimatorInput& in, double dt) {
   const bool walking = in.gait->phase != GAITD_PHASE_STAND;
   for (int side = 0; side < GAITD_MAX_FEET; ++side) {
     Foot& f = feet_[side];
-    if (walking && f.rests() && !rolls(side, in)) {
+    const bool alone = feet_[1 - side].contact == GAITD_CONTACT_NONE;
+    if (walking && alone && f.rests() && !rolls(side, in)) {
       f.heading_last = sdk::yaw_of(sole_orientation(side));
       if (f.time_carrying <= 0.0) f.heading_first = f.heading_last;
       f.time_carrying += dt;
