@@ -8,6 +8,7 @@
 #include "gaitd/sdk/loads.h"
 #include "gaitd/sdk/views.h"
 #include "gaitd/walking/external_wrench.h"
+#include "gaitd/walking/support.h"
 
 namespace gaitd::walking {
 
@@ -18,6 +19,21 @@ constexpr double kLateTime = 0.1;  // s
 constexpr double kFitLimit = 0.06796;
 // 1/s, k of the header: over within a step, and slower than the ICP, which would follow no faster.
 constexpr double kDecay = 4.0;
+// Margins of the CMP, by which the start of a last transfer stays away from the edge of both feet.
+constexpr double kRoom = 3.0;
+
+// Both feet as the last step of `gait` leaves them: where its CMP may go from one to the other.
+ConvexPolygon last_stance(const GaitdModel& model, const GaitdGaitState& gait, double margin) {
+  const GaitdFootstep& step = gait.adjusted[0];
+  const int side = other_side(step.side);
+  GaitdFoothold stance = gait.footholds[side];
+  stance.contact = GAITD_CONTACT_FULL;
+  ConvexPolygon feet;
+  add_foothold(stance, model.feet[side].toe_point, feet);
+  add_foothold(bearing_of(model, step), model.feet[step.side].toe_point, feet);
+  feet.make_hull();
+  return feet.inset(margin);
+}
 
 }  // namespace
 
@@ -39,6 +55,10 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
 
   trajectory_.build(model_, gait, offsets);
   const bool from_standing = gait.phase == GAITD_PHASE_TRANSFER && gait.trailing_side == GAITD_BOTH;
+  // The swing of the last step, and the transfer after it: a walk may end earlier than planned.
+  const bool ends = gait.phase == GAITD_PHASE_SWING && gait.footstep_count == 1;
+  const bool ended = gait.phase == GAITD_PHASE_TRANSFER && !from_standing &&
+                     gait.footstep_count == 0 && state_.phase != GAITD_PHASE_STAND;
   if (from_standing) {
     // A transfer that has just begun, or one that another variant began, is fitted once.
     const bool begun = gait.phase != state_.phase || gait.time_in_phase < 0.5 * dt;
@@ -50,6 +70,17 @@ void IcpReference::update(double dt, const GaitdRobotState& robot, const GaitdGa
     } else {
       trajectory_.set_start(start);
     }
+  } else if (ends) {
+    if (changed || state_.phase != gait.phase) {
+      trajectory_.fit_last_start(first ? at_rest : Eigen::Vector2d(icp), gait.time_remaining,
+                                 last_stance(model_, gait, kRoom * offsets.margin));
+      start = trajectory_.last_start();
+      state_.start_ecmp_valid = 1;
+    } else {
+      trajectory_.set_last_start(start);
+    }
+  } else if (ended && state_.start_ecmp_valid != 0) {
+    trajectory_.set_start(start);
   } else {
     state_.start_ecmp_valid = 0;
   }

@@ -166,13 +166,30 @@ void IcpTrajectory::com_at_ends(Eigen::Vector2d com, std::span<Eigen::Vector2d> 
   }
 }
 
+Eigen::Vector2d IcpTrajectory::fitted_start(const Piece& p, const Eigen::Vector2d& icp,
+                                            const Eigen::Vector2d& icp_end) const {
+  const double e = std::exp(-omega_ * p.duration);
+  const double w = 1.0 / (omega_ * p.duration);
+  return (icp - p.end * (w - e * (1.0 + w)) - e * icp_end) / (1.0 - w + e * w);
+}
+
+void IcpTrajectory::fit_last_start(const Eigen::Vector2d& icp, double remaining,
+                                   const ConvexPolygon& region) {
+  if (count_ != 2) return;
+  const Piece& swing = pieces_[0];
+  Piece& last = pieces_[1];
+  const double left = std::clamp(remaining, 0.0, swing.duration);
+  const Eigen::Vector2d slope = (swing.end - swing.start) / (swing.duration * omega_);
+  const Eigen::Vector2d ecmp = swing.end - slope * omega_ * left;
+  const Eigen::Vector2d icp_end =
+      swing.end + slope + std::exp(omega_ * left) * (icp - ecmp - slope);
+  last.start = region.closest_point(fitted_start(last, icp_end, last.end));
+}
+
 void IcpTrajectory::fit_start(const Eigen::Vector2d& icp, double limit) {
   if (count_ == 0) return;
   Piece& p = pieces_[0];
-  const double e = std::exp(-omega_ * p.duration);
-  const double w = 1.0 / (omega_ * p.duration);
-  const Eigen::Vector2d fitted =
-      (icp - p.end * (w - e * (1.0 + w)) - e * icp_at_start(1)) / (1.0 - w + e * w);
+  const Eigen::Vector2d fitted = fitted_start(p, icp, icp_at_start(1));
   const Eigen::Vector2d shift = fitted - p.start;
   const double length = shift.norm();
   p.start += length > limit ? Eigen::Vector2d(shift * (limit / length)) : shift;

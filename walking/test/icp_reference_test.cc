@@ -185,6 +185,30 @@ TEST(IcpReference, DoesNotJumpWhenPausedAndResumed) {
   finish(w);
 }
 
+// The ICP is where it would be if the walk went on. What the last transfer cannot make of that, an
+// offset makes, and the CMP of an offset may lie beside the foot.
+TEST(IcpReference, AWalkThatEndsEarlyKeepsItsCmpInTheFoot) {
+  for (const double length : {0.3, 0.5}) {
+    for (const double fraction : {0.1, 0.4, 0.7}) {
+      WatchedWalk w;
+      walk_on(w, length);
+      ASSERT_TRUE(w.run_until_fraction(3, fraction));
+      ASSERT_FALSE(w.machine.pause().refused());
+      double outside = 0.0;
+      w.on_update = [&] {
+        if (w.gait().phase != GAITD_PHASE_SWING) return;
+        const GaitdFoothold& stance = w.gait().footholds[w.gait().support];
+        ConvexPolygon sole;
+        add_foothold(stance, atlas().feet[w.gait().support].toe_point, sole);
+        sole.make_hull();
+        outside = std::max(outside, -sole.inside_distance(sdk::view(w.plan.ecmp)));
+      };
+      ASSERT_TRUE(w.run_until_stand());
+      EXPECT_LT(outside, 0.02) << length << " m, paused after " << fraction << " of a swing";
+    }
+  }
+}
+
 TEST(IcpReference, DoesNotJumpWhenStoppedOrAborted) {
   for (double fraction : {0.1, 0.5, 0.9}) {
     WatchedWalk stopped;

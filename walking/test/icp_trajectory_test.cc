@@ -256,6 +256,25 @@ TEST(IcpTrajectory, FittedStartStaysWithinItsLimit) {
   EXPECT_NEAR((t.start() - before).norm(), 0.05, 1e-12);
 }
 
+TEST(IcpTrajectory, AFittedLastTransferKeepsTheIcpOfTheSwingBeforeIt) {
+  GaitdGaitState gait = in_swing();
+  gait.footstep_count = 1;
+  IcpTrajectory t = built(gait);
+  const double left = 0.6 * gait.phase_duration;
+  const Eigen::Vector2d planned = t.evaluate(left).icp;
+  for (const Eigen::Vector2d& off : {Eigen::Vector2d(0.02, -0.01), Eigen::Vector2d(-0.03, 0.0)}) {
+    t.fit_last_start(planned + off, left, {});
+    EXPECT_LT((t.evaluate(left).icp - planned - off).norm(), 1e-12);
+  }
+  ConvexPolygon region;
+  for (const double x : {-0.01, 0.01}) {
+    for (const double y : {-0.01, 0.01}) region.add(t.rest() + Eigen::Vector2d(x, y));
+  }
+  region.make_hull();
+  t.fit_last_start(planned + Eigen::Vector2d(0.5, 0.3), left, region);
+  EXPECT_GE(region.inside_distance(t.last_start()), -1e-12);
+}
+
 TEST(IcpTrajectory, SurvivesPhasesOfNoDuration) {
   GaitdGaitState gait = in_swing();
   gait.phase_duration = 0.0;

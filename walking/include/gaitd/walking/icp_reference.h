@@ -9,7 +9,9 @@
 namespace gaitd::walking {
 
 // The ICP reference of every tick, continuous whatever happens to the plan (theory section 2).
-// The first transfer out of standing is fitted to the reference so far; at every later change
+// The first transfer out of standing is fitted to the reference so far, and so is the last one when
+// the plan changes in the swing before it (a pause, a stop); at every other change, and of what a
+// fit leaves,
 // (early or late touchdown, moved, added or re-timed steps) the difference is kept and decays:
 //   xi_ref = xi_plan + delta,  delta' = -k delta,  r_ref = r_plan + (1 + k/w) delta
 // What another variant had planned otherwise is also left of delta at touchdown, and expected

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "gaitd/abi/types.h"
+#include "gaitd/walking/polygon.h"
 
 namespace gaitd::walking {
 
@@ -62,6 +63,11 @@ class IcpTrajectory {
   void fit_start(const Eigen::Vector2d& icp, double limit);
   void set_start(const Eigen::Vector2d& ecmp) { pieces_[0].start = ecmp; }
   const Eigen::Vector2d& start() const { return pieces_[0].start; }
+  // Last transfer, seen from the swing before it: its start is free so that the ICP is at `icp` (m)
+  // with `remaining` seconds of that swing left; kept inside `region`. Nothing without both pieces.
+  void fit_last_start(const Eigen::Vector2d& icp, double remaining, const ConvexPolygon& region);
+  void set_last_start(const Eigen::Vector2d& ecmp) { pieces_[count_ - 1].start = ecmp; }
+  const Eigen::Vector2d& last_start() const { return pieces_[count_ - 1].start; }
   // Where the ICP rests when there is no piece: the middle of the feet (m).
   const Eigen::Vector2d& rest() const { return rest_; }
 
@@ -74,6 +80,9 @@ class IcpTrajectory {
     int start_step, end_step;
     double end_share;  // share of the end that belongs to end_step; the rest to the step before
   };
+  // Where `p` starts if the ICP goes from `icp` to `icp_end` over it (m).
+  Eigen::Vector2d fitted_start(const Piece& p, const Eigen::Vector2d& icp,
+                               const Eigen::Vector2d& icp_end) const;
   void add(const Eigen::Vector2d& start, int start_step, const Eigen::Vector2d& end, int end_step,
            double duration, double end_share = 1.0);
   std::array<Piece, kMaxPieces> pieces_;
